@@ -14,8 +14,8 @@ from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.pipeline import Designed, Overrides, limits_of, run_certification
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.disturbed import worst_run
 from nrs_design.simulation.single_precision import Choices, simulate_single_precision
+from nrs_design.simulation.worst_case import worst_against
 from nrs_design.spec import LoadedSpec, parse_spec
 
 SPEC = Path(__file__).parents[1] / "specs" / "neuroboscope" / "soft-tissue-sampled.nrs.yaml"
@@ -170,17 +170,12 @@ def _choices(
 
 def _adversary(designed: Designed, system: SwitchedSystem, found: Bound) -> tuple[np.ndarray, ...]:
     """Return what an adversary of the linear model does: law, delay, end of k, sign of command."""
-    response, motions = worst_run(system, found)
+    run = worst_against(system, found)
     free = () if system.contact is None else system.contact.free
     names = [mode.name.split("/") for mode in (*system.modes, *free)]
     controllers = [c.name for c in designed.design.controllers]
-    chosen = [names[index] for index in response.mode]
+    chosen = [names[index] for index in run.mode]
     law = np.array([controllers.index(parts[0]) for parts in chosen])
     delay = np.array([int("delay-1" in parts) for parts in chosen])
     k = np.array([float("k-max" in parts) for parts in chosen])
-    n = system.order
-    signs = []
-    for x, after, mode in zip(response.state, response.state[1:], response.mode, strict=False):
-        A, B = motions.maps[mode, :, :n], motions.maps[mode, :, n]
-        signs.append(np.sign((after - A @ x) @ B))
-    return law, delay, k, np.array(signs)
+    return law, delay, k, np.sign(run.disturbances[:, 0])

@@ -12,6 +12,8 @@ _UNSEEN = (
 )
 # What a line of a GitHub log begins with, or holds anywhere, to be taken for a command.
 _COMMAND = re.compile(r"\A\s*:(?=:)|#(?=#\[)")
+# Of the characters that stand for bytes from 0x80 on (PEP 383).
+_FIRST_BYTE = 0xDC80
 _STRANGE = re.compile(f"[{_UNSEEN}]")
 
 
@@ -39,7 +41,12 @@ def visible(text: str) -> str:
 
 
 def escaped(character: str) -> str:
-    r"""Write a character as Python does in a string, such as ``\x1b``."""
+    r"""Write a character as Python does in a string, such as ``\x1b``.
+
+    A byte of a file name that is no UTF-8 is written as that byte, as a shell takes it.
+    """
+    if _FIRST_BYTE <= ord(character) < _FIRST_BYTE + 0x80:
+        return _hex(chr(ord(character) - _FIRST_BYTE + 0x80))
     return character.encode("unicode_escape").decode()
 
 

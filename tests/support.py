@@ -4,6 +4,7 @@ import contextlib
 import gc
 import io
 import os
+import shutil
 import subprocess
 import sys
 import warnings
@@ -11,8 +12,10 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
 from time import process_time
+from typing import NoReturn
 from unittest.mock import patch
 
+import pytest
 from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
@@ -36,6 +39,18 @@ SOON = 20.0
 Entry = int | str | Fraction
 # Dayawansa and Martin 1999, a = 11.2: stable, but only a polynomial of about degree 40 shows it.
 HARD = ([[-1, -1], [1, -1]], [[-1, "-11.2"], ["5/56", -1]])
+
+
+def skip_for_want_of(what: str) -> NoReturn:
+    """Skip a test that needs what is not there, except in CI, which must have it."""
+    if os.environ.get("CI") == "true":
+        pytest.fail(f"there is no {what} on this machine, and CI must have it")
+    pytest.skip(f"there is no {what} on this machine")
+
+
+def program_named(name: str) -> str:
+    """Return the path of a program, or skip the test that needs it."""
+    return shutil.which(name) or skip_for_want_of(name)
 
 
 @contextlib.contextmanager

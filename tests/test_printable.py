@@ -24,7 +24,7 @@ DECEPTIVE = {
     "Hangul filler": "\u3164",
     "variation selector": "\ufe0f",
     "tag": "\U000e0041",
-    "lone surrogate": "\udcff",
+    "lone surrogate": "\ud800",
     "null": "\0",
 }
 
@@ -34,6 +34,11 @@ def test_a_deceptive_character_is_shown_as_its_escape(character):
     shown = printable(f"a{character}b")
     assert character not in shown
     assert shown.encode("utf-8").decode("unicode_escape") == f"a{character}b"
+
+
+def test_a_byte_that_is_no_text_is_shown_as_a_shell_takes_it():
+    name = "力.csv".encode("gbk").decode(errors="surrogateescape")
+    assert printable(name) == visible(name) == r"\xc1\xa6.csv"
 
 
 @pytest.mark.parametrize(
@@ -70,7 +75,7 @@ def test_what_is_shown_is_one_line_and_shown_again_the_same(text):
         ("a\nb\r\nc", "a b c"),
         ("a\u202eb", "a\\u202eb"),
         ("\x1b[31m", "\\x1b[31m"),
-        ("\udcff.csv", "\\udcff.csv"),
+        ("\ud8ff.csv", "\\ud8ff.csv"),
         ("\u3164", "\\u3164"),
         ("::error::x", "::error::x"),
         ("שלום", "שלום"),

@@ -18,6 +18,7 @@ from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.streams import lasting
 from nrs_design.errors import NrsDesignError
+from nrs_design.printable import printable
 
 # Each is in the module of its name; the help lists them in this order.
 COMMANDS = (
@@ -129,7 +130,11 @@ def main() -> None:
     except OSError as error:
         # What could not be written must not be tried again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        note(f"error: the output cannot be written ({error.strerror})")
+        # Standard output has no name.
+        failed = "the output cannot be written"
+        if error.filename is not None:
+            failed = f"{printable(error.filename)} cannot be read or written"
+        note(f"error: {failed} ({error.strerror})")
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:

@@ -31,7 +31,6 @@ _EXIT = {
     "outside": exit_codes.REFUTED,
     "inconclusive": exit_codes.INCONCLUSIVE,
 }
-_COLOUR = {"inside": "proved", "outside": "refuted", "inconclusive": "inconclusive"}
 UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.certification_summary import summary
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
     MaxUpdates,
@@ -18,7 +19,7 @@ from nrs_design.cli.gradient_options import (
     StartMode,
     UpdateOrder,
 )
-from nrs_design.cli.loop_margins import loop_summary
+from nrs_design.cli.margins_summary import margins_summary
 from nrs_design.cli.options import (
     Budget,
     Json,
@@ -34,14 +35,11 @@ from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from fractions import Fraction
+    from collections.abc import Iterable, Iterator
 
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
-    from nrs_design.search.certification import Certification
-    from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.spec import LoadedSpec
 
 
@@ -97,12 +95,11 @@ def certify_switching(
 
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.certificates.certificate import dump
-    from nrs_design.output import CERTIFICATE, check_place, write_output
-    from nrs_design.ownership import check_certificate, origin_of
-    from nrs_design.pipeline import Overrides, find_relief, limits_of, run_certification
+    from nrs_design.output import CERTIFICATE, check_place
+    from nrs_design.ownership import check_certificate
+    from nrs_design.pipeline import Overrides, limits_of, run_certification
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.subsets import run_subsets
+    from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -126,36 +123,71 @@ def certify_switching(
             progress=step,
         )
     # What is shown is kept before the margins: those take minutes.
-    if result.certificate is not None:
-        write_output(path, dump(result.certificate, origin_of(spec, path)), replaces=CERTIFICATE)
-    written = None if result.certificate is None else path
-    if written is not None:
-        note(f"certificate written to {written}", quiet=quiet or as_json)
+    written = _write(result, path, quiet=quiet or as_json)
     with progress(f"margins of {loaded.spec.name}", quiet=quiet, lines=True) as step:
         margins = run_proof_margins(
             result, limits, step, margin=margin, shortest_dwell=shortest_dwell
         )
-        parts = run_subsets(result, limits, step) if subsets else None
+        look = run_subsets if subsets else find_subsets
+        parts = look(result, limits, step)
+    steps = _next_steps(result, margin, shortest_dwell)
     if as_json:
-        told: dict[str, Any] = {"gradient_history": history} if history else {}
-        told["relief"] = list(find_relief(result))
-        content = summary(result, written) | margins_summary(margins.box, margins.dwell) | told
-        content |= {} if margins.loop is None else {"loop_margins": loop_summary(margins.loop)}
-        content["next_steps"] = list(_next_steps(result, margin, shortest_dwell))
-        if parts is not None:
-            content["subsets"] = [{"left_out": p.left_out, "claim": p.claim} for p in parts]
-            content["subsets_without"] = list(_unlooked(result))
-        print_json("certify-switching", content)
+        content = summary(result, written) | margins_summary(margins)
+        content |= {"gradient_history": history} if history else {}
+        print_json("certify-switching", content | _help_summary(result, parts, steps))
     elif not quiet:
         _print(result, verbose=verbose)
-        for relief in find_relief(result):
-            say(f"  {relief}")
-        for line in _margin_lines(margins, loaded, asked=margin or shortest_dwell):
-            say(f"  {line}")
-        _print_subsets(result, parts)
-        for line in _next_steps(result, margin, shortest_dwell):
-            say(f"next: {line}")
+        _print_help(
+            result,
+            parts,
+            steps,
+            _margin_lines(margins, result.loaded, asked=margin or shortest_dwell),
+        )
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
+
+
+def _write(result: Result, path: Path, *, quiet: bool) -> Path | None:
+    """Write the certificate, if there is one; return where it is."""
+    from nrs_design.certificates.certificate import dump
+    from nrs_design.output import CERTIFICATE, write_output
+    from nrs_design.ownership import origin_of
+
+    if result.certificate is None:
+        return None
+    origin = origin_of(result.loaded.path, path)
+    write_output(path, dump(result.certificate, origin), replaces=CERTIFICATE)
+    note(f"certificate written to {path}", quiet=quiet)
+    return path
+
+
+def _help_summary(
+    result: Result, parts: tuple[Subset, ...] | None, steps: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return what ``--json`` prints about what would help."""
+    from nrs_design.pipeline import find_relief
+
+    told: dict[str, Any] = {"relief": list(find_relief(result)), "next_steps": list(steps)}
+    if parts is not None:
+        told["subsets"] = [
+            {"left_out": p.left_out, "claim": p.claim, "needs": p.needs} for p in parts
+        ]
+        told["subsets_without"] = list(_unlooked(result))
+    return told
+
+
+def _print_help(
+    result: Result,
+    parts: tuple[Subset, ...] | None,
+    steps: tuple[str, ...],
+    margins: Iterable[str],
+) -> None:
+    from nrs_design.pipeline import find_relief
+
+    for line in (*find_relief(result), *margins):
+        say(f"  {line}")
+    _print_subsets(result, parts)
+    for line in steps:
+        say(f"next: {line}")
 
 
 def _margin_lines(margins: ProofMargins, loaded: LoadedSpec, *, asked: bool) -> Iterator[str]:
@@ -177,10 +209,10 @@ def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
     if parts is None or str(result.certification.verdict) == "proved":
         return
-    if not parts:
-        say("  nothing is proved with parts of the spec left out either")
-    for part in parts:
-        say(f"  proved without {' and '.join(part.left_out)}: {part.claim}")
+    from nrs_design.pipeline.subsets import subset_lines
+
+    for line in subset_lines(parts):
+        say(f"  {line}")
     if unlooked := " and ".join(_unlooked(result)):
         say(f"  decided without {unlooked}: no bound under them was looked at")
 
@@ -188,88 +220,6 @@ def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
 def _unlooked(result: Result) -> tuple[str, ...]:
     """Return what parts of a spec are decided without."""
     return ("disturbances",) if result.certification.system.channels else ()
-
-
-def summary(result: Result, path: Path | None) -> dict[str, Any]:
-    """Return what ``--json`` prints."""
-    from nrs_design.certificates.bounds import bounds_summary
-
-    certification = result.certification
-    evidence = certification.evidence
-    return {
-        "spec": result.loaded.spec.name,
-        "spec_sha256": result.loaded.sha256,
-        "verdict": str(certification.verdict),
-        "common_quadratic": str(certification.common_quadratic),
-        "claim": evidence.claim(certification.system) if evidence else None,
-        "statements": [
-            {"kind": statement.kind, "claim": statement.claim(certification.system)}
-            for statement in certification.statements
-        ],
-        "bounds": bounds_summary(certification.system, certification.statements),
-        "method": certification.method,
-        **rate_summary(certification),
-        "time": str(certification.system.time),
-        "coordinates": result.coordinates,
-        "states": list(certification.system.states),
-        "modes": [mode.name for mode in certification.system.modes],
-        "gains": dict(result.certificate.gains) if result.certificate else None,
-        "attempts": [
-            {"step": a.step, "outcome": a.outcome, "seconds": round(a.seconds, 6)}
-            for a in certification.attempts
-        ],
-        "assumptions": list(certification.system.assumptions),
-        "certificate": None if path is None else str(path),
-        "certificate_id": result.certificate.id if result.certificate else None,
-    }
-
-
-def rate_summary(certification: Certification) -> dict[str, Any]:
-    """Return what ``--json`` prints about the proved rate and its limit."""
-    evidence, system = certification.evidence, certification.system
-    rate = None if evidence is None else evidence.proved_rate(system)
-    return {
-        "decay_rate": None if rate is None else _safe_float(rate, system.time),
-        "decay_rate_exact": None if rate is None else str(rate),
-        "decay_rate_limit": certification.rate_limit,
-        "decay_rate_unit": "1/s" if system.time == "continuous" else "1 per step",
-    }
-
-
-def _safe_float(rate: Fraction, time: str) -> float:
-    """Return a double on the side of slower decay."""
-    from nrs_design.proof.bounds import lower_float, upper_float
-
-    return lower_float(rate) if time == "continuous" else upper_float(rate)
-
-
-def margins_summary(box: BoxMargin | None, dwell: DwellMargin | None) -> dict[str, Any]:
-    """Return what ``--json`` prints about the margins that were asked for.
-
-    Every double is on the side that stays true; beside it is the exact number.
-    """
-    from nrs_design.proof.bounds import lower_float, upper_float
-
-    content: dict[str, Any] = {}
-    if box is not None:
-        content["margin"] = {
-            "proved_scale": None if box.proved is None else lower_float(box.proved),
-            "proved_scale_exact": None if box.proved is None else str(box.proved),
-            "refuted_scale": None if box.refuted is None else upper_float(box.refuted),
-            "refuted_scale_exact": None if box.refuted is None else str(box.refuted),
-            "method": box.proof.method if box.proof else None,
-        }
-    if dwell is not None:
-        content["shortest_dwell"] = {
-            "proved": None if dwell.proved is None else upper_float(dwell.proved),
-            "proved_exact": None if dwell.proved is None else str(dwell.proved),
-            "refuted": None if dwell.refuted is None else lower_float(dwell.refuted),
-            "refuted_exact": None if dwell.refuted is None else str(dwell.refuted),
-            "longest_tried": lower_float(dwell.longest),
-            "unit": "s",
-            "method": dwell.proof.method if dwell.proof else None,
-        }
-    return content
 
 
 def _print(result: Result, *, verbose: bool) -> None:

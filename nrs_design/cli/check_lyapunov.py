@@ -51,7 +51,7 @@ def check_lyapunov(
 
     Example: nrs-design check-lyapunov docs/examples/lyapunov.json
     """
-    from nrs_design.api import check_lyapunov as check
+    from nrs_design.api.matrices import check_lyapunov as check
     from nrs_design.given.files import read_proposal
 
     sys.set_int_max_str_digits(MAX_DIGITS)

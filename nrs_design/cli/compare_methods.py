@@ -74,7 +74,7 @@ def compare_methods(
 def _summary(
     loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]
 ) -> dict[str, Any]:
-    from nrs_design.cli.certify_switching import rate_summary
+    from nrs_design.cli.certification_summary import rate_summary
 
     return {
         "spec": loaded.spec.name,

@@ -88,10 +88,13 @@ def _width() -> int:
 
 
 def _source(path: Path, line: int) -> str | None:
-    """Return a line of a file, if it still can be read."""
+    """Return a line of a file, if it still can be read; a sheet of Excel has rows, no lines."""
     try:
         if not path.is_file() or path.stat().st_size > LARGEST_FILE:
             return None
+        with path.open("rb") as raw:
+            if b"\0" in raw.read(1024):
+                return None
         with path.open(encoding="utf-8-sig", errors="replace") as file:
             found = next(islice(file, line - 1, None), None)
     except (OSError, ValueError):

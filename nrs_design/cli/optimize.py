@@ -21,6 +21,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.pipeline import Designed
 
 
@@ -102,6 +103,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),
         "not_passive_at_rad_s": broken and upper_float(broken),
+        "sampled_passivity": [_band(band) for band in item.sampled],
         "creep": _creep(item),
         "goals": goals_summary(item),
         "units": {
@@ -111,6 +113,19 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
             "impedance": "N*m*s/rad",
             "stiffness": "N*m/rad",
         },
+    }
+
+
+def _band(band: SampledBand) -> dict[str, Any]:
+    """Return where a sampled law is passive, and the exact witness that it is not beyond."""
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    between = band.broken and [lower_float(band.broken[0]), upper_float(band.broken[1])]
+    return {
+        "delay": band.age,
+        "passive_up_to_rad_s": lower_float(band.passive),
+        "not_passive_between_rad_s": between,
+        "not_passive_at_tangent": band.tangent and str(band.tangent),
     }
 
 

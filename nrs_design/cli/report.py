@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,10 +15,10 @@ from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
-    from datetime import datetime
+    from datetime import date as Day
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Result
+    from nrs_design.pipeline import Overrides, Progress, Result
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -89,87 +90,126 @@ def report(
 
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
-    from nrs_design.output import PAGE, PDF, check_place
-    from nrs_design.ownership import check_owner, check_page
-    from nrs_design.pipeline import (
-        Overrides,
-        limits_of,
-        run_certification,
-        run_comparison,
-        run_recorded,
-    )
-    from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.stability_map import run_stability_map
-    from nrs_design.reporting import build_report
-    from nrs_design.reporting.next_steps import next_steps
+    from nrs_design.pipeline import Overrides
     from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded, day = read_spec(spec), date.date() if date else None
     if loaded.spec.kind == "robot":
         if certificate is not None:
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
-        _report_robot(loaded, file_format, out, date, as_json=as_json, quiet=quiet)
-    if out is None:
-        check_owner(spec, loaded.spec.name, REPORTS)
-    else:
-        check_page(spec, out)
-        if file_format is not ReportFormat.PNG:
-            check_place(out, PDF if file_format is ReportFormat.PDF else PAGE)
+        raise typer.Exit(_report_robot(loaded, file_format, out, day, as_json=as_json, quiet=quiet))
+    _check_out(loaded, file_format, out)
+    asked = _Asked(compare_methods, margin, shortest_dwell, stability_map, times, day, certificate)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
-        limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory))
-        if certificate is None:
-            result = run_certification(loaded, limits=limits, progress=step)
-        else:
-            result = run_recorded(loaded, certificate, step)
-        margins = run_proof_margins(
-            result, limits, step, margin=margin, shortest_dwell=shortest_dwell
-        )
-        found = run_stability_map(result, limits, step) if stability_map else None
-        step("figures")
-        day = date.date() if date else None
-        runs = run_comparison(loaded, limits, progress=step)[1] if compare_methods else ()
-        analysis = _analysis(result, quiet=quiet)
-        page = build_report(
-            result,
-            analysis,
-            comparison=runs,
-            margins=margins,
-            stability_map=found,
-            times=times,
-            date=day,
-        )
+        result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step, quiet)
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
     if as_json:
-        print_json(
-            "report",
-            {
-                "spec": loaded.spec.name,
-                "spec_sha256": loaded.sha256,
-                "verdict": verdict,
-                "certificate_id": result.certificate.id if result.certificate else None,
-                "files": [str(path) for path in files],
-            },
-        )
+        _print_json(loaded, verdict, result.certificate.id if result.certificate else None, files)
     elif not quiet:
         say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
-        for line in next_steps(result, margin=margin, shortest_dwell=shortest_dwell):
-            say(f"next: {line}")
-        for path in files:
-            note(f"written to {path}")
+        _print_next(result, asked)
+        _print_files(files)
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What a report is to hold beside design and proof."""
+
+    compare_methods: bool
+    margin: bool
+    shortest_dwell: bool
+    stability_map: bool
+    times: bool
+    date: Day | None
+    certificate: Path | None
+
+
+def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) -> None:
+    """Refuse, before minutes of work, a place in which something else stands."""
+    from nrs_design.output import PAGE, PDF, check_place
+    from nrs_design.ownership import check_owner, check_page
+
+    if out is None:
+        check_owner(loaded.path, loaded.spec.name, REPORTS)
+        return
+    check_page(loaded.path, out)
+    if file_format is not ReportFormat.PNG:
+        check_place(out, PDF if file_format is ReportFormat.PDF else PAGE)
+
+
+def _build(
+    loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress, quiet: bool
+) -> tuple[Result, Report]:
+    """Certify, look for all that is asked for, and lay out the page."""
+    from nrs_design.pipeline import limits_of, run_certification, run_comparison, run_recorded
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.stability_map import run_stability_map
+    from nrs_design.pipeline.subsets import find_subsets
+    from nrs_design.reporting import build_report
+
+    limits = limits_of(loaded.spec, overrides)
+    if asked.certificate is None:
+        result = run_certification(loaded, limits=limits, progress=step)
+    else:
+        result = run_recorded(loaded, asked.certificate, step)
+    margins = run_proof_margins(
+        result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
+    )
+    subsets = find_subsets(result, limits, step)
+    found = run_stability_map(result, limits, step) if asked.stability_map else None
+    step("figures")
+    runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
+    return result, build_report(
+        result,
+        _analysis(result, quiet=quiet),
+        comparison=runs,
+        margins=margins,
+        subsets=subsets,
+        stability_map=found,
+        times=asked.times,
+        date=asked.date,
+    )
+
+
+def _print_json(
+    loaded: LoadedSpec, verdict: str, certificate_id: str | None, files: list[Path]
+) -> None:
+    print_json(
+        "report",
+        {
+            "spec": loaded.spec.name,
+            "spec_sha256": loaded.sha256,
+            "verdict": verdict,
+            "certificate_id": certificate_id,
+            "files": [str(path) for path in files],
+        },
+    )
+
+
+def _print_next(result: Result, asked: _Asked) -> None:
+    from nrs_design.reporting.next_steps import next_steps
+
+    for line in next_steps(result, margin=asked.margin, shortest_dwell=asked.shortest_dwell):
+        say(f"next: {line}")
+
+
+def _print_files(files: list[Path]) -> None:
+    for path in files:
+        note(f"written to {path}")
 
 
 def _report_robot(
     loaded: LoadedSpec,
     file_format: ReportFormat,
     out: Path | None,
-    date: datetime | None,
+    date: Day | None,
     *,
     as_json: bool,
     quiet: bool,
-) -> NoReturn:
-    """Report a robot; the exit code is that of `robot check`."""
+) -> int:
+    """Report a robot; return the exit code, that of `robot check`."""
     from nrs_design.ownership import check_page
     from nrs_design.pipeline import placed
     from nrs_design.pipeline.robots import run_robot
@@ -180,25 +220,15 @@ def _report_robot(
     with progress(f"reporting {loaded.spec.name}", quiet=quiet):
         _, robot_spec, robot = run_robot(spec)
         with placed(loaded):
-            page = robot_report(loaded, robot_spec, robot, date.date() if date else None)
+            page = robot_report(loaded, robot_spec, robot, date)
         files = _write(page, file_format, out, spec)
     if as_json:
-        print_json(
-            "report",
-            {
-                "spec": loaded.spec.name,
-                "spec_sha256": loaded.sha256,
-                "verdict": page.verdict,
-                "certificate_id": None,
-                "files": [str(path) for path in files],
-            },
-        )
+        _print_json(loaded, page.verdict, None, files)
     elif not quiet:
         say(f"{loaded.spec.name}: {page.verdict}")
-        for path in files:
-            note(f"written to {path}")
+        _print_files(files)
     reached = page.verdict == "reachable"
-    raise typer.Exit(exit_codes.PROVED if reached else exit_codes.REFUTED)
+    return exit_codes.PROVED if reached else exit_codes.REFUTED
 
 
 def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:

@@ -13,12 +13,25 @@ from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from nrs_design.reproduction.comparison import Comparison
+    from nrs_design.reproduction.gallery.counterpart import Counterpart
+
+_GALLERY = "figures.html"
 
 
 def reproduce(
     html: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the table as an HTML page, too.")
+    ] = None,
+    figures: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Simulate and draw counterparts of figures 6.14 to 6.34, and write figures.html "
+            "and a CSV of each run there (some ten seconds).",
+        ),
     ] = None,
     as_json: Json = False,
     quiet: Quiet = False,
@@ -27,44 +40,81 @@ def reproduce(
 
     Exit code 0: every row is what it is on record to be. 1: a recomputed value has drifted.
 
-    Example: nrs-design reproduce --html reports/reproduce.html
+    Example: nrs-design reproduce --html reports/reproduce.html --figures reports/figures
     """
     from nrs_design.output import PAGE, check_place, write_output
     from nrs_design.reproduction.comparison import drifted
     from nrs_design.reproduction.page import render_page
     from nrs_design.reproduction.table import reproduce as recompute
 
-    if html is not None:
-        check_place(html, PAGE)
+    for page in (html, figures and figures / _GALLERY):
+        if page is not None:
+            check_place(page, PAGE)
     with progress("recomputing", quiet=quiet) as step:
         table = recompute(step)
+        gallery = None if figures is None else _draw(figures, step)
     if html is not None:
-        write_output(html, render_page(table), replaces=PAGE)
+        link = None if figures is None else _link(html, figures / _GALLERY)
+        write_output(html, render_page(table, link), replaces=PAGE)
     if as_json:
-        print_json("reproduce", _summary(table))
+        print_json("reproduce", _summary(table, gallery))
     elif not quiet:
-        _print(table)
+        _print(table, gallery)
     if html is not None:
         note(f"page written to {html}", quiet=quiet)
+    if figures is not None:
+        note(f"figures written to {figures / _GALLERY}", quiet=quiet)
     for row in drifted(table):
         note(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
     raise typer.Exit(exit_codes.REFUTED if drifted(table) else exit_codes.PROVED)
 
 
-def _summary(table: tuple[Comparison, ...]) -> dict[str, Any]:
+def _draw(folder: Path, step: Callable[[str], None]) -> tuple[Counterpart, ...]:
+    """Write the page of figures and the runs that they show."""
+    from nrs_design.output import PAGE, RESPONSE, check_place, write_output
+    from nrs_design.reproduction.gallery.figures import draw_counterparts
+    from nrs_design.reproduction.gallery.page import gallery_page
+
+    found = draw_counterparts(step)
+    runs = {folder / f"{name}.csv": run for one in found for name, run in one.runs.items()}
+    for place in runs:
+        check_place(place, RESPONSE)
+    step("writing the page of figures")
+    write_output(folder / _GALLERY, gallery_page(found), replaces=PAGE)
+    for place, run in runs.items():
+        write_output(place, run.to_csv(), replaces=RESPONSE)
+    return found
+
+
+def _link(page: Path, gallery: Path) -> str:
+    """Return where the gallery is, seen from another page."""
+    from os.path import relpath
+    from urllib.parse import quote
+
+    return quote(Path(relpath(gallery.resolve(), page.resolve().parent)).as_posix())
+
+
+def _summary(
+    table: tuple[Comparison, ...], gallery: tuple[Counterpart, ...] | None
+) -> dict[str, Any]:
     from dataclasses import asdict
 
     from nrs_design.reproduction.comparison import drifted
     from nrs_design.reproduction.table import count_verdicts
 
-    return {
+    content = {
         "counts": count_verdicts(table),
         "drift": [row.name for row in drifted(table)],
         "rows": [asdict(row) for row in table],
     }
+    if gallery is not None:
+        from nrs_design.reproduction.gallery.page import summarize_gallery
+
+        content["figures"] = summarize_gallery(gallery)
+    return content
 
 
-def _print(table: tuple[Comparison, ...]) -> None:
+def _print(table: tuple[Comparison, ...], gallery: tuple[Counterpart, ...] | None) -> None:
     from nrs_design.reproduction.page import format_deviation
     from nrs_design.reproduction.table import count_verdicts
 
@@ -98,3 +148,9 @@ def _print(table: tuple[Comparison, ...]) -> None:
     say()
     counts = count_verdicts(table)
     say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    if gallery is not None:
+        from nrs_design.reproduction.gallery.page import count_outcomes
+
+        outcomes = count_outcomes(gallery)
+        told = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items())
+        say(f"figures, {sum(outcomes.values())} statements: {told}")

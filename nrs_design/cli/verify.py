@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,6 +14,7 @@ from nrs_design.cli.printing import print_json, progress, say
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
+    from nrs_design.certificates.verify import Verification
     from nrs_design.spec import LoadedSpec, Spec
 
 # For each of the bounds of a robot, in s.
@@ -70,15 +71,10 @@ def verify(
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.certificates.units import gain_units
     from nrs_design.certificates.verify import verify as verify_file
     from nrs_design.spec import read_spec
 
-    if spec is None and coordinates is not None:
-        raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
-    if spec is None and deployed is not None:
-        raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
-    _refuse_swapped(certificate, spec)
+    _check_arguments(certificate, spec, coordinates, deployed)
     loaded = None if spec is None else read_spec(spec)
     outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
     robot = None if loaded is None else _robot_of(loaded)
@@ -86,53 +82,81 @@ def verify(
         raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
     faults = _bounds_faults(robot, quiet=quiet) if bounds and robot is not None else None
     checked = outcome.certificate if outcome.fault is None else None
-    verdict = checked.verdict if checked else "rejected"
     differences = _differences(deployed, loaded, checked)
-    claims = [item.claim(checked.system) for item in checked.statements] if checked else None
     if as_json:
-        print_json(
-            "verify",
-            {
-                "verdict": verdict,
-                "fault": outcome.fault,
-                "claims": claims,
-                "gains": dict(checked.gains) if checked else None,
-                "gain_units": gain_units(checked) if checked else None,
-                "assumptions": list(checked.system.assumptions) if checked else None,
-                "certificate": str(certificate),
-                "certificate_id": checked.id if checked else None,
-                "spec": None if spec is None else str(spec),
-                "deployed": None if deployed is None else str(deployed),
-                "differences": differences,
-                "robot": None if robot is None else str(robot),
-                "bounds_faults": faults,
-            },
-        )
+        given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
+        _print_json(outcome, given, differences, faults)
     elif checked is None:
         say(f"REJECTED: {outcome.fault}", verdict="rejected")
     else:
         # What was deployed comes first: a proof of other numbers is no good news.
         if differences is not None:
             _print_deployed(deployed, differences, quiet=quiet)
-        if faults:
-            say("REJECTED: the bounds of the robot do not hold", verdict="rejected")
-            for line in faults:
-                say(f"  {line}")
+        _print_faults(faults or [])
         if not quiet:
             _print(checked, None if loaded is None else loaded.spec)
         if robot is not None and not faults and not quiet:
             say(_taken(robot, again=bounds))
-    code = exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED)
-    raise typer.Exit(exit_codes.REFUTED if differences or faults else code)
+    if checked is None or differences or faults:
+        raise typer.Exit(exit_codes.REFUTED)
+    raise typer.Exit(exit_codes.OF_VERDICT[checked.verdict])
 
 
-def _refuse_swapped(certificate: Path, spec: Path | None) -> None:
-    """Say it where the two files stand in each other's place."""
+def _check_arguments(
+    certificate: Path,
+    spec: Path | None,
+    coordinates: CoordinatesOption | None,
+    deployed: Path | None,
+) -> None:
+    """Refuse options that nothing would heed, and files in each other's place."""
+    if spec is None and coordinates is not None:
+        raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
+    if spec is None and deployed is not None:
+        raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
     if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
         raise typer.BadParameter(
             f"the certificate comes first, then the spec: nrs-design verify {spec} {certificate}",
             param_hint="CERT",
         )
+
+
+def _print_json(
+    outcome: Verification,
+    given: Mapping[str, Path | None],
+    differences: list[str] | None,
+    faults: list[str] | None,
+) -> None:
+    from nrs_design.certificates.units import gain_units
+
+    checked = outcome.certificate if outcome.fault is None else None
+    files = {name: None if path is None else str(path) for name, path in given.items()}
+    print_json(
+        "verify",
+        {
+            "verdict": checked.verdict if checked else "rejected",
+            "fault": outcome.fault,
+            "claims": [item.claim(checked.system) for item in checked.statements]
+            if checked
+            else None,
+            "gains": dict(checked.gains) if checked else None,
+            "gain_units": gain_units(checked) if checked else None,
+            "assumptions": list(checked.system.assumptions) if checked else None,
+            "certificate": files["certificate"],
+            "certificate_id": checked.id if checked else None,
+            "spec": files["spec"],
+            "deployed": files["deployed"],
+            "differences": differences,
+            "robot": files["robot"],
+            "bounds_faults": faults,
+        },
+    )
+
+
+def _print_faults(faults: list[str]) -> None:
+    if faults:
+        say("REJECTED: the bounds of the robot do not hold", verdict="rejected")
+    for line in faults:
+        say(f"  {line}")
 
 
 def _robot_of(loaded: LoadedSpec) -> Path | None:

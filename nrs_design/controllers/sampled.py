@@ -35,7 +35,7 @@ from nrs_design.controllers.float32 import PRECISION, to_float32
 from nrs_design.errors import DesignError
 
 if TYPE_CHECKING:
-    from nrs_design.controllers.laws import ProportionalDerivative
+    from nrs_design.controllers.laws.motion import ProportionalDerivative
 
 # Half a unit in the last place, over the number.
 UNIT = Fraction(1, 2**PRECISION)

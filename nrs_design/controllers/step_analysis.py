@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import chain
 
 from nrs_design.controllers.operations import LINEAR, Operation, StepLaw
 from nrs_design.errors import DesignError
@@ -236,10 +235,3 @@ def counted_terms(
             counts = {own[name]: 1} | earlier
         found[name] = counts
     return found
-
-
-def term_counts(law: StepLaw, mode: int = 0) -> dict[str, int]:
-    """Return how often each term of a law is rounded in a mode, by its name."""
-    given: dict[str, Sequence[Fraction]] = {value.name: [Fraction(0)] for value in law.values}
-    terms = chain.from_iterable(rounded_terms(law, mode, given).values())
-    return {term.name: term.roundings for term in terms if term.roundings}

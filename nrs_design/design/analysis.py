@@ -102,7 +102,7 @@ def analyze_design(
     DesignError
         If a nominal loop is unstable, so that it has no margins.
     """
-    task = Task(spec, plant, plant.motion_loop(design.motion.Kp, design.motion.Kd))
+    task = Task(spec, plant, design.motion)
     return DesignAnalysis(
         wanted=root_locus_design(spec),
         motion=task.motion,
@@ -124,7 +124,7 @@ def too_stiff(
     spec, plant, design
         As for `analyze_design`.
     """
-    task = Task(spec, plant, plant.motion_loop(design.motion.Kp, design.motion.Kd))
+    task = Task(spec, plant, design.motion)
     for controller in design.controllers:
         find = LAW_DESIGNS[controller.law.name].too_stiff
         if find is not None:

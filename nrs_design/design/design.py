@@ -30,7 +30,7 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
         If a requirement cannot be met within its bounds.
     """
     motion = _motion(spec)
-    task = Task(spec, plant, plant.motion_loop(motion.Kp, motion.Kd))
+    task = Task(spec, plant, motion)
     controllers = []
     for name, given in spec.controllers.items():
         with naming(name):

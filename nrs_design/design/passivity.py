@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from math import isqrt
+from math import gcd, isqrt, lcm
 
 from nrs_design.models.motion_loop import MotionLoop
 
@@ -56,15 +56,33 @@ def passive_band(loop: MotionLoop, Mt: Fraction, Bt: Fraction) -> PassiveBand:
     P = real_part(loop, Mt, Bt)
     if P[-1] <= 0:
         return PassiveBand(Fraction(0), None)
-    bound = 1 + max(abs(c) for c in P) / abs(P[0])
-    if not positive_roots(P, bound):
+    bracket = first_root(P)
+    if bracket is None:
         return PassiveBand(None, None)
-    low, high = Fraction(0), bound
+    low, high = bracket
+    broken = _negative_beyond(P, high)
+    return PassiveBand(root_below(low), broken)
+
+
+def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
+    """Return numbers between which the smallest positive root is, or None if there is none.
+
+    There is no root up to the first one, and the second is `RESOLUTION` above it at most.
+
+    Parameters
+    ----------
+    P : sequence of Fraction
+        Coefficients, highest power first; neither the first nor the last is zero.
+    """
+    chain = _simple_chain(P)
+    none, high = _changes(chain, Fraction(0)), 1 + max(map(abs, P)) / abs(P[0])
+    if none == _changes(chain, high):
+        return None
+    low = Fraction(0)
     while high - low > RESOLUTION * high:
         middle = _rounded((low + high) / 2)
-        low, high = (low, middle) if positive_roots(P, middle) else (middle, high)
-    broken = _negative_beyond(P, high)
-    return PassiveBand(_root_below(low), broken)
+        low, high = (low, middle) if none > _changes(chain, middle) else (middle, high)
+    return low, high
 
 
 def real_part(loop: MotionLoop, Mt: Fraction, Bt: Fraction) -> Polynomial:
@@ -99,29 +117,56 @@ def positive_roots(P: Sequence[Fraction], end: Fraction) -> int:
     end : Fraction
         Positive.
     """
+    chain = _simple_chain(P)
+    return _changes(chain, Fraction(0)) - _changes(chain, end)
+
+
+def _simple_chain(P: Sequence[Fraction]) -> list[Polynomial]:
+    """Return the chain of a polynomial, or of one that has the same roots, each of them once."""
     chain = _sturm_chain(list(P))
     if len(chain[-1]) > 1:
         # Roots that are multiple ones are those of the last element: without it, each is single.
         chain = _sturm_chain(_divided(P, chain[-1])[0])
-    return _changes(chain, Fraction(0)) - _changes(chain, end)
-
-
-def _sturm_chain(P: Polynomial) -> list[Polynomial]:
-    """Return P, its derivative and the negative remainders; the last is a common divisor."""
-    chain = [P, _derivative(P)]
-    if not any(chain[1]):
-        return chain[:1]
-    while any(rest := [-c for c in _divided(chain[-2], chain[-1])[1]]):
-        chain.append(rest)
     return chain
 
 
+def _sturm_chain(P: Polynomial) -> list[Polynomial]:
+    """Return P, its derivative and the negative remainders; the last is a common divisor.
+
+    Positive factors change no sign, so each has integers without a common divisor.
+    """
+    chain = [_primitive(P), _primitive(_derivative(P))]
+    if not any(chain[1]):
+        return chain[:1]
+    while any(rest := [-c for c in _divided(chain[-2], chain[-1])[1]]):
+        chain.append(_primitive(rest))
+    return chain
+
+
+def _primitive(P: Sequence[Fraction]) -> Polynomial:
+    """Divide a polynomial by a positive number, so that its coefficients are short integers."""
+    common = lcm(*(c.denominator for c in P))
+    numerators = [int(c * common) for c in P]
+    divisor = gcd(*numerators) or 1
+    return [Fraction(n // divisor) for n in numerators]
+
+
 def _changes(chain: Sequence[Polynomial], x: Fraction) -> int:
-    signs = [value > 0 for value in (_at(P, x) for P in chain) if value]
+    signs = [value > 0 for value in (_sign(P, x) for P in chain) if value]
     return sum(a != b for a, b in pairwise(signs))
 
 
-def _at(P: Sequence[Fraction], x: Fraction) -> Fraction:
+def _sign(P: Polynomial, x: Fraction) -> int:
+    """Return the value of a polynomial with integers, times a positive number."""
+    value, power = 0, 1
+    for c in P:
+        value = value * x.numerator + c.numerator * power
+        power *= x.denominator
+    return value
+
+
+def evaluate(P: Sequence[Fraction], x: Fraction) -> Fraction:
+    """Return the value of a polynomial, its coefficients with the highest power first."""
     value = Fraction(0)
     for c in P:
         value = value * x + c
@@ -160,17 +205,17 @@ def _rounded(x: Fraction) -> Fraction:
     return x.limit_denominator(10**9) if x > Fraction(1, 1000) else x
 
 
-def _root_below(x: Fraction) -> Fraction:
-    """Return a short number whose square is not above x."""
-    return Fraction(isqrt(int(x * 10**12)), 10**6)
+def root_below(x: Fraction, digits: int = 6) -> Fraction:
+    """Return a number of so many decimals whose square is not above x."""
+    return Fraction(isqrt(int(x * 10 ** (2 * digits))), 10**digits)
 
 
 def _negative_beyond(P: Sequence[Fraction], x: Fraction) -> Fraction | None:
     """Return a frequency a little beyond a root in x at which the real part is negative."""
     step = RESOLUTION * x
     for _ in range(HALVINGS):
-        omega = _root_below(x + step) + Fraction(1, 10**6)
-        if _at(P, omega**2) < 0:
+        omega = root_below(x + step) + Fraction(1, 10**6)
+        if evaluate(P, omega**2) < 0:
             return omega
         step *= 2
     return None

@@ -35,6 +35,7 @@ from nrs_design.pipeline import (
     run_certification,
     run_verification,
 )
+from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
@@ -176,7 +177,9 @@ def _examine(
     result = run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)
-    searched = "; ".join(f"{a.step}: {a.outcome}" for a in certification.attempts)
+    subsets = find_subsets(result, limits, progress)
+    tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
+    searched = "; ".join((*tried, *(() if subsets is None else subset_lines(subsets))))
     obligations = examiner.stability(certification.system, certification.evidence, searched)
     file = None
     if certificate is not None:
@@ -187,7 +190,7 @@ def _examine(
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
     recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
-    goals, cautions = _goals_and_report(result, examiner, files, progress)
+    goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)
     rate, rate_name = certified_rate(certificate)
     return SpecOutcome(
         path=loaded.path,
@@ -236,7 +239,11 @@ def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterat
 
 
 def _goals_and_report(
-    result: Result, examiner: Examiner, files: Files, progress: Progress
+    result: Result,
+    examiner: Examiner,
+    files: Files,
+    progress: Progress,
+    subsets: tuple[Subset, ...] | None,
 ) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
     analysis: DesignAnalysis | None = None
     missed: tuple[Obligation, ...] = ()
@@ -253,7 +260,7 @@ def _goals_and_report(
 
         page = files.report(result.loaded.spec.name)
         origin = origin_of(result.loaded.path, page)
-        html = render_html(build_report(result, analysis), origin)
+        html = render_html(build_report(result, analysis, subsets=subsets), origin)
         write_output(page, html, replaces=PAGE)
     cautions = (*examiner.contact(result.certificate), *examiner.cautions(analysis))
     if analysis is None:

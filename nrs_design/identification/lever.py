@@ -7,6 +7,9 @@ from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.kinds import ANGLE, FORCE, LENGTH, LEVER_ARM, TORQUE
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
+# In m: what is longer was meant in mm.
+_LONGEST_ARM = 10.0
+
 
 def parse_arm(text: str | None, *, rotational: bool) -> float | None:
     """Read a lever arm such as ``0.24 m``; return it in m.
@@ -25,6 +28,10 @@ def parse_arm(text: str | None, *, rotational: bool) -> float | None:
         )
     if arm <= 0:
         raise DataError(f"the lever arm {text!r} is not positive", remedy="write '0.24 m'")
+    if arm > _LONGEST_ARM:
+        raise DataError(
+            f"the lever arm {text!r} is longer than any arm", remedy=f"did you mean '{arm:g} mm'?"
+        )
     return arm
 
 

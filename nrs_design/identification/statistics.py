@@ -149,20 +149,18 @@ def uncertainty(
     return Uncertainty(covariance + hidden, degrees, whiteness)
 
 
-def ljung_box(residuals: Array, lags: int = _LAGS) -> float:
+def ljung_box(residuals: Array) -> float:
     """Return the p-value of the Ljung-Box test that residuals are white.
 
     Parameters
     ----------
     residuals : ndarray, shape (n,)
         Equally spaced; NaN of the test (all residuals zero) counts as white.
-    lags : int
-        Autocorrelations that are looked at.
     """
     from scipy.special import chdtrc
 
     n = len(residuals)
-    lags = min(lags, n // 5)
+    lags = min(_LAGS, n // 5)
     centered = residuals - residuals.mean()
     power = float(centered @ centered)
     if power == 0.0 or lags < 1:

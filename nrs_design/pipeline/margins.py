@@ -203,11 +203,11 @@ def _command_margin(result: Result) -> CommandMargin | None:
     """Hold the bound on the force against an adversary's run."""
     from nrs_design.certificates.bounds import bound_on
     from nrs_design.search.loop_margin import command_margin
-    from nrs_design.simulation.disturbed import worst_output
+    from nrs_design.simulation.worst_case import worst_against
 
     system = result.certification.system
     found = bound_on(system, result.certification.statements, "force") if system.channels else None
-    return None if found is None else command_margin(found, worst_output(system, found))
+    return None if found is None else command_margin(found, worst_against(system, found).value)
 
 
 def run_shortest_dwell(

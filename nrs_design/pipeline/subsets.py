@@ -23,10 +23,65 @@ class Subset:
         Parts of the spec that the proof is not about.
     claim : str
         What is proved without them.
+    needs : tuple of str
+        What that takes for granted, and the spec as it stands does not.
     """
 
     left_out: tuple[str, ...]
     claim: str
+    needs: tuple[str, ...] = ()
+
+
+def are_wanted(result: Result) -> bool:
+    """Tell whether a list of what is proved in part belongs to every answer.
+
+    That axes act on each other is asked for beside samples or disturbances so that it is proved
+    together; where it is not, the answer is what can be.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    """
+    spec = None if result.designed is None else result.designed.spec
+    if spec is None or spec.coupling is None:
+        return False
+    beside = spec.sampling is not None or spec.disturbances is not None
+    return beside and result.certification.verdict is Verdict.INCONCLUSIVE
+
+
+def find_subsets(
+    result: Result, limits: Limits | None = None, progress: Progress = silent
+) -> tuple[Subset, ...] | None:
+    """Return the list where it belongs to the answer; None elsewhere.
+
+    Parameters
+    ----------
+    result, limits, progress
+        As for `run_subsets`.
+    """
+    return run_subsets(result, limits, progress) if are_wanted(result) else None
+
+
+def subset_lines(subsets: tuple[Subset, ...]) -> tuple[str, ...]:
+    """Say what is proved in part, and what each statement takes for granted besides.
+
+    Parameters
+    ----------
+    subsets : tuple of Subset
+        As `run_subsets` finds them for a spec that is not proved.
+    """
+    if not subsets:
+        return ("nothing is proved with parts of the spec left out either",)
+    return tuple(
+        " ".join(
+            (
+                f"proved without {' and '.join(item.left_out)}: {item.claim}",
+                *(("Then taken for granted besides:", *item.needs) if item.needs else ()),
+            )
+        )
+        for item in subsets
+    )
 
 
 def run_subsets(
@@ -63,7 +118,9 @@ def run_subsets(
             system = assemble_spec(result.loaded, other, result.coordinates)
             decided = certify(system, limits=quick)
             if decided.verdict is Verdict.PROVED and decided.evidence is not None:
-                found.append(Subset(left_out, decided.evidence.claim(system)))
+                known = set(result.certification.system.assumptions)
+                needs = tuple(text for text in system.assumptions if text not in known)
+                found.append(Subset(left_out, decided.evidence.claim(system), needs))
         if found:
             return tuple(found)
     return ()

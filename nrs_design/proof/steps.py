@@ -14,6 +14,12 @@ free mode rules, and twice mu >= 0 times their product is added, whether delta s
 not. One lambda and one tau_i for all modes, and one mu for each force, keep the forms
 concave in the maps.
 
+Where axes act on each other, ``x+ = A x + B d + C r + D w`` with ``sum |w_k|^2 <= sum |q_k (x, d,
+r)|^2`` over the axes only, not for each of them. The form of an axis then has w as further entries
+and ``tau_k (w_k^2 - (q_k (x, d, r))^2)`` as further terms, and is not positive by itself; but as
+tau_k is one for all motions, these terms add up to nothing positive over the axes, whatever motion
+each of them is in, and the same follows for the sums of before and after over all axes.
+
 The forms are written in integers: every entry of (x, d, r) is counted in a unit of its own, the
 least in which what multiplies it in [A, B, C] and in the q_i is an integer. With these units on the
 diagonal of D, a form F becomes ``D F D``, which is positive definite iff F is. One denominator for
@@ -29,7 +35,7 @@ from math import gcd, isqrt, lcm
 from nrs_design.proof.exact import IntegerMatrix, add, congruence, transpose
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.system import Coupling, Rounding, SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +45,11 @@ class _Motion:
     Parameters
     ----------
     units : sequence of int
-        One for each entry of (x, d, r).
+        One for each entry of (x, d, r, w).
     rows : sequence of sequence of int
-        The rows of ``[A, B, C]``.
+        The rows of ``[A, B, C, D]``.
     errors : sequence of sequence of int
-        The q_i, with zeros for r.
+        The q_i of r and of w, over (x, d, r, w).
     """
 
     units: Sequence[int]
@@ -76,6 +82,8 @@ class Steps:
         One for each of them.
     after : tuple of tuple of int or None
         Numerators of the function after a step, over the same power; None for Q.
+    couplings : tuple of int
+        The tau, in the order of the couplings of the system; none if axes do not act on each other.
     """
 
     Q: IntegerMatrix
@@ -87,6 +95,7 @@ class Steps:
     weights: tuple[Fraction, ...] = ()
     lagging: tuple[tuple[int, int, int], ...] = ()
     after: IntegerMatrix | None = None
+    couplings: tuple[int, ...] = ()
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield the form of every motion, in units of its own, with where it is."""
@@ -131,11 +140,15 @@ class Steps:
 
     def _motion(self, system: SwitchedSystem, k: int, A: RationalMatrix) -> _Motion:
         """Return the k-th mode in the least units that make it integer."""
-        covered = system.roundings[: len(self.roundings)]
+        covered: tuple[Rounding | Coupling, ...] = (
+            *system.roundings[: len(self.roundings)],
+            *system.couplings[: len(self.couplings)],
+        )
         parts = [A, *(system.channels[i].columns[k] for i in self.channels)]
         parts += [item.columns[k] for item in covered]
         columns = [(column, M.denominator) for M in parts for column in transpose(M.numerators)]
-        errors = [self._error(item.rows[k]) for item in covered]
+        count = len(self.Q) + len(system.channels)
+        errors = [self._error(item.rows[k], count) for item in covered]
         least = [_root(self.keeps.denominator)] * len(self.Q)
         least += [*(weight.denominator for weight in self.weights), *(1 for _ in covered)]
         units = [
@@ -151,11 +164,15 @@ class Steps:
         ]
         return _Motion(units, transpose(counted), sizes)
 
-    def _error(self, row: RationalMatrix) -> tuple[list[int], int]:
-        """Return a q over the state, the disturbances that act and the errors, and below it."""
+    def _error(self, row: RationalMatrix, count: int) -> tuple[list[int], int]:
+        """Return a q over (x, d, r, w) with the d that act and the r that count, and below it.
+
+        Only the q of a coupling goes beyond the first `count` entries, to all r.
+        """
         (entries,), n = row.numerators, len(self.Q)
         acting = [entries[n + i] for i in self.channels]
-        return [*entries[:n], *acting, *(0 for _ in self.roundings)], row.denominator
+        rounded = entries[count : count + len(self.roundings)] or (0 for _ in self.roundings)
+        return [*entries[:n], *acting, *rounded, *(0 for _ in self.couplings)], row.denominator
 
     def _left(self, before: IntegerMatrix, motion: _Motion) -> list[list[int]]:
         """Return the form of one motion without what comes after it."""
@@ -167,9 +184,10 @@ class Steps:
                 form[i][j] = units[i] * units[j] // q * p * entry
         for i, weight in enumerate(self.weights, n):
             form[i][i] = int(weight * units[i] ** 2) << self.denominator_log2
-        for i, tau in enumerate(self.roundings, n + len(self.weights)):
+        taus = (*self.roundings, *self.couplings)
+        for i, tau in enumerate(taus, n + len(self.weights)):
             form[i][i] = tau * units[i] ** 2
-        for tau, error in zip(self.roundings, motion.errors, strict=True):
+        for tau, error in zip(taus, motion.errors, strict=True):
             entries = [(i, entry) for i, entry in enumerate(error) if entry]
             for a, left in entries:
                 for b, right in entries:

@@ -214,8 +214,9 @@ class Rounding:
 class Coupling:
     """What the axes of a robot do to each other: ``x_i' = A_i x_i + B_i w_i`` for the axis i.
 
-    Of any number of axes each is in a mode of its own, and ``sum |w_i|^2 <= sum |q_i x_i|^2`` over
-    all of them, with the B_i and q_i of their modes.
+    Of any number of axes each is in a mode of its own, and ``sum |w_i|^2 <= sum |q_i z_i|^2`` over
+    all of them, with the B_i and q_i of their modes, where z_i is x_i and, after it, what disturbs
+    the axis and what its arithmetic rounds. In discrete time, that is said of every step.
 
     Parameters
     ----------
@@ -223,8 +224,9 @@ class Coupling:
         What acts, such as ``inertia of the links``.
     columns : tuple of RationalMatrix, each of shape (n, 1)
         The B of every mode, and after them those of the free modes.
-    rows : tuple of RationalMatrix, each of shape (1, n)
-        The q in the same order; in free motion nothing in them stands for the deflection.
+    rows : tuple of RationalMatrix, each of shape (1, n + disturbances + roundings)
+        The q in the same order, over the state, all disturbances and all roundings of the system;
+        in free motion nothing in them stands for the deflection.
     """
 
     name: str
@@ -297,8 +299,10 @@ class SwitchedSystem:
     roundings : tuple of Rounding
         Errors of the arithmetic, in discrete time; a statement says whether it covers them.
     couplings : tuple of Coupling
-        What axes like this one do to each other, in continuous time. Without any, every statement
-        is about one axis; with them, statements of stability are about all axes at once.
+        What axes like this one do to each other. Without any, every statement is about one axis;
+        with them, statements of stability and of bounds are about all axes at once.
+    axes : int or None
+        How many of them there are at most, where a statement depends on it, as bounds do.
     clock : Clock or None
         Which modes take turns, in discrete time; None lets all of them be in force at every step.
     """
@@ -316,6 +320,7 @@ class SwitchedSystem:
     roundings: tuple[Rounding, ...] = ()
     couplings: tuple[Coupling, ...] = ()
     clock: Clock | None = None
+    axes: int | None = None
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
@@ -471,12 +476,13 @@ class SwitchedSystem:
         return "two roundings have one name" if len(set(names)) < len(names) else None
 
     def _find_odd_coupling(self) -> str | None:
-        if self.couplings and self.time is Time.DISCRETE:
-            return "axes act on each other in discrete time"
+        if self.axes is not None and (self.axes < 1 or not self.couplings):
+            return "there is no axis, or axes are counted that do not act on each other"
         if self.couplings and not self.is_uniform:
             return "axes act on each other, but their modes are not of one size"
+        width = self.order + len(self.channels) + len(self.roundings)
         for item in self.couplings:
-            if (odd := self._find_odd_parts(item, self.order)) is not None:
+            if (odd := self._find_odd_parts(item, width)) is not None:
                 return f"the coupling by {item.name} {odd}"
         names = [item.name for item in self.couplings]
         return "two couplings have one name" if len(set(names)) < len(names) else None

@@ -59,6 +59,7 @@ def system_fields(system: SwitchedSystem) -> Fields:
         **_channel_fields(system),
         **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
         **({} if system.clock is None else {"clock": _clock_fields(system.clock)}),
+        **({} if system.axes is None else {"axes": system.axes}),
         "assumptions": list(system.assumptions),
     }
 
@@ -115,6 +116,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         roundings=tuple(Rounding(*part) for part in _read_parts(fields, "roundings")),
         couplings=tuple(Coupling(*part) for part in _read_parts(fields, "couplings")),
         clock=_read_clock(fields["clock"]) if "clock" in fields else None,
+        axes=read_integer(fields["axes"]) if "axes" in fields else None,
     )
 
 

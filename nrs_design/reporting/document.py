@@ -198,9 +198,9 @@ class Report:
     name, title : str
         Of the spec; the title may be empty.
     verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside", "same", \
-"different", "reachable", "unreachable"}
+"different", "reachable", "unreachable", "simulated"}
         Of the certification, the judgement of a run, a comparison or a robot, or that this is an
-        identification.
+        identification, or a gallery of runs.
     claim : str
         What the certificate states about stability, or that nothing is known.
     remarks : tuple of str

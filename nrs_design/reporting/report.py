@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.stability_map import StabilityMap
+    from nrs_design.pipeline.subsets import Subset
     from nrs_design.search.method_run import MethodRun
 
 
@@ -42,6 +43,7 @@ def build_report(
     *,
     comparison: Sequence[MethodRun] = (),
     margins: ProofMargins | None = None,
+    subsets: tuple[Subset, ...] | None = None,
     stability_map: StabilityMap | None = None,
     times: bool = False,
     date: datetime.date | None = None,
@@ -59,6 +61,8 @@ def build_report(
         As `nrs_design.pipeline.run_comparison` gives them.
     margins : ProofMargins, optional
         As `nrs_design.pipeline.margins.run_proof_margins` gives them.
+    subsets : tuple of Subset, optional
+        As `nrs_design.pipeline.subsets.run_subsets` gives them.
     stability_map : StabilityMap, optional
         As `nrs_design.pipeline.stability_map.run_stability_map` gives it.
     times : bool
@@ -83,7 +87,7 @@ def build_report(
         facts=(*facts(result), *goal_facts(analysis)),
         sections=(
             proof_section(result),
-            *_present(remedies_section(result, margins)),
+            *_present(remedies_section(result, margins, subsets)),
             *(
                 ()
                 if stability_map is None

@@ -52,6 +52,7 @@ THEMED = {
 
 # In inches: the text of a figure this wide is read on a telephone, where it is as wide as the page.
 _WIDTH = 5.4
+_LABEL_LETTERS = 24
 _LEGEND_LETTERS, _LEGEND_LINE, _LEGEND_GAP = 46, 0.175, 0.055
 
 _SETTINGS = {
@@ -100,22 +101,26 @@ def styled(draw: Callable[P, Figure]) -> Callable[P, Figure]:
 
     @wraps(draw)
     def drawn(*args: P.args, **kwargs: P.kwargs) -> Figure:
-        from nrs_design.reporting.ticks import write_ticks_in_full
-
         with figure_style():
             figure = draw(*args, **kwargs)
-            write_ticks_in_full(figure)
-            _settle(figure)
+            settle(figure)
             return figure
 
     return drawn
 
 
-def _settle(figure: Figure) -> None:
-    """Lay a figure out for good; where an aspect is kept, only drawing it does that."""
+def settle(figure: Figure) -> None:
+    """Lay a figure out for good, once; where an aspect is kept, only drawing it does that.
+
+    A drawing function that has to know where its texts are calls it itself, at its end.
+    """
+    from nrs_design.reporting.ticks import write_ticks_in_full
+
     engine = figure.get_layout_engine()
-    shaped = (a.get_aspect() != "auto" or a.get_box_aspect() is not None for a in figure.axes)
-    if engine is None or any(shaped):
+    if engine is None:
+        return
+    write_ticks_in_full(figure)
+    if any(a.get_aspect() != "auto" or a.get_box_aspect() is not None for a in figure.axes):
         figure.draw_without_rendering()
     else:
         engine.execute(figure)
@@ -168,9 +173,9 @@ def curve(index: int, count: int, points: int) -> dict[str, Any]:
     }
 
 
-def row_labels(names: Sequence[str], width: int = 24) -> tuple[list[str], float]:
+def row_labels(names: Sequence[str]) -> tuple[list[str], float]:
     """Return names in full as labels of rows, and the height in inches that one row needs."""
-    labels = [wrapped(name, width) for name in names]
+    labels = [wrapped(name, _LABEL_LETTERS) for name in names]
     lines = max((label.count("\n") for label in labels), default=0) + 1
     return labels, 0.11 + 0.16 * lines
 

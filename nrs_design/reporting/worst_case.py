@@ -12,10 +12,9 @@ import numpy as np
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.release import Panel, draw_release
-from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
-from nrs_design.simulation.worst_case import DEFLECTION
+from nrs_design.simulation.worst_case import DEFLECTION, output_values
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -157,7 +156,7 @@ def response_of(case: WorstCase, run: WorstRun) -> TimeResponse:
         As for `draw_worst`.
     """
     named = {other.output.name: other.output for other in case.runs}
-    rows = [_largest(_values(case, run, output)) for output in named.values()]
+    rows = [_largest(output_values(case.system, output, run.states)) for output in named.values()]
     signals = [
         Signal("torque" if name == "force" else name, output.unit) for name, output in named.items()
     ]
@@ -193,15 +192,6 @@ def _signals(states: tuple[str, ...]) -> Iterator[Signal]:
         yield Signal(f"state {name}", unit.removesuffix("]"))
 
 
-def _values(case: WorstCase, run: WorstRun, output: Output) -> Array:
-    """Return a quantity over time for every row of it; tissue that can be lost never pulls."""
-    rows = np.array([row.floats()[0] for row in output.rows])
-    if case.system.contact is None:
-        return np.asarray(run.states @ rows.T)
-    values = np.asarray(deflected(run.states) @ rows.T)
-    return np.maximum(values, 0.0) if output.name in ("force", DEFLECTION) else values
-
-
 def _largest(values: Array) -> Array:
     return np.asarray(values[np.arange(len(values)), np.abs(values).argmax(axis=1)])
 
@@ -211,7 +201,7 @@ def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | No
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
     return Panel(
         f"{output.name.capitalize()} [{unit}]",
-        factor * _values(case, run, output),
+        factor * output_values(case.system, output, run.states),
         None if limit is None else factor * limit,
         None if bound is None else np.full(len(run.time), factor * bound),
         one_sided=case.system.contact is not None and output.name != "velocity",

@@ -19,6 +19,7 @@ from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
 from nrs_design.reproduction.hands_on import ADMITTANCES
 from nrs_design.simulation.metrics import Effort, effort
+from nrs_design.simulation.time_response import Array
 
 # Thesis 7.2.2: phi goes from 0 to -15 deg; and 6.1: 1002 N/m, at the lever arm of 0.24 m.
 WAY = math.radians(15)
@@ -30,23 +31,31 @@ SPEEDS = (-6, -5, -2, -2, -35, -33, -30)
 TORQUES = (4, 7, 1, 0, 97, 92, 79)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class HandRun:
-    """What one move shows.
+    """What one move shows, until the way is made.
 
     Parameters
     ----------
-    time : float
-        Until the way is made, s.
+    t, angle, velocity, torque : ndarray, shape (N,)
+        Time in s; of the robot, rad and rad/s; of the hand, N m.
     effort : Effort
         Of the hand.
     last : float
         Velocity of the admittance at the end, rad/s.
     """
 
-    time: float
+    t: Array
+    angle: Array
+    velocity: Array
+    torque: Array
     effort: Effort
     last: float
+
+    @property
+    def time(self) -> float:
+        """How long the way takes, s."""
+        return float(self.t[-1])
 
 
 def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
@@ -85,7 +94,9 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
     z = np.array(states)
     t = _STEP * np.arange(len(z), dtype=float)
     t[-1] = t[-2] + share * _STEP
-    return HandRun(float(t[-1]), effort(t, z @ F, z[:, :n] @ C), float(z[-1, velocity]))
+    torque, speed = z @ F, z[:, :n] @ C
+    found = effort(t, torque, speed)
+    return HandRun(t, z[:, angle], speed, torque, found, float(z[-1, velocity]))
 
 
 def rows() -> tuple[Comparison, ...]:
@@ -98,12 +109,19 @@ def rows() -> tuple[Comparison, ...]:
 _CHANGES = "Mt 1-2, 2-3 at Bt 4; 1-2, 2-3 at Bt 8; Bt 4-8 at Mt 1, 2, 3"
 
 
-def _changes(values: list[float]) -> tuple[float, ...]:
+def changes(values: list[float]) -> tuple[float, ...]:
+    """Return by how much each pair of `PAIRS` differs, in % of the first.
+
+    Parameters
+    ----------
+    values : list of float
+        One for each experiment.
+    """
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 
 def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comparison]:
-    low, high = (_changes([WAY / run.time for run in runs]) for runs in (pushed, led))
+    low, high = (changes([WAY / run.time for run in runs]) for runs in (pushed, led))
     printed = ", ".join(map(str, SPEEDS))
     return (
         derived(
@@ -140,7 +158,7 @@ def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comp
 
 
 def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comparison]:
-    low, high = (_changes([run.effort.total for run in runs]) for runs in (pushed, led))
+    low, high = (changes([run.effort.total for run in runs]) for runs in (pushed, led))
     printed = ", ".join(map(str, TORQUES))
     balance = (
         "Of a hand that never pulls, the total is Bt times the way and Mt times the last speed"

@@ -7,8 +7,16 @@ from nrs_design.reproduction.comparison import Comparison
 from nrs_design.reproduction.table import count_verdicts
 
 
-def render_page(table: tuple[Comparison, ...]) -> str:
-    """Return the page; the same rows give the same bytes."""
+def render_page(table: tuple[Comparison, ...], gallery: str | None = None) -> str:
+    """Return the page; the same rows give the same bytes.
+
+    Parameters
+    ----------
+    table : tuple of Comparison
+        Its rows.
+    gallery : str, optional
+        Where the page of figures is, seen from this one.
+    """
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -19,7 +27,8 @@ def render_page(table: tuple[Comparison, ...]) -> str:
     )
     environment.filters["deviation"] = format_deviation
     template = environment.get_template("reproduce.html.j2")
-    return template.render(rows=table, counts=count_verdicts(table), version=__version__)
+    counts = count_verdicts(table)
+    return template.render(rows=table, counts=counts, gallery=gallery, version=__version__)
 
 
 def format_deviation(deviation: float | None) -> str:

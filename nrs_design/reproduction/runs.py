@@ -4,15 +4,27 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
-from nrs_design.pipeline import run_design
-from nrs_design.pipeline.scenarios import Runs, run_scenarios
-from nrs_design.proof.text import exact_text
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
+from nrs_design.reproduction.interaction import (
+    BLEEDING,
+    BY_THRESHOLD,
+    DESIRED,
+    INTEGRAL,
+    POSITION,
+    PROFILE,
+    PROPORTIONAL,
+    PROPORTIONAL_FROM_MEASURED,
+    admittance,
+    away,
+    into,
+    simulated,
+    tissue_and_tool,
+    withdrawals,
+)
 from nrs_design.simulation.metrics import (
     displayed_impedance,
     gain_in_time,
@@ -23,81 +35,6 @@ from nrs_design.simulation.metrics import (
 )
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
-from nrs_design.spec import LoadedSpec, parse_spec
-
-DESIRED = thesis.TORQUE / thesis.VELOCITY
-_POSITION = "{type: position}"
-_GAIN = f"proportional_gain: {exact_text(thesis.FORCE_GAIN)} rad/(N*m)"
-# The profile of figure 6.7: seconds and deg/s. The print gives its shape and the largest speed.
-_PROFILE = ((0, 0), (1, 8), (2, 2), (3, 8), (4, 0), (5, -8), (6, -8), (7, 0))
-
-
-def interaction(controllers: dict[str, str], scenario: str, more: str = "") -> str:
-    """Return a spec of the thesis's robot with one scenario, ``run``.
-
-    Parameters
-    ----------
-    controllers : dict
-        By name, as YAML.
-    scenario : str
-        Its entries, as YAML.
-    more : str
-        Further lines.
-    """
-    numbers = {
-        "gain": thesis.ACTUATOR.gain,
-        "tau": thesis.ACTUATOR.time_constant,
-        "Kd": thesis.DERIVATIVE_GAIN,
-        "zero": thesis.ZERO,
-        "soft": thesis.SOFT,
-        "stiff": thesis.STIFF,
-    }
-    at = {name: exact_text(number) for name, number in numbers.items()}
-    lines = "\n".join(f"  {name}: {text}" for name, text in controllers.items())
-    return f"""\
-kind: interaction-design
-name: runs
-actuator: {{gain: {at["gain"]} rad/s/rpm, time_constant: {at["tau"]} s}}
-motion_loop: {{damping_ratio: {thesis.DAMPING_RATIO}, settling_time: {thesis.SETTLING_TIME} s,
-  derivative_gain: {at["Kd"]} rpm*s/rad, zero: {at["zero"]} 1/s}}
-limits: {{velocity: 8 deg/s, torque: {thesis.TORQUE} N*m, bandwidth: 2 Hz}}
-environments:
-  soft: {{model: elastic, stiffness: {at["soft"]} N*m/rad}}
-  stiff: {{model: elastic, stiffness: {at["stiff"]} N*m/rad}}
-controllers:
-{lines}
-switching: arbitrary
-scenarios: {{run: {{{scenario}}}}}
-{more}
-"""
-
-
-def simulated(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
-    """Simulate it with the exact engine.
-
-    Parameters
-    ----------
-    controllers, scenario, more
-        As `interaction` takes them.
-    """
-    text = interaction(controllers, scenario, more)
-    designed = run_design(LoadedSpec(Path("runs.nrs.yaml"), "", text, parse_spec(text)))
-    assert designed is not None
-    (found,) = run_scenarios(designed, Runs(engine="exact"))
-    return found.run
-
-
-def admittance(Mt: str, Bt: str, environment: str = "soft") -> str:
-    """Return an impedance controller as YAML.
-
-    Parameters
-    ----------
-    Mt, Bt : str
-        In kg m^2 and N m s/rad.
-    environment : str
-        That it is designed for.
-    """
-    return f"{{type: impedance, environment: {environment}, Mt: {Mt} kg*m^2, Bt: {Bt} N*m*s/rad}}"
 
 
 def rows() -> tuple[Comparison, ...]:
@@ -105,19 +42,12 @@ def rows() -> tuple[Comparison, ...]:
     return (*_profile_rows(), *_withdrawals(), *_limits(), _tissue_and_tool())
 
 
-def points(*pairs: tuple[float, float]) -> str:
-    """Return a command through points of s and deg/s, as YAML."""
-    return "points: [" + ", ".join(f"[{t} s, {v} deg/s]" for t, v in pairs) + "]"
-
-
 def _profile_rows() -> tuple[Comparison, Comparison]:
-    scenario = f"command: {{{points(*_PROFILE)}}}, surfaces: [{{environment: soft, at: 8 deg}}]"
-    stiff = simulated({"position": _POSITION}, scenario)
+    scenario = into(8, *PROFILE)
+    stiff = simulated({"position": POSITION}, scenario)
     run = simulated({"insertion": admittance("0", "2.15")}, scenario)
     peaks = tuple(float(np.abs(r.response["torque"]).max()) for r in (stiff, run))
-    constant = (
-        f"command: {{{points((0, 4), (2, 4))}}}, surfaces: [{{environment: soft, at: 1 deg}}]"
-    )
+    constant = into(1, (0, 4), (2, 4))
     settled = simulated({"insertion": admittance("0", "2.15")}, constant).response
     shown, _ = displayed_impedance(settled["hand"], settled["torque"])
     hand, torque = run.response["hand"], run.response["torque"]
@@ -159,18 +89,7 @@ def _withdrawals() -> tuple[Comparison, ...]:
     right = {5: ("0.05576", "0.04411", "20.90"), 3: ("0.06358", "0.04731", "25.58")}
     found = []
     for speed in (5, 3):
-        command = points((0, 8), (1, 8), (1, -speed), (2, -speed))
-        scenario = (
-            f"command: {{{command}}}, surfaces: [{{environment: soft, at: 0.5 deg}}], control: "
-        )
-        both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
-        times = [
-            _withdrawal(simulated(both, scenario + control))
-            for control in (
-                "{fixed: insertion}",
-                "{sign: {insertion: insertion, withdrawal: withdrawal}}",
-            )
-        ]
+        times = [_withdrawal(run) for run in withdrawals(speed)]
         gain = 100 * gain_in_time(*times)
         found.append(
             derived(
@@ -184,16 +103,11 @@ def _withdrawals() -> tuple[Comparison, ...]:
                 holds=gain > 0,
                 note="k_soft, from the torque of the largest command. The gain is near the print, "
                 "nearest at 5 deg/s. The times are not reproduced: at that speed 0.3 N m of "
-                f"k_soft are {_away(speed):.2f} s away with no compliance at all, so what took "
+                f"k_soft are {away(speed):.2f} s away with no compliance at all, so what took "
                 "longer in phi is not in k_soft; 6.2 speaks of joint clearance.",
             )
         )
     return tuple(found)
-
-
-def _away(speed: float) -> float:
-    """Return in how many s the deflection by the largest torque is passed, at a speed in deg/s."""
-    return math.degrees(thesis.TORQUE / float(thesis.SOFT)) / speed
 
 
 def _withdrawal(run: Run) -> float:
@@ -202,18 +116,11 @@ def _withdrawal(run: Run) -> float:
 
 
 def _limits() -> tuple[Comparison, ...]:
-    scenario = (
-        f"command: {{{points((0, 5), (2, 5))}}}, surfaces: [{{environment: soft, at: 1 deg}}], "
-        f"control: {{threshold: {{position: position, force: force, torque: {thesis.TORQUE} N*m}}}}"
-    )
-    force = "{type: force, environment: soft, " + _GAIN
-    integral = "{type: pi-force, environment: soft, integral_gain: 0.5 rad/(N*m*s), " + _GAIN
     row = partial(derived, section="6.3.3.3", unit="N m, %", tolerance=Tolerance(1e-3, 1e-6))
-    limited = partial(_limited, scenario)
     return (
         row(
             "peak torque, steady error, simulated at 5 deg/s; P, X_i the reference at the switch",
-            value=limited(force + "}"),
+            value=_limited(PROPORTIONAL),
             printed="0.35 and 2 in phi, no overshoot and 12 in psi",
             right=("0.34768", "11.844"),
             note="Peak and error are those of one run; on the robot one axis showed the peak and "
@@ -221,15 +128,15 @@ def _limits() -> tuple[Comparison, ...]:
         ),
         row(
             "peak torque, steady error, simulated at 5 deg/s; P, X_i the measured position",
-            value=limited(force + ", offset: measured}"),
-            printed="a steady error is held to be inevitable without an integral",
+            value=_limited(PROPORTIONAL_FROM_MEASURED),
+            printed="a steady error is expected without an integral",
             right=("0.3152", "0"),
             note="The other reading of X_i: no error is left.",
         ),
         row(
             "peak torque, steady error, simulated at 5 deg/s; PI with an integral that bleeds",
-            value=limited(integral + "}", "idle_states: {decay: 20 1/s}"),
-            printed="held to be impossible under switching",
+            value=_limited(INTEGRAL, BLEEDING),
+            printed="left out: stability under switching not guaranteed",
             right=("0.3426", "0"),
             note="Kp 0.02, Ki 0.5 rad/(N m s). Proved stable for any switching: "
             "specs/neuroboscope/force-limit-pi.nrs.yaml.",
@@ -237,9 +144,10 @@ def _limits() -> tuple[Comparison, ...]:
     )
 
 
-def _limited(scenario: str, force: str, more: str = "") -> tuple[float, float]:
+def _limited(force: str, more: str = "") -> tuple[float, float]:
     """Return the peak torque in N m and the steady error in % of force control."""
-    run = simulated({"position": _POSITION, "force": force}, scenario, more)
+    scenario = into(1, (0, 5), (2, 5), control=BY_THRESHOLD)
+    run = simulated({"position": POSITION, "force": force}, scenario, more)
     ((begin, _),) = run.switches
     inside = run.response.t >= begin
     t, torque = run.response.t[inside], run.response["torque"][inside]
@@ -249,13 +157,8 @@ def _limited(scenario: str, force: str, more: str = "") -> tuple[float, float]:
 
 
 def _tissue_and_tool() -> Comparison:
-    """Simulate 6.4: into soft tissue, out, onto the tool on the other side, and off it."""
-    command = points(*_PROFILE[:6], (6, -8), (7, -2), (8, -8), (9, 0), (10, 8), (11, 0))
-    run = simulated(
-        {"tissue": admittance("0.01", "2.15"), "tool": admittance("0.01", "2.11", "stiff")},
-        f"command: {{{command}}}, surfaces: [{{environment: soft, at: 8 deg}}, {{environment: "
-        "stiff, at: -2 deg, side: below}], control: {contact: {soft: tissue, stiff: tool}}",
-    )
+    """Judge the run of 6.4."""
+    run = tissue_and_tool()
     t, hand, torque = run.response.t, run.response["hand"], run.response["torque"]
     parts: tuple[Array, Array] = np.maximum(torque, 0.0), np.minimum(torque, 0.0)
     errors = tuple(impedance_rmse(t, hand, part, DESIRED) or math.nan for part in parts)

@@ -81,7 +81,7 @@ class Problem:
         """
         d, couplings = family.exponents, family.system.couplings
         columns = np.stack([to_floats(item.columns)[:, :, 0] for item in couplings], axis=1)
-        rows = np.stack([to_floats(item.rows)[:, 0] for item in couplings], axis=1)
+        rows = np.stack([to_floats(item.rows)[:, 0, : len(d)] for item in couplings], axis=1)
         columns = np.ldexp(columns, -d) @ np.linalg.inv(T).T
         rows = np.ldexp(rows, d) @ T
         sizes = [np.linalg.norm(part, axis=-1).max(axis=0) for part in (columns, rows)]

@@ -7,8 +7,8 @@ little above the best one, and the conditions are satisfied with as much to spar
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from math import isfinite
 
@@ -16,18 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import InvariantEllipsoid
-from nrs_design.proof.system import Channel, Contact, Output, SwitchedSystem, Time
+from nrs_design.proof.system import Channel, Output, SwitchedSystem, Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import (
-    Motions,
-    in_numerators,
-    multiplied,
-    numerators,
-    separating_coordinates,
+from nrs_design.search.conewise_quadratic import Motions, separating_coordinates
+from nrs_design.search.disturbed import (
+    Found,
+    Problem,
+    balanced,
+    problem_of,
+    roundings,
+    transformed,
 )
-from nrs_design.search.family import Family, to_floats
-from nrs_design.search.rounding import unscale
+from nrs_design.search.family import Family
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
 
 Array = NDArray[np.float64]
@@ -38,195 +39,8 @@ GOLDEN = (5**0.5 - 1) / 2
 SMALLEST_SHARE = 0.02
 # How far above the least level found the claimed one lies: the nearer, the harder to round.
 SLACKS = (1.002, 1.01, 1.03, 1.1)
-BITS = (30, 40, 50, 60)
 # Steps of a response that is summed for the scale.
 STEPS = 4000
-
-
-@dataclass(frozen=True)
-class Problem:
-    """The conditions in coordinates where the state, disturbances and output are about one.
-
-    Parameters
-    ----------
-    time : Time
-        Continuous or discrete.
-    contact, free : ndarray, shapes (m, n, n + c + r) and (f, n, n + c + r)
-        Maps of state, c disturbances and r roundings.
-    contact_sizes, free_sizes : ndarray, shapes (m, r, n + c) and (f, r, n + c)
-        How large the roundings are at most.
-    pulls : ndarray, shape (p, n)
-        Forces of environments that could pull.
-    rows : ndarray, shape (q, n)
-        The output.
-    disturbances : int
-        The c.
-    losable : bool
-        Whether contact may be lost.
-    """
-
-    time: Time
-    contact: Array
-    free: Array
-    contact_sizes: Array
-    free_sizes: Array
-    pulls: Array
-    rows: Array
-    disturbances: int
-    losable: bool
-
-    @property
-    def order(self) -> int:
-        """Number of states."""
-        return int(self.contact.shape[1])
-
-    @property
-    def roundings(self) -> int:
-        """How many roundings there are."""
-        return int(self.contact_sizes.shape[1])
-
-    @property
-    def multipliers(self) -> int:
-        """How many multipliers there are for lost contact."""
-        if not self.losable:
-            return 0
-        if self.time is Time.CONTINUOUS:
-            return len(self.free) * len(self.pulls)
-        return 1 + 3 * len(self.pulls)
-
-    def without_roundings(self) -> Problem:
-        """Return the conditions of exact arithmetic."""
-        width = self.order + self.disturbances
-        return replace(
-            self,
-            contact=self.contact[:, :, :width],
-            free=self.free[:, :, :width],
-            contact_sizes=self.contact_sizes[:, :0],
-            free_sizes=self.free_sizes[:, :0],
-        )
-
-    def distinct(self) -> Problem:
-        """Return the conditions with motions that floating point cannot tell apart left out."""
-        touching = _distinct(self.contact, self.contact_sizes)
-        # In continuous time, every free motion has multipliers of its own for what lags.
-        all_free = self.time is Time.CONTINUOUS and len(self.pulls)
-        flying = slice(None) if all_free else _distinct(self.free, self.free_sizes)
-        return replace(
-            self,
-            contact=self.contact[touching],
-            free=self.free[flying],
-            contact_sizes=self.contact_sizes[touching],
-            free_sizes=self.free_sizes[flying],
-        )
-
-    def conditions(self, Q: Array, share: float) -> Iterator[Condition]:
-        """Yield the forms of all motions, for a stack of Q and the sum of the shares."""
-        n = self.order
-        inner, last = Q[:, :-1, :-1], np.zeros(self.contact.shape[2])
-        last[n - 1] = 1.0
-        if self.time is Time.CONTINUOUS:
-            for A in self.contact:
-                yield Condition(_flow(Q, A, share), n)
-            for A in self.free:
-                yield Condition(_flow(inner, np.delete(A[:-1], n - 1, axis=1), share), n - 1)
-            for k, (i, j) in enumerate(np.ndindex(len(self.free), len(self.pulls))):
-                pulled = np.concatenate([self.pulls[j], np.zeros(self.disturbances)])
-                yield Condition(_flow(Q, self.free[i], share), n, {k: _crossing(last, pulled)})
-            return
-        for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
-            yield Condition(_step(Q, A, Q, share), n, sizes=sizes)
-            if self.losable:
-                lost = _step(Q, A[:-1], inner, share)
-                yield Condition(lost, n, {0: _crossing(last, A[-1])}, sizes)
-        for A, sizes in zip(self.free, self.free_sizes, strict=True):
-            moved, own = np.delete(A, n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
-            yield Condition(_step(inner, moved[:-1], inner, share), n - 1, sizes=own)
-            yield Condition(_step(inner, moved, Q, share), n - 1, sizes=own)
-            for k, q in enumerate(self.pulls):
-                pulled = _crossing(last, np.pad(q, (0, len(last) - n)))
-                yield Condition(_step(Q, A, Q, share), n, {3 * k + 1: pulled}, sizes)
-                crossings = {3 * k + 2: pulled, 3 * k + 3: _crossing(last, A[-1])}
-                yield Condition(_step(Q, A[:-1], inner, share), n, crossings, sizes)
-
-
-@dataclass(frozen=True)
-class Condition:
-    """One form that must be positive: images of a stack of Q, and what the multipliers add.
-
-    Parameters
-    ----------
-    images : ndarray, shape (k, s, s)
-        Of every Q.
-    order : int
-        States in it; disturbances and roundings follow.
-    crossings : mapping of int to ndarray, each of shape (s, s)
-        The images of its multipliers for lost contact, by which they are.
-    sizes : ndarray or None, shape (r, s - r)
-        Of the roundings.
-    """
-
-    images: Array
-    order: int
-    crossings: Mapping[int, Array] = field(default_factory=dict)
-    sizes: Array | None = None
-
-    def stack(self, disturbances: int, multipliers: int) -> Array:
-        """Return the images of Q, lambda, shares and tau in turn."""
-        side, n = self.images.shape[-1], self.order
-        crossings, shares = (
-            np.zeros((multipliers, side, side)),
-            np.zeros((disturbances, side, side)),
-        )
-        for k, crossing in self.crossings.items():
-            crossings[k] = crossing
-        for i in range(disturbances):
-            shares[i, n + i, n + i] = 1.0
-        sizes = np.zeros((0, side)) if self.sizes is None else self.sizes
-        taus = np.zeros((len(sizes), side, side))
-        for i, row in enumerate(sizes):
-            taus[i, : len(row), : len(row)] = -np.outer(row, row)
-            taus[i, n + disturbances + i, n + disturbances + i] = 1.0
-        return np.concatenate([self.images, crossings, shares, taus])
-
-
-def _distinct(maps: Array, sizes: Array) -> list[int]:
-    found: dict[bytes, int] = {}
-    for index, (A, q) in enumerate(zip(maps, sizes, strict=True)):
-        found.setdefault(A.tobytes() + q.tobytes(), index)
-    return list(found.values())
-
-
-def _crossing(last: Array, row: Array) -> Array:
-    return np.asarray(np.outer(last, row) + np.outer(row, last))
-
-
-def _flow(Q: Array, A: Array, share: float) -> Array:
-    """Return the images of Q in a motion in continuous time."""
-    n, side = Q.shape[-1], A.shape[1]
-    half = np.zeros((len(Q), side, side))
-    half[:, :n] = Q @ A
-    form = -(half + np.swapaxes(half, -1, -2))
-    form[:, :n, :n] -= share * Q
-    return form
-
-
-def _step(before: Array, A: Array, after: Array, share: float) -> Array:
-    """Return the images of Q in a step in discrete time."""
-    n = before.shape[-1]
-    form = -(A.T @ after @ A)
-    form[:, :n, :n] += (1 - share) * before
-    return form
-
-
-@dataclass(frozen=True)
-class Found:
-    """A solution in floating point: Q, the multipliers, and the square of the level."""
-
-    Q: Array
-    crossings: Array
-    shares: Array
-    taus: Array
-    square: float
 
 
 def search_ellipsoid(
@@ -254,18 +68,18 @@ def search_ellipsoid(
     """
     family = Family.of(system)
     motions = Motions.of(family)
-    raw = _problem(family, motions, channels, output)
+    raw = problem_of(family, motions, channels, output)
     T = separating_coordinates(motions)
     size, level = _reach(raw, T)
     if not (np.isfinite(T).all() and isfinite(size) and isfinite(level) and size * level > 0):
         return OUT_OF_RANGE
-    whole, units = _balanced(_transformed(raw, T, size, level))
+    whole, units = balanced(transformed(raw, T, size, level))
     exact = whole.without_roundings().distinct()
     best, share = _best_share(exact, family.limit, allowance)
     if not isfinite(best):
         return NO_MARGIN
     names = tuple(channel.name for channel in channels)
-    for own in [whole.distinct(), exact] if whole.roundings else [exact]:
+    for own in [whole.distinct(), exact] if system.roundings else [exact]:
         for slack in SLACKS:
             found = _solve(own, share, allowance, best * slack**2)
             if found is None:
@@ -276,84 +90,24 @@ def search_ellipsoid(
                 (),
                 0,
                 tuple(map(_short, found.shares.tolist())),
-                _short(level * float(np.sqrt(best)) * slack),
+                _short(level * float(np.sqrt(best * (system.axes or 1))) * slack),
             )
-            for evidence in _roundings(family, empty, found, T, size, units):
-                yield Candidate(evidence)
+            for numbers in roundings(family, found, T, units, size):
+                yield Candidate(
+                    replace(
+                        empty,
+                        Q=numbers.Q,
+                        denominator_log2=numbers.log2,
+                        multipliers=numbers.multipliers,
+                        roundings=numbers.roundings,
+                        taus=numbers.couplings,
+                    )
+                )
     return None
 
 
 def _short(number: float) -> Fraction:
     return Fraction(f"{number:.6e}")
-
-
-def _roundings(
-    family: Family,
-    empty: InvariantEllipsoid,
-    found: Found,
-    T: Array,
-    size: float,
-    units: Array,
-) -> Iterator[InvariantEllipsoid]:
-    """Yield roundings of a solution in coordinates ``x = size T z`` of the family.
-
-    Unlike for a rate, the scale of Q matters: the set is ``V <= 1``.
-    """
-    inverse = np.linalg.inv(T) / size
-    Q = inverse.T @ found.Q @ inverse
-    contact = family.system.contact or Contact(())
-    times = multiplied(contact, family.system.time)[: len(found.crossings)]
-    multipliers = found.crossings / T[-1, -1] ** times / size**2
-    multipliers = in_numerators(multipliers, contact, family.system.time)
-    multipliers = np.ldexp(multipliers, -times * int(family.exponents[-1]))
-    taus = found.taus * units[: len(found.taus)]
-    exponent = int(np.frexp(np.abs(Q).max())[1])
-    for bits in BITS:
-        rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
-        log2 -= exponent
-        if log2 < 0:
-            rows, log2 = tuple(tuple(v << -log2 for v in row) for row in rows), 0
-        yield replace(
-            empty,
-            Q=rows,
-            denominator_log2=log2,
-            multipliers=numerators(multipliers, log2),
-            roundings=numerators(taus, log2),
-        )
-
-
-def _problem(
-    family: Family, motions: Motions, channels: Sequence[Channel], output: Output
-) -> Problem:
-    """Join disturbances, roundings and output, in the coordinates of the family.
-
-    Disturbances go up to one. Columns are those of the modes in contact, then of the free ones.
-    """
-    system, d = family.system, family.exponents
-    n, count = len(d), len(system.modes)
-    maps = np.concatenate([motions.contact, motions.free])
-    bounds = np.array([float(channel.bound) for channel in channels])
-    columns = [to_floats(c.columns)[:, :, 0] * b for c, b in zip(channels, bounds, strict=True)]
-    columns += [to_floats(item.columns)[:, :, 0] for item in system.roundings]
-    scaled = [np.ldexp(column, -d)[:, :, None] for column in columns]
-    maps = np.concatenate([maps, *scaled], axis=2)
-    acting = [n + system.channels.index(channel) for channel in channels]
-    sizes = np.zeros((len(maps), len(system.roundings), n + len(channels)))
-    for i, item in enumerate(system.roundings):
-        rows = to_floats(item.rows)[:, 0]
-        sizes[:, i, :n], sizes[:, i, n:] = np.ldexp(rows[:, :n], d), rows[:, acting] * bounds
-    rows = np.ldexp(np.array([to_floats([q])[0, 0] for q in output.rows]), d[None, :])
-    return Problem(
-        system.time,
-        maps[:count],
-        maps[count:],
-        sizes[:count],
-        sizes[count:],
-        motions.pulls,
-        rows,
-        len(channels),
-        system.contact is not None,
-    )
 
 
 def _reach(problem: Problem, T: Array) -> tuple[float, float]:
@@ -379,54 +133,6 @@ def _reach(problem: Problem, T: Array) -> tuple[float, float]:
     return size, level
 
 
-def _transformed(problem: Problem, T: Array, size: float, level: float) -> Problem:
-    n, inverse = problem.order, np.linalg.inv(T)
-
-    def moved(maps: Array) -> Array:
-        return np.concatenate(
-            [inverse @ maps[:, :, :n] @ T, inverse @ maps[:, :, n:] / size], axis=2
-        )
-
-    def seen(sizes: Array) -> Array:
-        return np.concatenate([sizes[:, :, :n] @ T * size, sizes[:, :, n:]], axis=2)
-
-    return replace(
-        problem,
-        contact=moved(problem.contact),
-        free=moved(problem.free),
-        contact_sizes=seen(problem.contact_sizes),
-        free_sizes=seen(problem.free_sizes),
-        pulls=problem.pulls @ T,
-        rows=problem.rows @ T * (size / level),
-    )
-
-
-def _balanced(problem: Problem) -> tuple[Problem, Array]:
-    """Return the problem with every rounding in units of its own, and what a tau is in them.
-
-    In them, what a rounding does to the state and what the state does to it are of like size.
-    """
-    start = problem.order + problem.disturbances
-    columns = np.concatenate([problem.contact, problem.free])[:, :, start:]
-    sizes = np.concatenate([problem.contact_sizes, problem.free_sizes])
-    pushed = np.linalg.norm(columns, axis=1).max(axis=0)
-    seen = np.linalg.norm(sizes, axis=2).max(axis=0)
-    units = np.divide(pushed, seen, out=np.ones_like(pushed), where=seen > 0)
-    root = np.sqrt(np.maximum(units, np.finfo(float).tiny))
-
-    def scaled(maps: Array) -> Array:
-        return np.concatenate([maps[:, :, :start], maps[:, :, start:] / root], axis=2)
-
-    own = replace(
-        problem,
-        contact=scaled(problem.contact),
-        free=scaled(problem.free),
-        contact_sizes=problem.contact_sizes * root[:, None],
-        free_sizes=problem.free_sizes * root[:, None],
-    )
-    return own, root**2
-
-
 def _best_share(own: Problem, limit: float, allowance: Allowance) -> tuple[float, float]:
     """Return the least square of the level, relative to the scale, and its share."""
     top = 2 * limit if own.time is Time.CONTINUOUS else 1 - limit**2
@@ -435,7 +141,7 @@ def _best_share(own: Problem, limit: float, allowance: Allowance) -> tuple[float
     def attempt(share: float) -> float:
         if share not in tried:
             found = _solve(own, share, allowance)
-            tried[share] = np.inf if found is None else found.square
+            tried[share] = np.inf if found is None else found.last
         return tried[share]
 
     shares = np.geomspace(SMALLEST_SHARE * top, 0.98 * top, SHARES).tolist()
@@ -456,7 +162,7 @@ def _solve(
 ) -> Found | None:
     """Minimize the square of the level; or, for a given one, leave as much to spare as possible."""
     n, lost, c, basis = own.order, own.multipliers, own.disturbances, symmetric_basis(own.order)
-    k, unknowns = len(basis), len(basis) + lost + c + own.roundings + 1
+    k, unknowns = len(basis), len(basis) + lost + c + own.errors + 1
     blocks: list[tuple[Array, Array]] = []
     for condition in own.conditions(basis, share):
         stack = condition.stack(c, lost)

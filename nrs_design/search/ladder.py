@@ -257,8 +257,15 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "coupled axes",
         Method.COUPLED_AXES,
-        lambda f: f.is_coupled and f.may_share_an_ellipsoid,
+        lambda f: f.is_coupled and f.is_continuous and f.may_share_an_ellipsoid,
         _in("coupled_axes", "search_coupled_axes"),
+        coupled=True,
+    ),
+    Rung(
+        "coupled axes in steps",
+        Method.COUPLED_AXES,
+        lambda f: f.is_coupled and not f.is_continuous and f.may_share_an_ellipsoid,
+        _in("coupled_steps", "search_coupled_steps"),
         coupled=True,
     ),
     Rung(

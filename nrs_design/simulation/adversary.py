@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.simulation.game import Aim, Game, Signals, play
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rules import Indices, Rules
 
 # Where a run is continued by the new choices: from these shares of its length on.
 _CUTS = (0.0, 0.5, 0.8)
@@ -23,149 +23,20 @@ _NO_GAIN = 1e-5
 _SPAN, _ERROR = 0.06, 0.2
 
 
-@dataclass(frozen=True, eq=False)
-class Game:
-    """What can happen to a loop that begins at rest, and what the adversary wants of it.
+def held_signals(game: Game, steps: int) -> Signals:
+    """Return the largest disturbances, held in either direction in one mode after the other.
 
     Parameters
     ----------
-    maps : ndarray, shape (m, n, n + c)
-        Step of each mode in contact: of the state, and of shares of the largest disturbances.
-    flights : ndarray, shape (m, n, n + c)
-        What takes its place without contact; empty, shape (0, n, n + c), where contact is kept.
-    pulls : ndarray, shape (q, n)
-        Forces of tissue that could pull: while none is positive, contact is lost, too.
-    rules : Rules
-        Which mode may follow which.
+    game : Game
+        In which every mode may follow every mode.
+    steps : int
+        Number of steps K.
     """
-
-    maps: Array
-    flights: Array
-    pulls: Array
-    rules: Rules
-
-    @property
-    def order(self) -> int:
-        """Number of states n."""
-        return int(self.maps.shape[1])
-
-    @property
-    def disturbances(self) -> int:
-        """Number of disturbances c."""
-        return int(self.maps.shape[2]) - self.order
-
-    @property
-    def losable(self) -> bool:
-        """Whether contact may be lost."""
-        return bool(len(self.flights))
-
-    def flies(self, states: Array) -> NDArray[np.bool_]:
-        """Tell at which states, shape (..., n), nothing is touched; shape (...)."""
-        if not self.losable:
-            return np.zeros(states.shape[:-1], dtype=np.bool_)
-        lost = states[..., -1] <= 0
-        if len(self.pulls):
-            lost |= (states @ self.pulls.T <= 0).all(axis=-1)
-        return np.asarray(lost)
-
-
-@dataclass(frozen=True, eq=False)
-class Aim:
-    """What is to become large at the end of each of S runs.
-
-    Parameters
-    ----------
-    rows : ndarray, shape (S, r, n)
-        Rows over the state; a run that has fewer repeats one.
-    allowed : ndarray of bool, shape (S, m, r)
-        Which of them apply in each mode.
-    one_sided : ndarray of bool, shape (S,)
-        Whether positive values alone count, and those without contact not at all.
-    """
-
-    rows: Array
-    allowed: NDArray[np.bool_]
-    one_sided: NDArray[np.bool_]
-
-    def values(self, game: Game, states: Array, modes: Indices) -> tuple[Array, Array]:
-        """Return the largest size at states in modes, and the row with the sign that has it.
-
-        Parameters
-        ----------
-        game : Game
-            That is played.
-        states : ndarray, shape (S, n)
-            One of each run.
-        modes : ndarray of int, shape (S,)
-            In force there.
-
-        Returns
-        -------
-        ndarray, shape (S,), and ndarray, shape (S, n)
-        """
-        runs = np.arange(len(states))
-        found = (self.rows @ states[:, :, None])[:, :, 0]
-        lost = self.one_sided & game.flies(states)
-        size = np.where(self.one_sided[:, None], found, np.abs(found))
-        size = np.where(self.allowed[runs, modes], size, -np.inf)
-        best = size.argmax(axis=1)
-        sign = np.where(~self.one_sided & (found[runs, best] < 0), -1.0, 1.0)
-        return np.where(lost, 0.0, size[runs, best]), self.rows[runs, best] * sign[:, None]
-
-    def repeated(self, times: int) -> Aim:
-        """Return the same aims again and again."""
-        return Aim(
-            np.tile(self.rows, (times, 1, 1)),
-            np.tile(self.allowed, (times, 1, 1)),
-            np.tile(self.one_sided, times),
-        )
-
-    def only(self, runs: Indices) -> Aim:
-        """Return the aims of some runs."""
-        return Aim(self.rows[runs], self.allowed[runs], self.one_sided[runs])
-
-
-@dataclass(frozen=True, eq=False)
-class Signals:
-    """What was chosen in S runs.
-
-    Parameters
-    ----------
-    actions : ndarray of int, shape (K, S)
-        Of `Rules`, one for each step.
-    shares : ndarray, shape (K, S, c)
-        Of the largest disturbances, from -1 to 1.
-    """
-
-    actions: Indices
-    shares: Array
-
-    def only(self, runs: Indices) -> Signals:
-        """Return the signals of some runs."""
-        return Signals(self.actions[:, runs], self.shares[:, runs])
-
-    def beside(self, other: Signals) -> Signals:
-        """Return these runs and others."""
-        return Signals(
-            np.concatenate([self.actions, other.actions], axis=1),
-            np.concatenate([self.shares, other.shares], axis=1),
-        )
-
-    def after_rest(self) -> Signals:
-        """Return the runs without the time in which all of them rest; for rules as for `finer`."""
-        begun = int(self.shares.any(axis=(1, 2)).argmax())
-        return Signals(self.actions[begun:], self.shares[begun:])
-
-    def longer(self) -> Signals:
-        """Return runs twice as long, at rest at first; for rules as for `finer`."""
-        rest = Signals(np.zeros_like(self.actions), np.zeros_like(self.shares))
-        return Signals(
-            np.concatenate([rest.actions, self.actions]), np.concatenate([rest.shares, self.shares])
-        )
-
-    def finer(self, times: int) -> Signals:
-        """Return every step cut into some; for rules that let every mode follow every mode."""
-        return Signals(np.repeat(self.actions, times, 0), np.repeat(self.shares, times, 0))
+    modes = len(game.rules.mode)
+    actions = np.tile(np.repeat(np.arange(modes), 2), (steps, 1))
+    signs = np.tile([1.0, -1.0], modes)[None, :, None]
+    return Signals(actions, np.tile(signs, (steps, 1, game.disturbances)))
 
 
 def random_signals(game: Game, steps: int, runs: int, rng: np.random.Generator) -> Signals:
@@ -254,33 +125,6 @@ def misjudged_signals(
     policy = _Policy.against(game, aim.only(runs), many, play(game, many), rng)
     fresh, cut = policy.follow(game, many), rng.integers(0, len(_CUTS), len(runs))
     return fresh.only(cut * len(runs) + np.arange(len(runs)))
-
-
-def play(game: Game, signals: Signals) -> Array:
-    """Simulate runs from rest.
-
-    Returns
-    -------
-    ndarray, shape (K + 1, S, n)
-        Where a switch resets the state, before the reset.
-    """
-    steps, runs = signals.actions.shape
-    states = np.zeros((steps + 1, runs, game.order))
-    for k in range(steps):
-        states[k + 1] = _step(game, states[k], signals.actions[k], signals.shares[k])
-    return states
-
-
-def _step(game: Game, x: Array, action: Indices, shares: Array) -> Array:
-    rules = game.rules
-    mode = rules.mode[action]
-    if len(rules.jumps) > 1:
-        x = (rules.jumps[rules.jump[action]] @ x[:, :, None])[:, :, 0]
-    maps = game.maps[mode]
-    if game.losable:
-        maps = np.where(game.flies(x)[:, None, None], game.flights[mode], maps)
-    full = np.concatenate([x, shares], axis=1)
-    return np.asarray((maps @ full[:, :, None])[:, :, 0])
 
 
 def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> tuple[Signals, Array]:

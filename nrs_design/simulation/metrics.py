@@ -1,7 +1,8 @@
 """What a run is judged by: safety, agility, human effort, and how well a controller does.
 
-Signals are taken as straight lines between the instants of a run, which need not be equally far
-apart. Numbers of the thesis stand beside the equations; `docs/design/scenarios.md` has them all.
+Throughout, ``t`` are the instants of a run in s, shape (N,), which need not be equally far apart,
+and ``y`` is a signal at them, a straight line between two: velocities in rad/s, torques in N m.
+Numbers of the thesis stand beside the equations; `docs/design/scenarios.md` has them all.
 """
 
 from __future__ import annotations
@@ -24,42 +25,28 @@ Mask = NDArray[np.bool_]
 
 
 def integral(t: Array, y: Array) -> float:
-    """Return the integral of a signal over a run.
-
-    Parameters
-    ----------
-    t : ndarray, shape (N,)
-        In s.
-    y : ndarray, shape (N,)
-        The signal.
-    """
+    """Return ``int y dt`` over a run."""
     return float(np.sum(np.diff(t) * (y[1:] + y[:-1]) / 2))
 
 
 def mean(t: Array, y: Array) -> float:
-    """Return the mean over time; the only value, where a run has no length.
-
-    Parameters
-    ----------
-    t : ndarray, shape (N,)
-        In s.
-    y : ndarray, shape (N,)
-        The signal.
-    """
+    """Return the mean over time, ``1/T int y dt``; the only value, where a run has no length."""
     length = float(t[-1] - t[0])
     return integral(t, y) / length if length > 0 else float(y[0])
 
 
-def rms(t: Array, y: Array) -> float:
-    """Return ``sqrt(1/T int y^2 dt)``.
+def peak(y: Array) -> float:
+    """Return the largest absolute value, ``max |y|``: the peak torque, held against T_max (6.2)."""
+    return float(np.abs(y).max())
 
-    Parameters
-    ----------
-    t : ndarray, shape (N,)
-        In s.
-    y : ndarray, shape (N,)
-        The signal; the square of a straight line is integrated exactly.
-    """
+
+def mean_speed(t: Array, velocity: Array) -> float:
+    """Return ``1/T int |v| dt``: agility of a robot that is led by hand (thesis 5.1.3, 7.2)."""
+    return mean(t, np.abs(velocity))
+
+
+def rms(t: Array, y: Array) -> float:
+    """Return ``sqrt(1/T int y^2 dt)``; the square of a straight line is integrated exactly."""
     length = float(t[-1] - t[0])
     if length <= 0:
         return abs(float(y[0]))
@@ -72,12 +59,10 @@ def time_above(t: Array, y: Array, limit: float) -> float:
 
     Parameters
     ----------
-    t : ndarray, shape (N,)
-        In s.
-    y : ndarray, shape (N,)
-        The signal.
+    t, y : ndarray, shape (N,)
+        As everywhere here.
     limit : float
-        In its unit.
+        In the unit of the signal.
     """
     low, high = np.minimum(y[1:], y[:-1]), np.maximum(y[1:], y[:-1])
     crosses = (low <= limit) & (high > limit)
@@ -116,9 +101,7 @@ def impedance_rmse(t: Array, command: Array, torque: Array, desired: float) -> f
 
     Parameters
     ----------
-    t : ndarray, shape (N,)
-        In s.
-    command, torque : ndarray, shape (N,)
+    t, command, torque : ndarray, shape (N,)
         As for `displayed_impedance`.
     desired : float
         Z_des in N m s/rad.
@@ -146,12 +129,10 @@ def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ..
 
     Parameters
     ----------
-    t : ndarray, shape (N,)
-        In s.
-    command : ndarray, shape (N,)
-        Commanded velocity in rad/s.
+    t, command : ndarray, shape (N,)
+        Commanded velocity over time.
     torque : ndarray, shape (N,)
-        Torque of the contact in N m: it has the sign of a command into the tissue.
+        Of the contact: it has the sign of a command into the tissue.
     """
     found: list[float] = []
     begin: float | None = None
@@ -170,10 +151,7 @@ def withdrawal_times(t: Array, command: Array, torque: Array) -> tuple[float, ..
 def gain_in_time(before: float, after: float) -> float:
     """Return by which share a task is done sooner, ``1 - after/before`` (agility, thesis 5.1.3).
 
-    Parameters
-    ----------
-    before, after : float
-        Execution times in s; the thesis finds about 20 % for the withdrawal.
+    Execution times are in s; the thesis finds about 20 % for the withdrawal.
     """
     return 1 - after / before
 
@@ -198,31 +176,19 @@ class Effort:
 
 
 def effort(t: Array, torque: Array, velocity: Array) -> Effort:
-    """Return the effort of a run.
+    """Return the effort of a run: `Effort` has the equations.
 
     Parameters
     ----------
-    t : ndarray, shape (N,)
-        In s.
-    torque : ndarray, shape (N,)
-        In N m.
-    velocity : ndarray, shape (N,)
-        In rad/s.
+    t, torque, velocity : ndarray, shape (N,)
+        Of what the hand holds, over time.
     """
     energy = integral(t, np.abs(torque * velocity))
     return Effort(integral(t, np.abs(torque)), rms(t, torque), energy)
 
 
 def overshoot(y: Array, wanted: float) -> float:
-    """Return ``max(y)/wanted - 1``, at least 0, for a response from zero to a wanted value.
-
-    Parameters
-    ----------
-    y : ndarray, shape (N,)
-        The response.
-    wanted : float
-        Not zero; of either sign.
-    """
+    """Return ``max(y/wanted) - 1``, at least 0, for a response to a wanted value of either sign."""
     return max(0.0, float((y / wanted).max()) - 1)
 
 
@@ -233,10 +199,8 @@ def steady_state_error(t: Array, y: Array, wanted: float) -> float:
 
     Parameters
     ----------
-    t : ndarray, shape (N,)
-        In s.
-    y : ndarray, shape (N,)
-        The response.
+    t, y : ndarray, shape (N,)
+        The response over time.
     wanted : float
         Not zero.
     """
@@ -270,15 +234,7 @@ def injury_factor(robot_mass: float, operator_mass: float, stiffness: float) -> 
 
 
 def head_injury(factor: float, speed: float) -> float:
-    """Return the head-injury criterion of an impact (thesis 2.16).
-
-    Parameters
-    ----------
-    factor : float
-        As `injury_factor` gives it.
-    speed : float
-        Of the impact, in m/s.
-    """
+    """Return the head-injury criterion ``factor v^2.5`` of an impact at v m/s (thesis 2.16)."""
     return float(factor * abs(speed) ** 2.5)
 
 
@@ -286,12 +242,55 @@ def safe_speed(factor: float, largest: float) -> float:
     """Return the speed in m/s at which the criterion reaches a largest value.
 
     ``(HIC_max/factor)^(1/2.5)``, the inverse of 2.16; the print of 2.17 lacks the exponent.
+    """
+    return float((largest / factor) ** (1 / 2.5))
+
+
+def attention_demand(interaction: float, neglect: float) -> float:
+    """Return the robot attention demand ``RAD = IE/(IE + NT)`` (Olsen, Goodrich; thesis 2.10).
 
     Parameters
     ----------
-    factor : float
-        As `injury_factor` gives it.
-    largest : float
-        HIC_max.
+    interaction : float
+        Interaction effort IE: how long the human is busy with the robot, s.
+    neglect : float
+        Neglect tolerance NT: how long the robot does well enough without, s.
+
+    Raises
+    ------
+    ValueError
+        If one of them is negative or not finite, or both are zero.
     """
-    return float((largest / factor) ** (1 / 2.5))
+    if not (0 <= interaction < math.inf and 0 <= neglect < math.inf and interaction + neglect > 0):
+        raise ValueError("interaction effort and neglect tolerance are times, not both zero")
+    return interaction / (interaction + neglect)
+
+
+def free_time(demand: float) -> float:
+    """Return ``FT = 1 - RAD``: the share of time that a robot leaves to the human (thesis 2.11)."""
+    return 1 - _share(demand, "attention demand")
+
+
+def fan_out(demand: float, reliability: float = 1.0) -> float:
+    """Return ``FO = HR/RAD``: how many robots a human can attend to (thesis 2.12, 2.13).
+
+    Parameters
+    ----------
+    demand : float
+        RAD; without any, the number has no bound.
+    reliability : float
+        HR of the human, from 0 to 1; 1 in 2.12.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not a share.
+    """
+    reliability = _share(reliability, "human reliability")
+    return reliability / demand if _share(demand, "attention demand") else math.inf
+
+
+def _share(value: float, name: str) -> float:
+    if not 0 <= value <= 1:
+        raise ValueError(f"{name} is a share, from 0 to 1, not {value}")
+    return value

@@ -22,6 +22,8 @@ _FEWEST, _MOST = 3, 30
 # Samples in one step of the period, where it can be afforded: a smooth curve.
 _SMOOTH = 24
 _HALVINGS = 40
+# By which a state has grown enough to be seen.
+_GROWTH = 100.0
 # Of the average's own growth, what fast switching has to reach.
 _SHARE = 0.6
 
@@ -45,10 +47,11 @@ class PeriodicRun:
     radius: float
 
 
-def periodic_run(
-    system: SwitchedSystem, steps: Steps, edges: Sequence[int] = (), growth: float = 100.0
-) -> PeriodicRun:
+def periodic_run(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -> PeriodicRun:
     """Simulate a periodic signal until its growth can be seen.
+
+    The run ends when the state has grown a hundredfold, but not before three periods (if that is
+    not too far), nor after thirty.
 
     Parameters
     ----------
@@ -58,9 +61,6 @@ def periodic_run(
         Mode and time in it, over one period.
     edges : sequence of int
         For each step, which reset to the next mode is taken; empty where there is no choice.
-    growth : float
-        The run ends when the state has grown by this factor, but not before three periods (if
-        that is not too far), nor after thirty.
     """
     legs = _legs(system, steps, edges)
     monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
@@ -69,7 +69,7 @@ def periodic_run(
     radius = float(np.abs(values[leading]))
     initial = vectors[:, leading].real
     initial = initial / np.linalg.norm(initial)
-    response = _repeat(legs, initial, _periods(radius, growth, sum(leg.pieces for leg in legs)))
+    response = _repeat(legs, initial, _periods(radius, sum(leg.pieces for leg in legs)))
     return PeriodicRun(response, sum(time for _, time in steps), radius)
 
 
@@ -161,9 +161,9 @@ def _repeat(legs: Sequence[_Leg], initial: Array, periods: int) -> SwitchedRun:
     return SwitchedRun(np.array(instants), np.array(states), np.array(modes))
 
 
-def _periods(radius: float, growth: float, samples: int) -> int:
+def _periods(radius: float, samples: int) -> int:
     exponent = math.log(max(radius, 1.0))
-    wanted = math.ceil(math.log(growth) / exponent) if exponent > 1e-6 else _MOST
+    wanted = math.ceil(math.log(_GROWTH) / exponent) if exponent > 1e-6 else _MOST
     # Three periods of a growth by many decades would leave the range of doubles.
     fewest = _FEWEST if exponent < 100 else 1
     return max(fewest, min(wanted, _MOST, _SAMPLES // samples))

@@ -10,8 +10,9 @@ import numpy as np
 from nrs_design.simulation.metrics import (
     effort,
     impedance_rmse,
-    mean,
+    mean_speed,
     overshoot,
+    peak,
     rms,
     steady_state_error,
     time_above,
@@ -45,12 +46,12 @@ def summarize(spec: InteractionDesignSpec, scenario: Scenario, run: Run) -> dict
     touched = size > 0
     return {
         "duration": float(t[-1]),
-        "peak_torque": float(size.max()),
+        "peak_torque": peak(torque),
         "torque_limit": limit,
         "time_above_limit": time_above(t, size, limit),
         "peak_depth": float(response["depth"].max()),
-        "peak_velocity": float(np.abs(velocity).max()),
-        "mean_speed": mean(t, np.abs(velocity)),
+        "peak_velocity": peak(velocity),
+        "mean_speed": mean_speed(t, velocity),
         "time_in_contact": time_above(t, size, 0.0),
         "impedance_rmse": impedance_rmse(t, response["hand"], torque, desired),
         "desired_impedance": desired,

@@ -12,6 +12,8 @@ from nrs_design.proof.system import SwitchedSystem, Time
 from nrs_design.simulation.norms import Array, Norm
 from nrs_design.simulation.rates import drift
 
+# By which a state has grown enough to be seen.
+_GROWTH = 100.0
 # Growth per step below which a run of an unstable mode is shown as one on the stability limit.
 _MARGINAL = 1e-5
 _MARGINAL_STEPS = 628
@@ -156,8 +158,11 @@ def alone(system: SwitchedSystem, mode: int) -> SwitchedSystem:
     return replace(system, modes=(kept,), states=system.states[: kept.A.shape[0]])
 
 
-def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> SwitchedRun:
+def unstable_run(system: SwitchedSystem, mode: int) -> SwitchedRun:
     """Stay in one mode, from the real part of the eigenvector that is worst for stability.
+
+    The run ends when the eigenvalue has let the state grow a hundredfold; where it lies on the
+    stability limit, after ten periods or time constants.
 
     Parameters
     ----------
@@ -165,9 +170,6 @@ def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> Sw
         Modes of one size.
     mode : int
         Index of the mode to stay in.
-    growth : float
-        The run ends when the eigenvalue has let the state grow by this factor; where it lies on
-        the stability limit, after ten periods or time constants.
     """
     values, vectors = np.linalg.eig(np.array(system.modes[mode].A.floats()))
     continuous = system.time is Time.CONTINUOUS
@@ -179,7 +181,7 @@ def unstable_run(system: SwitchedSystem, mode: int, growth: float = 100.0) -> Sw
     else:
         exponent = math.log(max(float(abs(values[worst])), 1.0))
     marginal = _MARGINAL_STEPS if continuous else _FEWEST
-    steps = math.log(growth) / exponent if exponent > _MARGINAL else marginal
+    steps = math.log(_GROWTH) / exponent if exponent > _MARGINAL else marginal
     signal = np.full(min(max(math.ceil(steps), _FEWEST), _MOST), mode, dtype=np.int64)
     return simulate_switching(system, signal, initial, step)
 

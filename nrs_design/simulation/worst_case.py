@@ -7,7 +7,7 @@ bound says that it is at most so large. What is found is no bound.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -17,24 +17,23 @@ from nrs_design.certificates.bounds import bound_on
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.system import Output, SwitchedSystem, Time
+from nrs_design.proof.evidence.abstract import Bound
+from nrs_design.proof.system import ARBITRARY, Output, SwitchedSystem, Time
 from nrs_design.simulation.adversary import (
-    Aim,
-    Game,
-    Signals,
     changed_signals,
+    held_signals,
     improve,
     misjudged_signals,
-    play,
     random_signals,
 )
-from nrs_design.simulation.disturbed import DisturbedMotions
+from nrs_design.simulation.contact import deflected
+from nrs_design.simulation.game import Aim, Game, Signals, free_modes, play
 from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rules import Indices, Rules, fitting_step
+from nrs_design.simulation.rules import Indices, fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 
 # Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
-STARTS, SWEEPS, ROUNDS = 24, 15, 8
+STARTS, SWEEPS, ROUNDS = 24, 15, 24
 _KEPT, _COPIES = 4, 3
 # How often the best runs are made twice as long, and by what factor that must make them worse.
 _DOUBLED, _WORTH = 3, 1.01
@@ -43,7 +42,10 @@ _FINER = 4
 # A run is as long as a motion of the slowest mode needs to fade to a thousandth, and has so many
 # steps; in continuous time they are longer where there would be more.
 _FADED, _FEWEST, _MOST = 8.0, 100, 300
+# Against a bound, a run is as long as its set needs to fill up to a thousandth, if steps are few.
+_FILLED, _LONGEST, _DRAWN, _TURNS = 7.0, 800, 8, 6
 DEFLECTION = "deflection"
+_PUSHED = ("force", DEFLECTION)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +115,7 @@ def worst_runs(
     _check(system)
     wanted, steps = _grid(system)
     step = fitting_step(system, wanted)
-    game = _game(system, step)
+    game = Game.of(system, system.channels, step)
     own = [_aim(system, output, allowed) for output in outputs]
     rng = np.random.default_rng(seed)
     search = _Search(game, own, rng)
@@ -126,7 +128,7 @@ def worst_runs(
         signals, values = _lengthened(game, _joined(own), signals, values)
     if system.time is Time.CONTINUOUS and system.switching.is_arbitrary:
         step /= _FINER
-        game = _game(system, step)
+        game = Game.of(system, system.channels, step)
         signals, values = improve(game, _joined(own), signals.finer(_FINER), SWEEPS)
     unit = step if system.sample_time is None else float(system.sample_time)
     return tuple(
@@ -135,6 +137,57 @@ def worst_runs(
         )
         for i, (output, came) in enumerate(zip(outputs, np.split(first, len(own)), strict=True))
     )
+
+
+def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
+    """Let an adversary try to reach a bound, within seconds; `worst_runs` searches longer.
+
+    A bound holds however modes follow each other, and so he need keep no rules of switching. He
+    begins with the largest disturbances held in every mode, and with some drawn ones.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        That the bound is about.
+    bound : Bound
+        Whose disturbances act, and whose output is to become large.
+    """
+    free = replace(system, switching=ARBITRARY, clock=None, channels=tuple(bound.channels))
+    share, step = float(bound.share), fine_step(system)
+    rate = -np.log1p(-share) if system.time is Time.DISCRETE else share
+    steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _LONGEST))
+    game, aim = Game.of(free, bound.channels, step), _aim(free, bound.output, {})
+    rng = np.random.default_rng(0)
+    search = _Search(game, [aim], rng)
+    drawn = random_signals(game, steps, _DRAWN, rng)
+    signals, values = search.improved(held_signals(game, steps).beside(drawn))
+    first = values
+    for _ in range(_TURNS):
+        signals, values = search.again(signals, values)
+    (signals, values) = search.best(signals, values, 1)
+    unit = step if system.sample_time is None else float(system.sample_time)
+    return _run(free, game, bound.output, signals, unit, float(values[0]), first)
+
+
+def output_values(system: SwitchedSystem, output: Output, states: Array) -> Array:
+    """Return an output along a run for every row of it; shape (K + 1, r).
+
+    Tissue that can be lost pushes and never pulls.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        That the output is of.
+    output : Output
+        One of its outputs, or other rows over its state.
+    states : ndarray, shape (K + 1, n)
+        Of the run.
+    """
+    rows = np.array([row.floats()[0] for row in output.rows])
+    if system.contact is None:
+        return np.asarray(states @ rows.T)
+    values = np.asarray(deflected(states) @ rows.T)
+    return np.maximum(values, 0.0) if output.name in _PUSHED else values
 
 
 def _lengthened(game: Game, aim: Aim, signals: Signals, values: Array) -> tuple[Signals, Array]:
@@ -160,7 +213,7 @@ class _Search:
         count = len(self.aims)
         drawn = random_signals(self.game, steps, starts, self.rng)
         signals = Signals(np.tile(drawn.actions, count), np.tile(drawn.shares, (1, count, 1)))
-        return self._improved(signals)
+        return self.improved(signals)
 
     def again(self, signals: Signals, values: Array) -> tuple[Signals, Array]:
         """Keep the best runs, and improve what becomes of them by some changes."""
@@ -170,7 +223,7 @@ class _Search:
             self._children(kept.only(group), aim)
             for group, aim in zip(groups, self.aims, strict=True)
         ]
-        fresh, came = self._improved(_beside(parts))
+        fresh, came = self.improved(_beside(parts))
         every = kept.beside(fresh)
         # In the order of the aims again.
         mine = np.arange(len(came)).reshape(len(self.aims), -1) + len(reached)
@@ -190,7 +243,8 @@ class _Search:
         kept = np.concatenate([part[np.argsort(-values[part])[:count]] for part in parts])
         return signals.only(kept), values[kept]
 
-    def _improved(self, signals: Signals) -> tuple[Signals, Array]:
+    def improved(self, signals: Signals) -> tuple[Signals, Array]:
+        """Improve as many runs for each aim."""
         each = signals.actions.shape[1] // len(self.aims)
         aim = _joined([aim for aim in self.aims for _ in range(each)])
         return improve(self.game, aim, signals, SWEEPS)
@@ -294,40 +348,13 @@ def _grid(system: SwitchedSystem) -> tuple[float, int]:
     return step, int(np.clip(length / step, _FEWEST, _MOST))
 
 
-def _game(system: SwitchedSystem, step: float) -> Game:
-    motions = DisturbedMotions.of(system, system.channels, system.outputs[0], step)
-    contact = system.contact
-    flights, pulls = motions.flying, np.zeros((0, system.order))
-    if contact is not None:
-        flights = motions.flying[_free_modes(system)]
-        rows = [row.floats()[0] for row in contact.pulls]
-        pulls = np.array(rows) if rows else pulls
-    return Game(motions.touching, flights, pulls, Rules.of(system, step))
-
-
-def _free_modes(system: SwitchedSystem) -> Indices:
-    """Return the index of the free mode that takes the place of each mode without contact.
-
-    It is of the same controller, with the same gains, motor and delay: of all free modes the one
-    whose name has the most in common.
-    """
-    assert system.contact is not None
-    free = [mode.name.split("/") for mode in system.contact.free]
-    found = []
-    for mode in system.modes:
-        parts = mode.name.split("/")
-        common = [(names[0] == parts[0], len(set(names) & set(parts))) for names in free]
-        found.append(max(range(len(free)), key=lambda i: common[i]))
-    return np.array(found, dtype=np.int64)
-
-
 def _aim(system: SwitchedSystem, output: Output, allowed: Mapping[str, NDArray[np.bool_]]) -> Aim:
     rows = np.array([row.floats()[0] for row in output.rows])
     every = np.ones((len(system.modes), len(rows)), dtype=np.bool_)
     # Under free switching, any mode may take over at the very end.
     given = None if system.switching.is_arbitrary else allowed.get(output.name)
     # Tissue that can be lost pushes and never pulls.
-    pushes = system.contact is not None and output.name in ("force", DEFLECTION)
+    pushes = system.contact is not None and output.name in _PUSHED
     return Aim(rows[None], (every if given is None else given)[None], np.array([pushes]))
 
 
@@ -359,7 +386,7 @@ def _run(
     mode = game.rules.mode[signals.actions[:, 0]]
     if system.contact is not None:
         flies = game.flies(states[:-1])
-        mode = np.where(flies, len(system.modes) + _free_modes(system)[mode], mode)
+        mode = np.where(flies, len(system.modes) + free_modes(system)[mode], mode)
     bounds = np.array([float(channel.bound) for channel in system.channels])
     time = np.asarray(unit * np.arange(len(states)), dtype=float)
     shares = signals.shares[:, 0]

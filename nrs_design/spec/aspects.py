@@ -1,6 +1,7 @@
 """What makes an interaction design hard to prove, part by part, and the spec without a part.
 
-A spec without a part allows for less, so what is proved of it is a part of what was asked for.
+A spec without a part allows for less, so what is proved of it is a part of what was asked for; but
+for the sampling: without it, the law is taken to act at every moment.
 """
 
 from __future__ import annotations
@@ -29,7 +30,15 @@ def aspects_of(spec: InteractionDesignSpec) -> dict[str, Weakening]:
         found["ages of the force sample beyond the shortest"] = _shortest_delay
     if spec.coupling is not None:
         found["what the axes do to each other"] = _without_coupling
+        if spec.sampling is not None and all(
+            c.commands == "velocity" for c in spec.controllers.values()
+        ):
+            found["the sampling"] = _without_sampling
     return found
+
+
+def _without_sampling(spec: InteractionDesignSpec) -> InteractionDesignSpec:
+    return spec.model_copy(update={"sampling": None})
 
 
 def _without_coupling(spec: InteractionDesignSpec) -> InteractionDesignSpec:

@@ -6,7 +6,14 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    field_validator,
+    model_validator,
+)
 
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
@@ -72,6 +79,16 @@ def touched_in(contacts: Sequence[Contact]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for contact in contacts for name in names_in(contact)))
 
 
+_TOUCHED = (
+    Field(
+        default_factory=lambda data: (data.get("environment", ""),),
+        min_length=1,
+        description=_CONTACTS,
+    ),
+    AfterValidator(_distinct),
+)
+
+
 class CostWeights(SpecModel):
     """Weights of the two parts of the impedance cost (thesis 6.7)."""
 
@@ -120,11 +137,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
 
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
     environment: Label = Field(description=_ENVIRONMENT)
-    contacts: tuple[TouchedAtOnce, ...] = Field(
-        default_factory=lambda data: (data.get("environment", ""),),
-        min_length=1,
-        description=_CONTACTS,
-    )
+    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     desired_impedance: Impedance | None = Field(
         default=None,
         description="impedance to display in N*m*s/rad; default: limits.torque/limits.velocity",
@@ -152,8 +165,6 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         default_factory=CostWeights, description="weights of the design cost, no unit"
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
-
-    _contacts = field_validator("contacts")(_distinct)
 
     @field_validator("Kt")
     @classmethod
@@ -190,11 +201,7 @@ class ForceControllerSpec(AbstractControllerSpec):
 
     type: Literal["force"] = Field(description="force: u = Kp (Fd - F) + X_i, see offset")
     environment: Label = Field(description=_ENVIRONMENT)
-    contacts: tuple[TouchedAtOnce, ...] = Field(
-        default_factory=lambda data: (data.get("environment", ""),),
-        min_length=1,
-        description=_CONTACTS,
-    )
+    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: ForceGain | None = Field(
         default=None,
         description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
@@ -210,8 +217,6 @@ class ForceControllerSpec(AbstractControllerSpec):
         "or the measured position; none: u = Kp (Fd - F) alone",
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
-
-    _contacts = field_validator("contacts")(_distinct)
 
     @model_validator(mode="after")
     def _check_one_gain(self) -> ForceControllerSpec:
@@ -251,11 +256,7 @@ class IntegralControllerSpec(AbstractControllerSpec):
         "controller is active, w decays as idle_states says, and stays in the command meanwhile"
     )
     environment: Label = Field(description=_ENVIRONMENT)
-    contacts: tuple[TouchedAtOnce, ...] = Field(
-        default_factory=lambda data: (data.get("environment", ""),),
-        min_length=1,
-        description=_CONTACTS,
-    )
+    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: ForceGain | None = Field(
         default=None,
         description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
@@ -275,8 +276,6 @@ class IntegralControllerSpec(AbstractControllerSpec):
         "the slowest pole; chooses Ki",
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
-
-    _contacts = field_validator("contacts")(_distinct)
 
     @model_validator(mode="after")
     def _check_gains(self) -> IntegralControllerSpec:
@@ -305,15 +304,9 @@ class ParallelControllerSpec(AbstractControllerSpec):
         description="parallel: u = Xc + Kp (Fd - F) + the integral of Ki (Fd - F)"
     )
     environment: Label = Field(description=_ENVIRONMENT)
-    contacts: tuple[Label, ...] = Field(
-        default_factory=lambda data: (data.get("environment", ""),),
-        min_length=1,
-        description=_CONTACTS,
-    )
+    contacts: Annotated[tuple[Label, ...], *_TOUCHED]
     proportional_gain: ForceGain = Field(description="Kp in rad/(N*m)")
     integral_gain: IntegralForceGain = Field(description="Ki in rad/(N*m*s)")
-
-    _contacts = field_validator("contacts")(_distinct)
 
 
 class PositionControllerSpec(AbstractControllerSpec):

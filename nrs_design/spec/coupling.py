@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import Title
+from nrs_design.spec.fields import AxisCount, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
@@ -51,6 +51,11 @@ class CouplingSpec(SpecModel):
         default=None,
         description="largest norm of the gradient of the torques of gravity in N*m/rad, for kept "
         "contact; default: gravity is compensated, or the same, in all poses",
+    )
+
+    axes: AxisCount | None = Field(
+        default=None,
+        description="how many axes there are, for bounds under disturbances; a robot has three",
     )
 
     _bounds: RobotBounds | None = PrivateAttr(default=None)
@@ -100,17 +105,17 @@ class CouplingSpec(SpecModel):
 
     def _check_computed(self) -> None:
         """Refuse to declare what is computed."""
-        for key in ("inertia", "coriolis", "gravity_gradient"):
+        for key in ("inertia", "coriolis", "gravity_gradient", "axes"):
             if getattr(self, key) is not None:
                 raise fault(
-                    f"{key} is computed from the robot, and declared as well",
+                    f"{key} is that of the robot, and declared as well",
                     f"remove {key} or robot",
                     key,
                 )
 
 
 def check_coupling(
-    coupling: CouplingSpec | None, *, loaded: bool, others: tuple[str, ...], deflection: bool
+    coupling: CouplingSpec | None, *, loaded: bool, disturbed: bool, deflection: bool
 ) -> None:
     """Refuse a coupling of axes beside what it is not modelled with.
 
@@ -120,18 +125,19 @@ def check_coupling(
         Where the spec has one.
     loaded : bool
         Whether the actuator has a load_inertia.
-    others : tuple of str
-        Sections of the spec that exclude it.
+    disturbed : bool
+        Whether the spec has disturbances.
     deflection : bool
         Whether the coordinates are those of the deflection.
     """
     if coupling is None:
         return
-    if others:
+    if disturbed and coupling.robot is None and coupling.axes is None:
         raise fault(
-            f"axes that act on each other are not modelled with {others[0]}",
-            f"remove coupling or {others[0]}",
+            "a bound under disturbances depends on the number of axes, which is not given",
+            "add `axes: 3`, or remove disturbances",
             "coupling",
+            "axes",
         )
     if not loaded:
         raise fault(

@@ -19,6 +19,7 @@ NAME_PATTERN = "^[a-z0-9][a-z0-9._-]{0,63}$"
 LABEL_PATTERN = "^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
 HASH_PATTERN = "^[0-9a-f]{64}$"
 MAX_TITLE = 200
+MAX_AXES = 64
 # One environment that is touched, or several at once.
 Contact = str | tuple[str, ...]
 
@@ -84,6 +85,14 @@ def read_digits(value: object) -> int:
     return int(number)
 
 
+def read_axis_count(value: object) -> int:
+    """Read a number of axes, 1 to 64."""
+    number = read_exact(value)
+    if number.denominator != 1 or not 1 <= number <= MAX_AXES:
+        raise fault(f"{value} is not an integer from 1 to {MAX_AXES}", "write a number of axes")
+    return int(number)
+
+
 def read_title(value: object) -> str:
     """Read one line of printable text."""
     text = as_text(value)
@@ -118,6 +127,11 @@ Digits = Annotated[
     int,
     ReadBy(read_digits),
     WithJsonSchema({"type": "integer", "minimum": 1, "maximum": 7}),
+]
+AxisCount = Annotated[
+    int,
+    ReadBy(read_axis_count),
+    WithJsonSchema({"type": "integer", "minimum": 1, "maximum": MAX_AXES}),
 ]
 Name = Annotated[
     str, _text(NAME_PATTERN), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})

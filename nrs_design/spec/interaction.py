@@ -186,6 +186,7 @@ class InteractionDesignSpec(SpecModel):
                 self.sampling,
                 self.controllers,
                 given_loop=self.motion_loop.transfer_function is not None,
+                among_axes=self.coupling is not None,
                 preloaded=[
                     name
                     for name, environment in self.environments.items()
@@ -196,9 +197,7 @@ class InteractionDesignSpec(SpecModel):
             lambda: check_coupling(
                 self.coupling,
                 loaded=self.actuator.load_inertia is not None,
-                others=tuple(
-                    name for name in ("sampling", "disturbances") if getattr(self, name) is not None
-                ),
+                disturbed=self.disturbances is not None,
                 deflection=self.coordinates == "deflection",
             ),
             lambda: check_memories(self.controllers, self.environments, self.coordinates),

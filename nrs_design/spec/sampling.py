@@ -216,6 +216,7 @@ def check_motor(
     controllers: Mapping[str, ControllerSpec],
     *,
     given_loop: bool,
+    among_axes: bool = False,
     preloaded: Collection[str] = (),
 ) -> None:
     """Refuse ranges and a load of the actuator where the modes do not take them up.
@@ -230,6 +231,8 @@ def check_motor(
         By name.
     given_loop : bool
         Whether the spec states the closed motion loop itself.
+    among_axes : bool
+        Whether other axes act on this one, against the inertia of its drive.
     preloaded : collection of str
         Touched environments with a preload.
     """
@@ -263,7 +266,7 @@ def check_motor(
                 "actuator",
                 name,
             )
-        if sampling is not None and name in loaded:
+        if sampling is not None and name in loaded and not among_axes:
             raise fault(
                 "the load of the motor is not modelled in the sampled loop",
                 "leave load_inertia or sampling out",

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import difflib
 import functools
-import math
 import re
 from fractions import Fraction
 
@@ -73,11 +72,6 @@ class Unit:
     factor: Fraction
     pi_power: int
     dimension: tuple[int, ...]
-
-    @property
-    def si_factor(self) -> float:
-        """Factor to SI as a float."""
-        return float(self.factor) * math.pi**self.pi_power
 
     def times(self, other: Unit, power: int = 1) -> Unit:
         """Multiply by the ``power``-th power of another unit."""

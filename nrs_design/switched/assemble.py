@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
     from nrs_design.spec.sampling import SamplingSpec
+    from nrs_design.switched.coupled import AxesCoupling
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
@@ -135,7 +136,7 @@ def assemble(
     """
     from nrs_design.switched.close_loop import close_loop
     from nrs_design.switched.commanded import with_command
-    from nrs_design.switched.coupled import AxesCoupling, couple_axes
+    from nrs_design.switched.coupled import couple_axes
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
     from nrs_design.switched.logic_assumptions import logic_texts
@@ -168,9 +169,8 @@ def assemble(
                 )
             joint = Joint.of(plant, design.motion)
             system = with_command(system, spec, spec.disturbances, loop, joint, touched)
-        if spec.coupling is not None and plant.load_inertia is not None:
-            declared = AxesCoupling.of(spec.coupling, plant.load_inertia)
-            system = couple_axes(system, declared.scaled(scale))
+        if (coupling := _coupling_of(spec, plant, scale)) is not None:
+            system = couple_axes(system, coupling)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     period = None if spec.sampling is None else spec.sampling.outer
@@ -205,7 +205,17 @@ def _assemble_sampled(
     from nrs_design.switched.sampled_loop import close_sampled_loop
 
     scaled, boxes = plant.scaled(scale, spec.touched), gain_boxes(spec, design, scale)
-    return close_sampled_loop(spec, sampling, scaled, design, boxes)
+    coupling = _coupling_of(spec, plant, scale)
+    return close_sampled_loop(spec, sampling, scaled, design, boxes, coupling)
+
+
+def _coupling_of(spec: InteractionDesignSpec, plant: Plant, scale: Fraction) -> AxesCoupling | None:
+    """Return what the links do to each axis, with its ranges scaled; None if that is not said."""
+    if spec.coupling is None or plant.load_inertia is None:
+        return None
+    from nrs_design.switched.coupled import AxesCoupling
+
+    return AxesCoupling.of(spec.coupling, plant.load_inertia).scaled(scale)
 
 
 def _check_scale(scale: Fraction) -> None:

@@ -6,7 +6,7 @@ docs/certificates/coupled-axes.md derives what is made of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -23,8 +23,14 @@ from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumptions import UNCOUPLED
 
 DECLARED = "declared, not computed from a robot"
+# Of a robot.
+JOINTS = 3
 # Of a bound that is multiplied by a speed.
 DIGITS = 6
+AT_ONCE = kinds.PERIOD.says(
+    "All axes are sampled at the same moments, and the commands of all are held in between.",
+    "one clock for all axes",
+)
 OMEGA, DELTA = "omega [rad/s]", "delta [rad]"
 Row = list[Fraction]
 
@@ -50,6 +56,8 @@ class AxesCoupling:
         Where the numbers come from, for the assumptions.
     poses : str
         In which poses they hold.
+    count : int or None
+        How many axes there are, if that is known.
     """
 
     drive: Fraction
@@ -60,6 +68,7 @@ class AxesCoupling:
     gravity_gradient: Fraction | None = None
     source: str = DECLARED
     poses: str = "all poses that are used"
+    count: int | None = None
 
     @classmethod
     def of(cls, spec: CouplingSpec, drive: Fraction) -> AxesCoupling:
@@ -89,6 +98,7 @@ class AxesCoupling:
             None if coriolis is None else coriolis.exact,
             None if spec.speed is None else spec.speed.text,
             None if gradient is None else gradient.exact,
+            count=spec.axes,
         )
 
     @classmethod
@@ -105,7 +115,7 @@ class AxesCoupling:
             drive,
             bounds.lightest,
             bounds.heaviest,
-            None if speed is None else _short(bounds.velocity_torques * speed.not_below),
+            None if speed is None else not_below(bounds.velocity_torques * speed.not_below),
             None if speed is None else speed.text,
             bounds.gravity_gradient if at_rest else None,
             f"{COMPUTED} from the spec of robot {bounds.name}, SHA-256 "
@@ -113,6 +123,7 @@ class AxesCoupling:
             "gravity and base tilt, of rigid links without friction, counter-masses and springs; "
             "`nrs-design verify --bounds` computes it again",
             f"all poses with {bounds.workspace}, which are those that are used",
+            JOINTS,
         )
 
     @property
@@ -151,7 +162,8 @@ def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSyste
     Parameters
     ----------
     system : SwitchedSystem
-        One axis in the physical states of its motion loop, in continuous time.
+        One axis in the physical states of its motion loop, in continuous time; what disturbs it
+        goes through the links as its motor does.
     coupling : AxesCoupling
         What is declared.
 
@@ -166,15 +178,23 @@ def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSyste
     mean, radius = (low + high) / 2, (high - low) / 2
     free = () if system.contact is None else system.contact.free
     every = (*system.modes, *free)
-    rows = [mode.A.fractions()[omega] for mode in every]
+    channels = [
+        [column.fractions()[omega][0] for column in channel.columns] for channel in system.channels
+    ]
+    disturbed = [[column[k] for column in channels] for k in range(len(every))]
+    rows = [
+        [*mode.A.fractions()[omega], *others] for mode, others in zip(every, disturbed, strict=True)
+    ]
+    quiet = [Fraction(0) for _ in channels]
     unit = [Fraction(int(i == omega)) for i in range(system.order)]
     parts = [("the inertia of the links", [[radius * a for a in row] for row in rows])]
     if coupling.coriolis is not None:
         size = high * coupling.coriolis / coupling.drive
-        parts.append(("Coriolis torques", [[size * a for a in unit]] * len(every)))
+        parts.append(("Coriolis torques", [[*(size * a for a in unit), *quiet]] * len(every)))
     if coupling.gravity_gradient is not None:
         size = high * coupling.gravity_gradient / coupling.drive
-        parts.append(("gravity", [_deflection(system, unit, size)] * len(every)))
+        row = [*_deflection(system, unit, size), *quiet]
+        parts.append(("gravity", [row] * len(every)))
     column = RationalMatrix.from_rows([[entry] for entry in unit])
     couplings = (
         Coupling(
@@ -187,28 +207,57 @@ def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSyste
     contact = system.contact
     if contact is not None:
         contact = replace(contact, free=_slowed(contact.free, omega, mean))
-    assumptions = [
-        text
-        for known in system.assumptions
-        for text in (_texts(coupling) if known == UNCOUPLED else (known,))
-    ]
     return replace(
         system,
         modes=_slowed(system.modes, omega, mean),
         contact=contact,
+        channels=tuple(
+            replace(
+                channel,
+                columns=tuple(_slowed_rows(column, omega, mean) for column in channel.columns),
+            )
+            for channel in system.channels
+        ),
         couplings=tuple(couplings),
-        assumptions=tuple(assumptions),
+        assumptions=among_axes(system.assumptions, coupling),
+        axes=coupling.count if system.channels else None,
+    )
+
+
+def among_axes(
+    assumptions: Iterable[str], coupling: AxesCoupling, *, sampled: bool = False
+) -> tuple[str, ...]:
+    """Return assumptions with what is known of the axes in the place of their not being coupled.
+
+    Parameters
+    ----------
+    assumptions : iterable of str
+        Of one axis.
+    coupling : AxesCoupling
+        What is declared.
+    sampled : bool
+        Whether a processor runs the law.
+    """
+    return tuple(
+        text
+        for known in assumptions
+        for text in (
+            (*_texts(coupling), *((AT_ONCE,) if sampled else ()))
+            if known == UNCOUPLED
+            else (known,)
+        )
     )
 
 
 def _slowed(modes: tuple[Mode, ...], omega: int, mean: Fraction) -> tuple[Mode, ...]:
     """Return the modes with the middle of the range of inertia on their axis."""
-    slowed = []
-    for mode in modes:
-        A = mode.A.fractions()
-        A[omega] = [mean * entry for entry in A[omega]]
-        slowed.append(Mode(mode.name, RationalMatrix.from_rows(A)))
-    return tuple(slowed)
+    return tuple(Mode(mode.name, _slowed_rows(mode.A, omega, mean)) for mode in modes)
+
+
+def _slowed_rows(M: RationalMatrix, omega: int, mean: Fraction) -> RationalMatrix:
+    rows = M.fractions()
+    rows[omega] = [mean * entry for entry in rows[omega]]
+    return RationalMatrix.from_rows(rows)
 
 
 def _index(system: SwitchedSystem, state: str) -> int:
@@ -225,13 +274,30 @@ def _index(system: SwitchedSystem, state: str) -> int:
 def _deflection(system: SwitchedSystem, omega: Row, size: Fraction) -> Row:
     """Return the row of the bound on gravity: the deflection is how far the axis is from rest."""
     delta = _index(system, DELTA)
-    if system.contact is not None or any(m.A.fractions()[delta] != omega for m in system.modes):
+    moves = all(m.A.fractions()[delta] == omega for m in system.modes)
+    check_gravity(losable=system.contact is not None or not moves)
+    return [size * int(i == delta) for i in range(system.order)]
+
+
+def check_gravity(*, losable: bool) -> None:
+    """Refuse a change of gravity where there is no position of rest.
+
+    Parameters
+    ----------
+    losable : bool
+        Whether contact may be lost.
+
+    Raises
+    ------
+    AssemblyError
+        If it may.
+    """
+    if losable:
         raise AssemblyError(
             "that gravity changes is modelled where contact is kept, and has a position of rest",
             remedy="use `contact: kept`, or remove gravity_gradient",
             at=("coupling", "gravity_gradient"),
         )
-    return [size * int(i == delta) for i in range(system.order)]
 
 
 def _texts(coupling: AxesCoupling) -> Iterator[Assumption]:
@@ -287,6 +353,6 @@ def _shortly(coupling: AxesCoupling) -> str:
     return DECLARED if coupling.source == DECLARED else "computed as the inertia is, in those poses"
 
 
-def _short(number: Fraction) -> Fraction:
-    """Return a number of few digits that is not below."""
-    return parse_exact(upper(number, DIGITS))
+def not_below(number: Fraction) -> Fraction:
+    """Return a number of few digits that is not below one that is not negative."""
+    return parse_exact(upper(number, DIGITS)) if number else number

@@ -113,12 +113,16 @@ class Box:
             axis = middles[0]
             low, high = (known[*at[:axis], end, *at[axis + 1 :]] for end in ends[axis])
             found = known[tuple(at)] = rows_at(dict(zip(symbols, at, strict=True)))
-            if any(
-                2 * entry != a + b
-                for row, below, above in zip(found, low, high, strict=True)
-                for entry, a, b in zip(row, below, above, strict=True)
-            ):
+            if not all(_is_mean(*rows) for rows in zip(found, low, high, strict=True)):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
+
+
+def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:
+    """Tell whether a row is the mean of two; most rows do not change at all along an axis."""
+    if row == a == b:
+        return True
+    triples = zip(row, a, b, strict=True)
+    return all(entry == x if x == y else 2 * entry == x + y for entry, x, y in triples)
 
 
 def _neighbors(interval: Interval) -> list[tuple[Fraction, ...]]:

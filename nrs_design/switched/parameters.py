@@ -6,7 +6,7 @@ corners. What decreases in all corners in continuous time therefore decreases in
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import product
 
@@ -18,7 +18,6 @@ from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
-Values = Mapping[str, Fraction]
 
 
 @dataclass(frozen=True, slots=True)

@@ -173,8 +173,27 @@ class Frame:
     ) -> list[LinearForm]:
         """Return the map of one period, and below it how large each rounding is at most.
 
+        Without the last of `rows_and_slip`.
+
+        Parameters
+        ----------
+        law, delay, values, turn
+            As there.
+        """
+        return self.rows_and_slip(law, delay, values, turn)[:-1]
+
+    def rows_and_slip(
+        self,
+        law: SampledLaw,
+        delay: int,
+        values: Mapping[str, Fraction],
+        turn: Turn = Turn.BOTH,
+    ) -> list[LinearForm]:
+        """Return the map of one period, and below it how large each rounding is at most.
+
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
-        of a rounding, the size is at most that of its row below.
+        of a rounding, the size is at most that of its row below. The last row is the slip: by how
+        much the speed is not the one that the motor comes to under its command.
 
         Parameters
         ----------
@@ -214,7 +233,7 @@ class Frame:
             reference = after.get("reference", after.get("offset", nothing))
             reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
             sizes |= step.other_sizes(retuned="a" in values)
-        speed, moved = self._move(drive, at, values)
+        speed, moved, slip = self._move(drive, at, values)
         delta = combine((ONE, at.delta), (ONE, moved))
         first = [reference] if self.integrates else []
         if self.integrates and self.idle is None:
@@ -230,6 +249,7 @@ class Frame:
             *ages[: self.longest_delay],
             delta,
             *(sizes.get(name, nothing) for name in shares),
+            slip,
         ]
 
     def _step(
@@ -258,13 +278,14 @@ class Frame:
 
     def _move(
         self, drive: LinearForm, at: _Signals, values: Mapping[str, Fraction]
-    ) -> tuple[LinearForm, LinearForm]:
-        """Return the speed and the way of the motor under a command, less friction."""
+    ) -> tuple[LinearForm, LinearForm, LinearForm]:
+        """Return speed and way of the motor under a command, less friction, and the slip."""
         Km, E, tau = values["Km"], values["E"], self.time_constant
         s = values["s"] if tau is None else tau * (1 - E)
         taken = combine((ONE, drive), (ONE, at.friction))
         moved = combine((s, at.omega), (Km * (self.period - s), taken))
-        return combine((E, at.omega), (Km * (1 - E), taken)), moved
+        speed = combine((E, at.omega), (Km * (1 - E), taken))
+        return speed, moved, combine((ONE, at.omega), (-Km, taken))
 
 
 # The inputs, as their forms are called below.

@@ -20,7 +20,7 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """One mode, the columns of inputs and roundings, and the rows that bound the roundings.
+    """One mode, the columns of inputs and roundings, the rows that bound these, and the slip.
 
     Of two periods, it says whether it is in force where a round begins.
     """
@@ -28,6 +28,7 @@ class Motion:
     mode: Mode
     columns: tuple[RationalMatrix, ...]
     sizes: tuple[LinearForm, ...]
+    slip: LinearForm
     begins: bool = True
 
     @classmethod
@@ -39,17 +40,18 @@ class Motion:
         name : str
             Of the mode.
         rows : sequence of LinearForm
-            As `Frame.rows` gives them.
+            As `Frame.rows_and_slip` gives them.
         n : int
             Number of states.
         begins : bool
             As for the class.
         """
+        *rows, slip = rows
         moves, width = rows[:n], len(rows[0])
         columns = ([[row[i]] for row in moves] for i in range(n, width))
         mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in moves]))
         parts = tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:])
-        return cls(mode, *parts, begins)
+        return cls(mode, *parts, slip, begins)
 
 
 def channels_of(
@@ -100,12 +102,25 @@ def roundings_of(
     motions : sequence of Motion
         All modes, those of free motion last.
     """
-    n, named = len(frame.states), [channel.name for channel in channels]
-    kept = [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
+    kept = known_entries(frame, channels)
     for j, name in enumerate(frame.roundings):
         rows = ([[motion.sizes[j][i] for i in kept]] for motion in motions)
         columns = (motion.columns[len(INPUTS) + j] for motion in motions)
         yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
+
+
+def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
+    """Return where the states and the declared disturbances are in a form of a frame.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of all modes.
+    channels : sequence of Channel
+        The disturbances.
+    """
+    n, named = len(frame.states), [channel.name for channel in channels]
+    return [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
 
 
 def outputs_of(

@@ -22,16 +22,18 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Clock, Contact, SwitchedSystem, Time
+from nrs_design.proof.system import Clock, Contact, Coupling, SwitchedSystem, Time
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.touched import FREE
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
+from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
 from nrs_design.switched.sampled_gains import SampledGains
 from nrs_design.switched.sampled_inputs import (
@@ -51,6 +53,7 @@ def close_sampled_loop(
     plant: Plant,
     design: ControllerDesign,
     boxes: Mapping[str, GainBox],
+    coupling: AxesCoupling | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of the sampled loop.
 
@@ -72,18 +75,22 @@ def close_sampled_loop(
         Gains that ship.
     boxes : mapping
         Where the gains of controllers may be, by name.
+    coupling : AxesCoupling, optional
+        What the links do to each axis.
 
     Raises
     ------
     AssemblyError
-        If the modes do not share one state, or single precision loses a coefficient.
+        If the modes do not share one state, single precision loses a coefficient, or a period is
+        too long for what the links do.
     """
     _check_periods(sampling)
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
     ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
-    frame = _frame(spec, sampling, design, [item.law for item in laws.values()], ranges)
+    slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
+    frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
     turns = _turns(sampling)
-    loop = _Loop(frame, sampling.delay, motor_box(ranges, frame.period), turns)
+    loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period), turns)
     touched = plant.among(design.contacts)
     parts = {
         c.name: loop.in_contact(
@@ -113,22 +120,31 @@ def close_sampled_loop(
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
+    texts: tuple[str, ...] = (
+        *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
+        *at_once_texts(touched),
+    )
+    couplings: tuple[Coupling, ...] = ()
+    if coupling is not None:
+        texts = among_axes(texts, coupling, sampled=True)
+        couplings = tuple(
+            couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
+        )
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
-        (
-            *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
-            *at_once_texts(touched),
-        ),
+        texts,
         assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),
         losable,
         frame.period,
         channels,
         outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else (),
         tuple(roundings_of(frame, channels, every)),
+        couplings,
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
+        axes=None if coupling is None or not channels else coupling.count,
     )
 
 
@@ -217,7 +233,7 @@ class _Loop:
         """Yield the motions at samples of the motion loop alone, which no force reaches."""
 
         def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
-            return self.frame.rows(law, 0, values, Turn.MOTION)
+            return self.frame.rows_and_slip(law, 0, values, Turn.MOTION)
 
         for corner, rows in self.motor.corners(rows_at, name):
             yield Motion.of(corner, rows, len(self.frame.states), begins=False)
@@ -241,7 +257,7 @@ class _Loop:
     def _rows(
         self, gains: SampledGains, delay: int, turn: Turn, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
-        return self.frame.rows(gains.at(values), delay, values, turn)
+        return self.frame.rows_and_slip(gains.at(values), delay, values, turn)
 
 
 def _have_inertia(laws: Iterable[SampledAdmittance]) -> bool:

@@ -1,6 +1,5 @@
 import json
 import re
-import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -15,6 +14,7 @@ from nrs_design.exporters import FORMATS, ROBOT_FORMATS
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
+from tests.support import program_named
 
 SPECS = Path(__file__).parents[2] / "specs"
 SPEC = SPECS / "neuroboscope/soft-tissue.nrs.yaml"
@@ -299,7 +299,7 @@ def test_the_export_of_another_spec_is_not_overwritten(export, capsys, sampled, 
 
 def test_two_laws_make_one_program(export, sampled):
     """Tests of both are beside them, and neither brings a `main` that nobody asked for."""
-    cc = shutil.which("cc") or pytest.skip("there is no compiler cc")
+    cc = program_named("cc")
     spec, certificate = sampled
     Path("other.nrs.yaml").write_text(Path(spec).read_text().replace("every-2-ms", "other"))
     for options in ((spec, "--certificate", certificate), ("other.nrs.yaml",)):

@@ -129,3 +129,38 @@ def test_help_has_an_example_and_stays_lean():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0
     assert "nrs-design reproduce --html" in done.stdout
+
+
+@pytest.mark.slow
+def test_figures_are_written_beside_the_table_and_linked(tmp_path):
+    page, folder = tmp_path / "reports" / "table.html", tmp_path / "reports" / "the figures"
+    command = [sys.executable, "-m", "nrs_design", "reproduce", "--json", "--html", str(page)]
+    done = subprocess.run(
+        [*command, "--figures", str(folder)], capture_output=True, text=True, check=True
+    )
+    found = json.loads(done.stdout)["figures"]
+    assert [name for one in found for name in one["figures"]] == [f"6.{n}" for n in range(14, 35)]
+    gallery = folder / "figures.html"
+    assert 'href="the%20figures/figures.html"' in page.read_text(encoding="utf-8")
+    first = gallery.read_bytes()
+    runs = {name for one in found for name in one["runs"]}
+    assert {path.name for path in folder.iterdir()} == {"figures.html", *runs}
+    head = (folder / "figure-6-14.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert head.startswith("time_s,angle_rad,velocity_rad_s,torque_Nm,")
+    # Over what is ours, and the same bytes.
+    again = [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--figures", str(folder)]
+    told = subprocess.run(again, capture_output=True, text=True, check=True)
+    assert told.stdout == ""
+    assert gallery.read_bytes() == first
+
+
+def test_figures_go_over_nothing_foreign(tmp_path):
+    (tmp_path / "figures.html").write_text("mine")
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--figures", str(tmp_path)],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error[NRS005]")
+    assert (tmp_path / "figures.html").read_text() == "mine"

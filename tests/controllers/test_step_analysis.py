@@ -10,10 +10,10 @@ from nrs_design.controllers.step_analysis import (
     check_range,
     linear_forms,
     rounded_terms,
-    term_counts,
 )
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import combine, coordinates
+from tests.controllers.roundings import term_counts
 from tests.exporters.programs import LAWS, law
 
 ONE = Fraction(1)

@@ -15,12 +15,12 @@ from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_analysis import (
     linear_forms,
-    term_counts,
 )
 from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
 from nrs_design.controllers.step_parts import StepFrame, StepLimits
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.switched.sampled_frame import INPUTS, Frame
+from tests.controllers.roundings import term_counts
 
 ONE = Fraction(1)
 E, TAU, KM = Fraction("0.9446"), Fraction("0.0351"), Fraction("4.8417e-4")

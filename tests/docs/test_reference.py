@@ -56,7 +56,7 @@ def test_every_rule_and_verdict_is_listed():
 def test_the_library_is_listed_where_it_is_defined():
     page = library_page()
     assert page.count(":::") == len(nrs_design.__all__)
-    assert "::: nrs_design.api.certify" in page
+    assert "::: nrs_design.api.matrices.certify" in page
 
 
 def test_a_public_name_without_docstring_stops_the_build():

@@ -1,12 +1,9 @@
 """Laws of every shape, and the compilers that make programs of them."""
 
-import shutil
 import subprocess
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-
-import pytest
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
@@ -15,6 +12,7 @@ from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
 from nrs_design.controllers.step_parts import StepFrame, StepLimits
+from tests.support import program_named
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
@@ -85,11 +83,8 @@ LAWS = {
 
 
 def compiler(name="gcc"):
-    """Return a program, or skip the test that needs it."""
-    found = shutil.which(name)
-    if found is None:
-        pytest.skip(f"there is no {name} on this machine")
-    return found
+    """Return a program that builds, runs or examines exported C."""
+    return program_named(name)
 
 
 def run(*command: str | Path) -> subprocess.CompletedProcess[str]:

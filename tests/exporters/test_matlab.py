@@ -1,7 +1,6 @@
 """MAT-files, read back by SciPy and by GNU Octave."""
 
 import re
-import shutil
 import subprocess
 from fractions import Fraction
 
@@ -11,11 +10,7 @@ import scipy.io
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.exporters.matlab import render
-from tests.support import ROOT
-
-octave = pytest.mark.skipif(
-    shutil.which("octave-cli") is None, reason="GNU Octave is not installed"
-)
+from tests.support import ROOT, program_named
 
 
 @pytest.fixture(params=["continuous_export", "sampled_export"])
@@ -78,20 +73,18 @@ def octave_lines():
 def run_octave(export, folder, lines):
     (folder / "soft-tissue.mat").write_bytes(render(export)[".mat"])
     (folder / "check.m").write_text(lines)
-    command = ["octave-cli", "--no-init-file", "check.m"]
+    command = [program_named("octave-cli"), "--no-init-file", "check.m"]
     done = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, check=True, timeout=60
     )
     return done.stdout.splitlines()
 
 
-@octave
 def test_octave_checks_the_inequality(export, tmp_path):
     modes = [f"{mode.name} 1" for mode in export.certificate.system.modes]
     assert run_octave(export, tmp_path, octave_lines()) == ["verdict: PROVED", *modes]
 
 
-@octave
 def test_octave_sees_a_wrong_matrix(export, tmp_path):
     spoiled = octave_lines().replace("A = d.modes(i).A;", "A = 2*eye(rows(Q)) - d.modes(i).A;")
     modes = [f"{mode.name} 0" for mode in export.certificate.system.modes]

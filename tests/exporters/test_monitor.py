@@ -1,8 +1,6 @@
 """The monitor in C reports first what `audit` finds in the log of the same run."""
 
 import ctypes
-from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -16,7 +14,7 @@ from nrs_design.exporters.monitor import KINDS, header_text, render, source_text
 from nrs_design.exporters.monitor_limits import limits_of
 from nrs_design.exporters.program import Program
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
-from nrs_design.spec import parse_spec, read_spec
+from tests.exporters.monitored import TEXT, spec_with
 from tests.exporters.programs import (
     CORTEX,
     LAWS,
@@ -29,10 +27,8 @@ from tests.exporters.programs import (
     run,
 )
 from tests.identification import runs
-from tests.support import ROBOT, SOFT_TISSUE
 
 LAW = LAWS["inertia"]
-TEXT = SOFT_TISSUE.read_text().replace("bandwidth: 2 Hz", "bandwidth: 2 Hz\n  command: 3000 rpm")
 # Of the checks of `audit`, what the monitor calls them.
 SAME = {
     "stiffness": {"STIFFNESS"},
@@ -42,14 +38,6 @@ SAME = {
     "force": {"FORCE"},
 }
 WINDOW = 0.5
-
-
-def spec_with(rules="arbitrary", text=TEXT):
-    """The nominal tissue where there are rules: a dwell time and a range exclude each other."""
-    if rules != "arbitrary":
-        text = text.replace("switching: arbitrary", f"switching: {rules}")
-        text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
-    return parse_spec(text)
 
 
 class Input(ctypes.Structure):
@@ -173,17 +161,6 @@ def test_it_reports_first_what_audit_finds(tmp_path, monitor, rules, data):
     assert begin <= time <= begin + longest
 
 
-def test_what_is_monitored_is_what_the_spec_says(monitor):
-    """Thesis 6.1 and 6.3.1.1: 720.56 to 768.17 N/m at 0.24 m, 0.3 N m."""
-    limits = monitor(spec_with("{dwell_time: 2.501 s, longest_dwell_time: 5.001 s}")).limits
-    assert limits.stays == ((1251, 2500), (1251, 2500))
-    limits = monitor(spec_with()).limits
-    (pair,) = limits.stiffness[0]
-    assert [float(k) for k in pair] == pytest.approx([720.56 * 0.24**2, 768.17 * 0.24**2])
-    assert limits.torque <= Fraction(3, 10) < limits.torque * (1 + Fraction(1, 2**22))
-    assert (limits.window, limits.age, limits.command) == (250, (0, 1), 3000)
-
-
 def test_one_sample_at_a_time(monitor):
     """What no log of `audit` has: the age of the force, steps of time, what is no number."""
     watching = monitor(spec_with())
@@ -211,18 +188,6 @@ def test_one_sample_at_a_time(monitor):
         assert watching.step() == kind
     watching.begin()
     assert watching.step() == "NONE"
-
-
-def test_lost_contact_that_the_proof_covers(tmp_path, sampled_export):
-    """Without a proof, what the spec asks for counts."""
-    record = sampled_export.record.model_copy(update={"verdict": "unproved", "unproved": "so"})
-    export = replace(sampled_export, record=record)
-    spec = parse_spec(f"{TEXT}contact: losable\n")
-    assert not limits_of(replace(export, spec=spec), ("insertion",)).contact_kept
-    assert limits_of(replace(export, spec=spec_with()), ("insertion",)).contact_kept
-    covered = replace(sampled_export, spec=spec_with())
-    assert not limits_of(covered, ("insertion",)).contact_kept
-    assert limits_of(replace(covered, certificate=None), ("insertion",)).contact_kept
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.005])
@@ -253,13 +218,6 @@ def test_a_stiffness_in_contact_that_may_be_lost(monitor, stiffness, kind):
     assert [watching.step(angle=x, torque=stiffness * x) for x in angle][-1] == kind
 
 
-def test_free_modes_of_force_control_are_covered(sampled_export):
-    """Their proof is of an ordinary kind: it knows them as modes, not as a loss of contact."""
-    spec = read_spec(ROBOT / "force-limit-sampled.nrs.yaml").spec
-    export = replace(sampled_export, spec=spec, certificate=None)
-    assert not limits_of(export, tuple(spec.controllers)).contact_kept
-
-
 def test_what_is_left_out_is_said(sampled_export):
     files = render(sampled_export)
     words = " ".join(files["_monitor.h"].decode().replace("\n *", " ").split())
@@ -272,32 +230,6 @@ def test_what_is_left_out_is_said(sampled_export):
         assert text in words
     for kind in KINDS:
         assert f"_LEFT_{kind} " in words
-
-
-def test_a_tissue_that_remembers_is_not_judged(sampled_export):
-    spec = read_spec(ROBOT / "nose.nrs.yaml").spec
-    limits = limits_of(replace(sampled_export, spec=spec), tuple(spec.controllers))
-    assert set(limits.stiffness) == {()}
-    assert [text for text in limits.left_out if "remembers" in text]
-
-
-def test_rules_that_name_contacts_are_not_followed(sampled_export):
-    spec = spec_with("{transitions: [[insertion, withdrawal]]}")
-    limits = limits_of(replace(sampled_export, spec=spec), LAW.modes)
-    assert limits.follows == ((True, True), (False, True))
-    rules = spec.switching.model_copy(update={"transitions": (("insertion/a", "withdrawal/b"),)})
-    named = replace(sampled_export, spec=spec.model_copy(update={"switching": rules}))
-    limits = limits_of(named, LAW.modes)
-    assert limits.follows == ((True, True), (True, True))
-    assert [text for text in limits.left_out if "name contacts" in text]
-
-
-@pytest.mark.parametrize(("period", "window"), [("0.05", 20), ("0.002", 250), ("0.0001", 500)])
-def test_a_window_is_neither_too_short_nor_too_long(sampled_export, period, window):
-    time = sampled_export.record.sample_time.model_copy(update={"exact": period})
-    record = sampled_export.record.model_copy(update={"sample_time": time})
-    export = replace(sampled_export, record=record, spec=spec_with())
-    assert limits_of(export, LAW.modes).window == window
 
 
 def test_it_compiles_for_the_processor_and_links_to_nothing(tmp_path, sampled_export, monitor):

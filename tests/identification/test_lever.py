@@ -25,6 +25,7 @@ def test_no_arm():
         ("-0.24 m", False, DataError, "not positive"),
         ("0.24", False, DataError, "unit"),
         ("0.24 N", False, DataError, "not a length"),
+        ("240 m", False, DataError, "longer than any arm"),
     ],
 )
 def test_bad_arm(text, rotational, error, reason):

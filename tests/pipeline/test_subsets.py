@@ -3,9 +3,10 @@
 import pytest
 
 from nrs_design.pipeline import run_certification
-from nrs_design.pipeline.subsets import run_subsets
+from nrs_design.pipeline.subsets import are_wanted, find_subsets, run_subsets, subset_lines
 from nrs_design.search.certify import Limits, Verdict
 from nrs_design.spec import read_spec
+from tests.search.support import TEXT
 from tests.support import SOFT_TISSUE
 
 
@@ -40,3 +41,38 @@ def test_axes_that_are_not_proved_together_are_proved_alone(tmp_path):
     assert result.certification.verdict is Verdict.INCONCLUSIVE
     found = run_subsets(result, Limits(optimize_rate=False, max_degree=2))
     assert ("what the axes do to each other",) in [subset.left_out for subset in found]
+
+
+HEAVY = (
+    TEXT.replace("GAIN, time_constant: TAU", "4.8417e-4 rad/s/rpm, time_constant: 0.0351 s, LOAD")
+    .replace("LOAD", "load_inertia: 1.213 kg*m^2")
+    .replace("{nominal: LOW N*m/rad, range: [LOW N*m/rad, HIGH N*m/rad]}", "43 N*m/rad")
+    .replace("CONTROLLERS", "  c: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: BT}")
+    .replace("BT", "2 N*m*s/rad")
+    + "sampling: {period: 2 ms, delay: 1}\ncontact: kept\n"
+    "coupling: {inertia: [0 kg*m^2, 1.5 kg*m^2], axes: 3}\ndisturbances: {command: 8 deg/s}\n"
+)
+
+
+def test_axes_in_the_sampled_loop_are_proved_without_one_or_the_other(tmp_path):
+    """Nobody has to ask for the list: it is the answer, with what each statement needs besides."""
+    path = tmp_path / "heavy.nrs.yaml"
+    path.write_text(HEAVY, encoding="utf-8")
+    result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
+    assert result.certification.verdict is Verdict.INCONCLUSIVE
+    assert are_wanted(result)
+    links, sampling = find_subsets(result)
+    assert links.left_out == ("what the axes do to each other",)
+    assert "The axes of the robot do not act on each other." in links.needs
+    assert sampling.left_out == ("the sampling",)
+    assert sampling.claim.startswith("For any number of axes that act on each other")
+    assert any(text.startswith("Continuous time") for text in sampling.needs)
+    first, second = subset_lines((links, sampling))
+    assert first.startswith("proved without what the axes do to each other: Every solution")
+    assert "Then taken for granted besides: " in second
+    (nothing,) = subset_lines(())
+    assert nothing.startswith("nothing is proved")
+
+
+def test_no_list_is_made_where_nobody_asked():
+    assert find_subsets(run_certification(read_spec(SOFT_TISSUE))) is None

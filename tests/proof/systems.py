@@ -269,19 +269,27 @@ def pushed(system: SwitchedSystem, push: Entry = "1/4") -> SwitchedSystem:
 def leaning(system: SwitchedSystem, *shares: Entry) -> SwitchedSystem:
     """Masses that bounce, and speed each other up by a share of what each would do by itself.
 
-    A second share is that of the speeds. In free motion, as in contact.
+    A second share is that of the speeds. In free motion, as in contact. What pushes a mass, its
+    links share with the others; there are three of them then.
     """
     free = () if system.contact is None else system.contact.free
-    every = [mode.A.fractions() for mode in (*system.modes, *free)]
+    every = [mode.A.fractions()[0] for mode in (*system.modes, *free)]
+    if system.time is Time.DISCRETE:
+        every = [[speed - 1, *others] for speed, *others in every]
+    for channel in system.channels:
+        pushed_ = (column.fractions()[0][0] for column in channel.columns)
+        every = [[*row, push] for row, push in zip(every, pushed_, strict=True)]
     column, sizes = matrix([[1], [0]]), [Fraction(share) for share in shares]
-    rows = [tuple(matrix([[sizes[0] * entry for entry in A[0]]]) for A in every)]
-    rows += [(matrix([[share, 0]]),) * len(every) for share in sizes[1:]]
+    rows = [tuple(matrix([[sizes[0] * entry for entry in row]]) for row in every)]
+    quiet = [0] * len(system.channels)
+    rows += [(matrix([[share, 0, *quiet]]),) * len(every) for share in sizes[1:]]
     names = ("acceleration", "speed")
     couplings = (
         Coupling(name, (column,) * len(every), part)
         for name, part in zip(names, rows, strict=False)
     )
-    return replace(system, couplings=tuple(couplings))
+    axes = 3 if system.channels else None
+    return replace(system, couplings=tuple(couplings), axes=axes)
 
 
 SYSTEMS = {
@@ -298,11 +306,19 @@ SYSTEMS = {
     "coupled-axes": lambda: leaning(bouncing(), "1/8"),
     "coupled-axes, kept": lambda: leaning(replace(bouncing(), contact=None), "1/8", "1/8"),
     "coupled-axes, pulling": lambda: leaning(bouncing(1), "1/8"),
+    "coupled-axes, steps": lambda: leaning(bouncing_in_steps(), "1/8", "1/100"),
+    "coupled-axes, kept in steps": lambda: leaning(
+        replace(bouncing_in_steps(), contact=None), "1/8"
+    ),
+    "coupled-axes, pulling in steps": lambda: leaning(bouncing_in_steps(1), "1/16"),
     "invariant-ellipsoid": lambda: pushed(bouncing()),
     "invariant-ellipsoid, kept": lambda: pushed(replace(bouncing(), contact=None)),
     "invariant-ellipsoid, pulling": lambda: pushed(bouncing(1)),
     "invariant-ellipsoid, discrete": lambda: pushed(bouncing_in_steps()),
     "invariant-ellipsoid, pulling in steps": lambda: pushed(bouncing_in_steps(1)),
+    "invariant-ellipsoid, axes": lambda: leaning(pushed(bouncing()), "1/8"),
+    "invariant-ellipsoid, pulling axes": lambda: leaning(pushed(bouncing(1)), "1/16"),
+    "invariant-ellipsoid, axes in steps": lambda: leaning(pushed(bouncing_in_steps()), "1/8"),
     "no-common-quadratic": lambda: dayawansa_martin(6),
     "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
     "block-triangular": degenerate_dual,

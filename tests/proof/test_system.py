@@ -413,14 +413,20 @@ def test_couplings_that_make_sense_and_others(changes, reason):
         assert replace(LEANS, couplings=couplings).find_contradiction() == reason
 
 
-def test_couplings_need_continuous_time_one_size_and_names():
+def test_couplings_need_one_size_and_names():
     twice = replace(LEANS, couplings=(LEANING, LEANING))
     assert twice.find_contradiction() == "two couplings have one name"
     first = Coupling("links", (matrix([[1]]),), (ONE,))
     in_time = replace(family([[-1]]), couplings=(first,))
     assert in_time.find_contradiction() is None
-    in_steps = replace(in_time, time=Time.DISCRETE)
-    assert in_steps.find_contradiction() == "axes act on each other in discrete time"
+    assert replace(in_time, time=Time.DISCRETE).find_contradiction() is None
+    assert replace(in_time, axes=3).find_contradiction() is None
+    for odd in (replace(in_time, axes=0), replace(family([[-1]]), axes=3)):
+        assert odd.find_contradiction().startswith("there is no axis, or axes are counted")
+    channel = Channel("d", "", Fraction(1), (ONE,))
+    assert replace(in_time, channels=(channel,)).find_contradiction().endswith("of the state")
+    wide = replace(first, rows=(matrix([[1, 2]]),))
+    assert replace(in_time, channels=(channel,), couplings=(wide,)).find_contradiction() is None
     unequal = family([[-1]], [[-1, 0], [0, -1]])
     found = replace(unequal, couplings=(first,)).find_contradiction()
     assert found == "axes act on each other, but their modes are not of one size"

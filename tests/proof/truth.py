@@ -33,7 +33,7 @@ from nrs_design.proof.evidence import (
     UnstableValue,
 )
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import Channel, Mode, Rounding, SwitchedSystem, Time
 
 Rows = list[list[Fraction]]
 Polynomial = dict[tuple[int, ...], Fraction]
@@ -308,6 +308,11 @@ def _coupled_axes(system: SwitchedSystem, item: CoupledAxes) -> bool:
         return False
     if len(item.taus) != len(system.couplings) or min(item.taus) <= 0:
         return False
+    if system.time is Time.DISCRETE:
+        alone = _as_roundings(system, item.roundings)
+        taus = (*item.roundings, *item.taus)
+        steps = in_steps(alone, (Q, Q), rate, item.multipliers, taus)
+        return steps is not None and all(map(is_definite, [Q, *steps]))
     if len(item.multipliers) != len(free) * len(pulls) or min(item.multipliers, default=0) < 0:
         return False
 
@@ -331,6 +336,25 @@ def _coupled_axes(system: SwitchedSystem, item: CoupledAxes) -> bool:
     for (form, crossing), weight in zip(lagging, item.multipliers, strict=True):
         forms.append(combine((1, form), (weight, crossing), (weight, transpose(crossing))))
     return all(map(is_definite, forms))
+
+
+def _as_roundings(system: SwitchedSystem, roundings: Sequence[int]) -> SwitchedSystem:
+    """Return one axis by itself, to which each coupling is an error, where its rows allow for it.
+
+    The forms are the same, though one axis alone may break the bound.
+    """
+    width = system.order + len(system.channels)
+    assert not any(any(row.numerators[0][width:]) for c in system.couplings for row in c.rows)
+    errors = (
+        Rounding(
+            c.name,
+            c.columns,
+            tuple(RationalMatrix((row.numerators[0][:width],), row.denominator) for row in c.rows),
+        )
+        for c in system.couplings
+    )
+    kept = system.roundings[: len(roundings)]
+    return replace(system, couplings=(), roundings=(*kept, *errors))
 
 
 def _padded(M: Rows, extra: int) -> Rows:
@@ -383,10 +407,15 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
         return False
     if item.level <= 0 or min(item.shares) <= 0 or (discrete and a >= 1):
         return False
+    if len(item.taus) != len(system.couplings) or min(item.taus, default=0) < 0:
+        return False
+    if system.couplings and system.axes is None:
+        return False
+    axes, system = system.axes or 1, _as_roundings(system, item.roundings)
     scale = Fraction(1, 2**item.denominator_log2)
     Q = combine((scale, [list(map(Fraction, row)) for row in item.Q]))
     weights = [scale * entry for entry in item.multipliers]
-    taus = [scale * entry for entry in item.roundings]
+    taus = [scale * entry for entry in (*item.roundings, *item.taus)]
     n, contact = system.order, system.contact
     errors = _errors(system, named, taus)
     if errors is None or min(weights, default=0) < 0:
@@ -446,19 +475,21 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
             lost = (*crossing(row, leaves), *crossing(A[-1], weight))
             forms.append(combine((1, ball(Q)), (-1, rise(Q, A[:-1], inner)), (1, S), *lost))
     else:
-        for A, _ in blocks:
-            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner))))
+        for A, S in blocks:
+            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner)), (1, S)))
         pulls = () if contact is None else contact.pulls
-        pairs = [(A, q.fractions()[0]) for A in flying for q in pulls]
+        lagging = zip(flying, slacks[count:], strict=True)
+        pairs = [(A, S, q.fractions()[0]) for A, S in lagging for q in pulls]
         if len(pairs) != len(weights):
             return False
-        for (A, q), weight in zip(pairs, weights, strict=True):
+        for (A, S, q), weight in zip(pairs, weights, strict=True):
             row = [*q, *(Fraction(0) for _ in allowed)]
-            forms.append(combine((1, ball(Q)), (-1, rise(Q, A, Q)), *crossing(row, weight)))
+            kept = (1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)
+            forms.append(combine(*kept, *crossing(row, weight)))
     for q in output.rows:
         row = q.fractions()[0]
         outer = [[x * y for y in row] for x in row]
-        forms.append(combine((item.level**2, Q), (-1, outer)))
+        forms.append(combine((item.level**2 / axes, Q), (-1, outer)))
     return all(map(is_definite, forms))
 
 

@@ -3,7 +3,6 @@ from __future__ import annotations
 import base64
 import io
 import os
-import shutil
 from itertools import pairwise
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 from pypdf import PdfReader
 
 from tests.reporting.conftest import KINDS
+from tests.support import program_named
 
 CASES = ["proved", "dwell", "blocks"]
 MORE = ["force", "refuted", "discrete", *(name for name in KINDS if name not in CASES)]
@@ -22,12 +22,7 @@ pytestmark = pytest.mark.browser
 @pytest.fixture(scope="module")
 def browser():
     """Headless Chromium; without it the tests are skipped, except in CI."""
-    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
-    if chromium is None or driver is None:
-        message = "chromium or chromedriver is not installed"
-        if os.environ.get("CI") == "true":
-            pytest.fail(f"{message}, and CI must have it")
-        pytest.skip(message)
+    chromium, driver = map(program_named, ("chromium", "chromedriver"))
     from selenium import webdriver
 
     options = webdriver.ChromeOptions()

@@ -13,7 +13,8 @@ from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
-from nrs_design.simulation.disturbed import DisturbedMotions, follow, worst_disturbed
+from nrs_design.simulation.game import Game, Signals, free_modes, play
+from nrs_design.simulation.worst_case import output_values, worst_against
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
@@ -166,35 +167,36 @@ def test_ten_thousand_runs_do_not_leave_the_bound(contact, Bt, near):
         disturbances="{command: 8 deg/s}",
     )
     evidence = bounded(system)
-    motions = DisturbedMotions.of(system, system.channels, system.outputs[0], 1.0)
+    game = Game.of(system, system.channels, 1.0)
     rng = np.random.default_rng(13)
-    count = len(motions.maps)
-    bad = worst_disturbed(motions, 1.0, LENGTH)
-    held = rng.integers(1, 60, (RUNS, 1))
-    blocks = np.arange(LENGTH) // held
-    modes = np.take_along_axis(rng.integers(0, count, (RUNS, LENGTH)), blocks, axis=1)
-    signs = np.take_along_axis(rng.choice([-1.0, 1.0], (RUNS, LENGTH)), blocks, axis=1)[:, :, None]
-    half = RUNS // 2
-    kept = rng.random((half, LENGTH)) < rng.random((half, 1))
-    modes[:half] = np.where(kept, bad.mode, modes[:half])
-    # How the adversary pushed follows from where the state went.
-    pushes = _signs(motions, bad.state, bad.mode)
-    signs[:half] = np.where(kept[:, :, None], pushes[:, None], signs[:half])
-    signs[0], modes[0] = pushes[:, None], bad.mode
+    bad = worst_against(system, evidence.bound(system))
+    held = rng.integers(1, 60, RUNS)
+    blocks = np.arange(LENGTH)[:, None] // held
+    modes = np.take_along_axis(rng.integers(0, len(game.maps), (LENGTH, RUNS)), blocks, axis=0)
+    signs = np.take_along_axis(rng.choice([-1.0, 1.0], (LENGTH, RUNS)), blocks, axis=0)
+    half, late = RUNS // 2, min(LENGTH, len(bad.mode))
+    kept = rng.random((late, half)) < rng.random(half)
+    kept[:, 0] = True
+    own = np.sign(bad.disturbances[-late:])
+    signs[:-late, 0] = 0.0
+    signs[-late:, :half] = np.where(kept, own, signs[-late:, :half])
+    chosen = _in_contact(system, bad.mode)[-late:, None]
+    modes[-late:, :half] = np.where(kept, chosen, modes[-late:, :half])
     largest = 0.0
-    for part in range(0, RUNS, 1000):
-        states, _ = follow(motions, modes[part : part + 1000], signs[part : part + 1000])
-        largest = max(largest, float(np.abs(motions.outputs(states)).max()))
+    for part in (slice(k, k + 1000) for k in range(0, RUNS, 1000)):
+        states = play(game, Signals(modes[:, part], signs[:, part, None]))
+        values = np.abs(output_values(system, system.outputs[0], states))
+        largest = max(largest, float(values.max()))
     level = float(evidence.level)
     assert near * level < largest < level
 
 
-def _signs(motions: DisturbedMotions, states: np.ndarray, modes: np.ndarray) -> np.ndarray:
-    found = []
-    for x, after, mode in zip(states, states[1:], modes, strict=False):
-        moved, push = motions.maps[mode, :, :-1] @ x, motions.maps[mode, :, -1]
-        found.append(np.sign((after - moved) @ push))
-    return np.array(found)
+def _in_contact(system: SwitchedSystem, modes: np.ndarray) -> np.ndarray:
+    """Return the modes that were chosen, also while nothing was touched."""
+    if system.contact is None:
+        return modes
+    count, places = len(system.modes), free_modes(system).tolist()
+    return np.array([k if k < count else places.index(k - count) for k in modes.tolist()])
 
 
 @pytest.mark.slow

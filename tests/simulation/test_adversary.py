@@ -8,14 +8,8 @@ import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import Mode, Reset, Stay, SwitchedSystem, Switching, Time
-from nrs_design.simulation.adversary import (
-    Aim,
-    Game,
-    improve,
-    misjudged_signals,
-    play,
-    random_signals,
-)
+from nrs_design.simulation.adversary import improve, misjudged_signals, random_signals
+from nrs_design.simulation.game import Aim, Game, play
 from nrs_design.simulation.rules import Rules
 
 STEPS, RUNS, ROUNDS = 7, 40, 8

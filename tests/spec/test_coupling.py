@@ -59,7 +59,7 @@ def test_a_coupling_that_says_nothing_is_refused(coupling, words):
     ("text", "more", "words"),
     [
         (LOADED.replace(", load_inertia: 1.213 kg*m^2", ""), "", "the inertia of the drives"),
-        (LOADED, "disturbances: {command: 8 deg/s}\n", "not modelled with disturbances"),
+        (LOADED, "disturbances: {command: 8 deg/s}\n", "depends on the number of axes"),
         (LOADED, "coordinates: force\n", "not modelled in force coordinates"),
     ],
 )
@@ -68,7 +68,21 @@ def test_what_is_not_modelled_with_it_is_refused(text, more, words):
         read(LINKS, text=text, more=more)
 
 
-def test_the_sampled_loop_is_refused():
+def test_beside_samples_and_disturbances():
+    """The load is then that of the links alone; without axes to couple, it is refused."""
+    spec = read(
+        f"{LINKS}, axes: 3",
+        more="sampling: {period: 2 ms, delay: 1}\ndisturbances: {command: 8 deg/s}\n",
+    )
+    assert spec.coupling.axes == 3
+    with pytest.raises(SpecError, match="the load of the motor is not modelled"):
+        parse_spec(f"{LOADED}sampling: {{period: 2 ms, delay: 1}}\n")
     unloaded = LOADED.replace(", load_inertia: 1.213 kg*m^2", "")
-    with pytest.raises(SpecError, match="not modelled with sampling"):
+    with pytest.raises(SpecError, match="the inertia of the drives"):
         read(LINKS, text=unloaded, more="sampling: {period: 2 ms, delay: 1}\n")
+
+
+@pytest.mark.parametrize("count", ["0", "2.5", "65"])
+def test_a_number_of_axes_that_is_none(count):
+    with pytest.raises(SpecError, match="is not an integer from 1 to 64"):
+        read(f"{LINKS}, axes: {count}")

@@ -11,6 +11,7 @@ from nrs_design.controllers.controller_design import Controller, ImpedanceOptimu
 from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
@@ -38,6 +39,7 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
+from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
@@ -76,6 +78,9 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         By the errors of the force signal, where the spec says how large they are.
     band : PassiveBand or None
         Where the displayed admittance is passive, exactly; None with a spring or a filter.
+    sampled : tuple of SampledBand
+        The same for the law that is sampled, for every age of the force sample; empty without
+        sampling, with two periods, or with a spring or a filter.
     lever_arm : float or None
         Of everything that it touches, in m; None if there is none, or not the same for all.
     """
@@ -92,6 +97,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     stiff: tuple[Doubt, ...]
     creep: Creep | None = None
     band: PassiveBand | None = None
+    sampled: tuple[SampledBand, ...] = ()
     lever_arm: float | None = None
 
     @property
@@ -167,6 +173,7 @@ def analyze(
         lowest_limit=min(margins.stiffness_limit, *limits),
         creep=creep,
         band=_band(task, given, controller),
+        sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
     )
 
@@ -186,6 +193,25 @@ def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) ->
         return None
     gains = controller.law.gains
     return passive_band(task.loop, gains["Mt"], gains["Bt"])
+
+
+def _sampled_bands(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> tuple[SampledBand, ...]:
+    """Return where the sampled law is passive, with the nominal motor."""
+    sampling = task.spec.sampling
+    if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
+        return ()
+    law = controller.law.sampled(sampling.period.exact, sampling.admittance)
+    assert isinstance(law, SampledAdmittance), "that of an admittance"
+    oldest = sampling.delay[1] + 1
+    return sampled_bands(
+        task.plant.actuator,
+        task.pd,
+        law,
+        sampling.period.exact,
+        range(sampling.delay[0], oldest),
+    )
 
 
 def too_stiff(

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
-from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.laws import CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values
 from nrs_design.design.goals import Achieved
@@ -32,13 +32,18 @@ class Task:
         Requirements and bounds.
     plant : Plant
         That it describes.
-    loop : MotionLoop
-        The motion loop in use.
+    pd : ProportionalDerivative
+        The motion controller.
     """
 
     spec: InteractionDesignSpec
     plant: Plant
-    loop: MotionLoop
+    pd: ProportionalDerivative
+
+    @property
+    def loop(self) -> MotionLoop:
+        """The motion loop in use."""
+        return self.plant.motion_loop(self.pd.Kp, self.pd.Kd)
 
     @property
     def motion(self) -> TransferFunction:

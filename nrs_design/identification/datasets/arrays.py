@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
@@ -35,6 +35,8 @@ _BEGINNINGS = (
     (b"PAR1", "is a Parquet file", "name it .parquet"),
     (b"MATLAB 5.0", "is a file of MATLAB", "name it .mat"),
 )
+# A matrix with more is none whose columns are signals.
+_MOST_COLUMNS = 100
 _MATLAB_HDF = b"MATLAB 7.3"
 
 
@@ -64,7 +66,9 @@ def check_kind(file: BinaryIO, path: Path) -> None:
 
 
 def read_mat(file: BinaryIO, path: Path) -> Content:
-    """Read the variables of a MATLAB file; the field f of a structure s is called ``s.f``.
+    """Read the variables of a MATLAB file.
+
+    The field f of a structure s is called ``s.f``, the first column of a matrix ``data(:,1)``.
 
     Parameters
     ----------
@@ -86,7 +90,8 @@ def read_mat(file: BinaryIO, path: Path) -> Content:
     with _reading(path, "MATLAB"):
         content = loadmat(opened, squeeze_me=True, struct_as_record=False)
     _check_objects(content, path)
-    return _sorted(_flat({k: v for k, v in content.items() if not k.startswith("__")}))
+    variables = _flat({k: v for k, v in content.items() if not k.startswith("__")})
+    return _sorted(variables, "{}(:,{})", 1)
 
 
 def _check_objects(content: Mapping[str, Any], path: Path) -> None:
@@ -102,7 +107,10 @@ def _check_objects(content: Mapping[str, Any], path: Path) -> None:
 
 
 def read_npz(file: BinaryIO, path: Path) -> Content:
-    """Read the arrays of a NumPy archive; never an object, which would run its own code."""
+    """Read the arrays of a NumPy archive; never an object, which would run its own code.
+
+    A matrix has its columns under names as in ``data[:,0]``.
+    """
     import zipfile
 
     with _reading(path, "NumPy"):
@@ -111,27 +119,31 @@ def read_npz(file: BinaryIO, path: Path) -> Content:
         raise DataError("unpacks to over 1 GiB", path=path, remedy="save the columns needed")
     file.seek(0)
     with _reading(path, "NumPy"), np.load(file, allow_pickle=False) as archive:
-        return _sorted(dict(archive.items()))
+        return _sorted(archive.items(), "{}[:,{}]", 0)
 
 
 def read_parquet(file: BinaryIO, path: Path) -> Content:
-    """Read the columns of a Parquet file."""
+    """Read the columns of a Parquet file; an index with a name is one, too."""
     _check_size(file, path)
     pandas = _pandas(path, "pyarrow")
     with _reading(path, "Parquet"):
         frame = pandas.read_parquet(file)
-        return _sorted({str(name): np.asarray(frame[name]) for name in frame.columns})
+        if any(frame.index.names):
+            frame = frame.reset_index()
+        columns = ((str(name), np.asarray(frame[name])) for name in frame.columns)
+        return _sorted(columns, "{}[:,{}]", 0)
 
 
-def read_sheet(file: BinaryIO, path: Path) -> bytes:
-    """Return the first sheet of an Excel file as text with tabs, line by line."""
+def read_sheet(file: BinaryIO, path: Path) -> tuple[bytes, tuple[str, ...]]:
+    """Return the first sheet of an Excel file as text with tabs, line by line; and all names."""
     file.seek(0)
     _check_size(file, path)
     pandas = _pandas(path, "openpyxl")
-    with _reading(path, "Excel"):
-        frame = pandas.read_excel(file, header=None, dtype=object, engine="openpyxl", sheet_name=0)
+    with _reading(path, "Excel"), pandas.ExcelFile(file, engine="openpyxl") as book:
+        names = tuple(map(str, book.sheet_names))
+        frame = book.parse(0, header=None, dtype=object)
     rows = ("\t".join(map(_cell, row)) for row in frame.itertuples(index=False))
-    return "\n".join(rows).encode()
+    return "\n".join(rows).encode(), names
 
 
 ARRAYS: Mapping[str, Callable[[BinaryIO, Path], Content]] = MappingProxyType(
@@ -194,9 +206,24 @@ def _flat(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, An
             yield from _flat({f: getattr(value, f) for f in fields}, f"{prefix}{name}.")
 
 
-def _sorted(items: Any) -> Content:
-    """Return all arrays, and the words among them."""
-    arrays = {name: np.asarray(value) for name, value in dict(items).items()}
+def _sorted(items: Iterable[tuple[str, Any]], column: str, first: int) -> Content:
+    """Return all arrays, those that are no single number first, and the words among them.
+
+    Parameters
+    ----------
+    items : iterable of tuple
+        Names and values.
+    column, first : str and int
+        What a column of a matrix is called, and the number of the first one.
+    """
+    found: Arrays = {}
+    for name, value in items:
+        array = np.asarray(value)
+        if array.ndim == 2 and 1 < array.shape[1] <= min(array.shape[0], _MOST_COLUMNS):
+            found |= {column.format(name, i): row for i, row in enumerate(array.T, first)}
+        else:
+            found[name] = array
+    arrays = dict(sorted(found.items(), key=lambda item: item[1].size < 2))
     words = [name for name, value in arrays.items() if value.dtype.kind in "US"]
     texts = tuple(" ".join(map(str, arrays[name].reshape(-1)[:100])) for name in words)
     return arrays, texts

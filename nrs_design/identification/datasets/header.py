@@ -64,7 +64,11 @@ class Header:
 
 
 def read_header(
-    file: BinaryIO, path: Path, mapped: Mapping[str, str], seen: Callable[[bytes], None]
+    file: BinaryIO,
+    path: Path,
+    mapped: Mapping[str, str],
+    seen: Callable[[bytes], None],
+    example: str,
 ) -> Header:
     """Find the line of names: below a preamble, above the first row.
 
@@ -78,6 +82,8 @@ def read_header(
         From foreign names that the user has mapped to ours.
     seen : callable
         Told all bytes that are read.
+    example : str
+        Such a line, for errors.
 
     Raises
     ------
@@ -91,7 +97,7 @@ def read_header(
         seen(line)
         raw.append(line)
     lines = [_decoded(line, path, number) for number, line in enumerate(raw, 1)]
-    at, separator = _find(lines, mapped, path)
+    at, separator = _find(lines, mapped, path, example)
     names = _names(lines[at], separator, path, at + 1)
     below = _below_blanks(lines, at + 1)
     if below < len(lines):
@@ -130,7 +136,9 @@ def _decoded(raw: bytes, path: Path, line: int) -> str:
         return raw.decode("cp1252", "replace").strip("\r\n ")
 
 
-def _find(lines: Sequence[str], mapped: Collection[str], path: Path) -> tuple[int, str | None]:
+def _find(
+    lines: Sequence[str], mapped: Collection[str], path: Path, example: str
+) -> tuple[int, str | None]:
     """Return the line with the most names that are known, or the one above the first numbers."""
     scores = [
         (sum(_is_known(name, mapped) for name in _cells(text, separator)), -at, -rank)
@@ -147,18 +155,24 @@ def _find(lines: Sequence[str], mapped: Collection[str], path: Path) -> tuple[in
         separator = _separator_of(text)
         if separator != "":
             if last is None:
-                raise DataError(
-                    "begins with numbers, not with the names of its columns",
-                    path=path,
-                    line=at + 1,
-                    remedy="add a header such as time_s,deflection_m,force_N",
-                )
+                raise _nameless(path, at + 1, example)
             return _above_units(lines, last, separator), separator
         last = at
     if last is None:
         raise DataError("has no header line", path=path, remedy="name the columns in a line")
     first = next(i for i, text in enumerate(lines) if text and not text.startswith("#"))
+    if is_number(lines[first]):
+        raise _nameless(path, first + 1, example)
     return first, max(SEPARATORS[:3], key=lambda s: lines[first].count(s or ","))
+
+
+def _nameless(path: Path, line: int, example: str) -> DataError:
+    return DataError(
+        "begins with numbers, not with the names of its columns",
+        path=path,
+        line=line,
+        remedy=f"add a header such as {example}",
+    )
 
 
 def _above_units(lines: Sequence[str], at: int, separator: str | None) -> int:
@@ -177,8 +191,12 @@ def _separator_of(text: str) -> str | None:
     for separator in (";", "\t", ",", None):
         cells = _cells(text, separator)
         comma = separator != "," or '"' in text
-        if len(cells) > 1 and all(
-            is_number(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
+        if (
+            len(cells) > 1
+            and any(cells)
+            and all(
+                is_number(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
+            )
         ):
             return separator
     return ""

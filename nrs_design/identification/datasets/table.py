@@ -17,6 +17,7 @@ from nrs_design.files import open_regular
 from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_sheet
 from nrs_design.identification.datasets.columns import Column, find_columns
 from nrs_design.identification.datasets.header import BLOCK, SYNTHETIC, read_header
+from nrs_design.identification.datasets.names import UNITS, standard_name
 from nrs_design.identification.datasets.text import MAX_ROWS, Parser, read_blocks
 
 Array = NDArray[np.float64]
@@ -150,12 +151,25 @@ def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> Tab
     if kind in ARRAYS:
         table = _read_arrays(file, path, wanted)
     elif kind == SHEET:
-        digest = _digest(file)
-        table = _read_text(BytesIO(read_sheet(file, path)), path, wanted, digest, lambda done: None)
+        table = _read_sheet(file, path, wanted)
     else:
         table = _read_text(file, path, wanted, None, progress)
     progress(float(path.stat().st_size))
     return table
+
+
+def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
+    digest = _digest(file)
+    text, sheets = read_sheet(file, path)
+    try:
+        return _read_text(BytesIO(text), path, wanted, digest, lambda done: None)
+    except DataError as error:
+        if len(sheets) == 1:
+            raise
+        others = f"; {sheets[0]!r} is read, the first of {len(sheets)} sheets: put the data there"
+        (fault,) = error.faults
+        remedy = (fault.remedy or "") + others
+        raise DataError(fault.message, path=path, line=fault.line, remedy=remedy) from error
 
 
 def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
@@ -227,7 +241,10 @@ def _read_text(
     file: BinaryIO, path: Path, wanted: Wanted, digest: str | None, progress: Progress
 ) -> Table:
     hashed = hashlib.sha256()
-    header = read_header(file, path, wanted.mapping, hashed.update)
+    example = ",".join(
+        key if "any" in UNITS[key] else standard_name(key) for key in wanted.layouts[0]
+    )
+    header = read_header(file, path, wanted.mapping, hashed.update, example)
     layout, groups = find_columns(
         header.names, wanted.layouts, wanted.mapping, path, header.line, wanted.optional
     )

@@ -25,7 +25,7 @@ from nrs_design.identification.tissue.offsets import (
     estimate_offsets,
     fits_zero,
 )
-from nrs_design.identification.tissue.problem import Problem
+from nrs_design.identification.tissue.problem import Point, Problem
 from nrs_design.identification.tissue.starts import box
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
@@ -34,9 +34,11 @@ Array = NDArray[np.float64]
 
 STARTS = 3
 # Samples that suffice to find the right valley.
-COARSE = 4_000
+COARSE = 2_000
 # Starts whose costs end within this factor of the best one have found the same valley.
 _SAME = 1e-6
+# What the cost may still change by, as a part of it, where a search ends.
+_ROUGHLY, _EXACTLY = 1e-9, 1e-12
 # How far the position of contact is sought from where it was found, in travels of the record.
 _REACH = 0.5
 
@@ -151,49 +153,42 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     bounds = box(kind, trial)
     problem = Problem(kind, trial)
     coarse = Problem(kind, trial.thinned(-(-len(trial.force) // COARSE)))
-    candidates = sorted(coarse.starts(), key=coarse.cost)
-    ends = [_search(coarse, start, bounds) for start in candidates[:STARTS]]
-    costs = np.array([coarse.cost(end) for end in ends])
-    best = int(np.argmin(costs))
-    point = ends[best]
-    if coarse.trial is not trial:
-        point = _search(problem, point, bounds)
-    agreeing = int(np.sum(costs <= costs[best] * (1 + _SAME)))
-    return _judge(problem, point, bounds, agreeing, len(ends))
+    candidates = sorted(map(coarse.at, coarse.starts()), key=lambda start: start.cost)
+    ends = [_search(start, bounds, _ROUGHLY) for start in candidates[:STARTS]]
+    best = min(ends, key=lambda end: end.cost)
+    agreeing = sum(end.cost <= best.cost * (1 + _SAME) for end in ends)
+    point = _search(problem.at(best.values), bounds, _EXACTLY)
+    return _judge(point, bounds, agreeing, len(ends))
 
 
 def rmse(law: AbstractContactLaw, record: TissueRecord | Trial) -> float:
     """Return the root of the mean squared force error, with the best offsets for this law."""
     trial = record if isinstance(record, Trial) else prepare(record)
     problem = Problem(type(law), trial)
-    point = np.append(np.log(law.values), problem.no_shift)
+    point = problem.at(np.append(np.log(law.values), problem.no_shift))
     if fits_zero(type(law), trial):
-        point = _place(problem, point)
-    return float(np.sqrt(problem.cost(point)))
+        point = _place(point)
+    return float(np.sqrt(point.cost))
 
 
-def _judge(
-    problem: Problem, point: Array, bounds: tuple[Array, Array], agreeing: int, starts: int
-) -> RecordFit:
-    trial, law = problem.trial, problem.law(point)
-    constants, residuals = problem.solve(point)
-    J = np.column_stack([problem.sensitivities(point), problem.constants(point)])
+def _judge(point: Point, bounds: tuple[Array, Array], agreeing: int, starts: int) -> RecordFit:
+    names, trial, law = point.problem.names, point.problem.trial, point.law
+    residuals = point.residuals
+    J = np.column_stack([point.sensitivities, point.constants])
     known = _uncertainty(trial, J, residuals)
     placed = _uncertainty(trial, J, residuals, returns=True)
     p = len(law.values)
-    shift = problem.shift(point) if len(point) > p else None
-    offsets = estimate_offsets(
-        law, trial, problem.names, constants[: len(problem.names)], shift, placed
-    )
+    shift = point.shift if len(point.values) > p else None
+    offsets = estimate_offsets(law, trial, names, point.best[: len(names)], shift, placed)
     own = Uncertainty(known.covariance[:p, :p], known.degrees, known.whiteness)
     said = list(doubts(law, trial, own, bounds, residuals, J))
-    if shift is not None and abs(point[p]) > _REACH * (1 - 1e-3):
+    if shift is not None and abs(point.values[p]) > _REACH * (1 - 1e-3):
         said.append("the position of contact is at the end of its box")
     return RecordFit(
         trial=trial,
         law=law,
         offsets=offsets,
-        fitted=problem.simulate_all(point, constants),
+        fitted=point.whole_force,
         uncertainty=own,
         rmse=float(np.sqrt(np.mean(residuals**2))),
         free=J.shape[1],
@@ -211,49 +206,57 @@ def _uncertainty(trial: Trial, J: Array, residuals: Array, *, returns: bool = Fa
     return uncertainty(J, residuals, scatter=scatter)
 
 
-def _place(problem: Problem, point: Array) -> Array:
+def _place(point: Point) -> Point:
     """Return the point with the best position of contact for its law."""
     from scipy.optimize import minimize_scalar
 
-    def at(shift: float) -> Array:
-        return np.append(point[:-1], shift)
+    def at(shift: float) -> Point:
+        return point.problem.at(np.append(point.values[:-1], shift))
 
     grid = np.linspace(-_REACH, _REACH, 41)
-    near = float(grid[int(np.argmin([problem.cost(at(shift)) for shift in grid]))])
+    near = float(grid[int(np.argmin([at(shift).cost for shift in grid]))])
     step = float(grid[1] - grid[0])
     found = minimize_scalar(
-        lambda shift: problem.cost(at(float(shift))),
+        lambda shift: at(float(shift)).cost,
         bounds=(max(near - step, -_REACH), min(near + step, _REACH)),
         method="bounded",
     )
     return at(float(found.x))
 
 
-def _search(problem: Problem, start: Array, bounds: tuple[Array, Array]) -> Array:
+def _search(start: Point, bounds: tuple[Array, Array], accuracy: float) -> Point:
     from scipy.optimize import least_squares
 
+    problem = start.problem
     p = len(problem.kind.kinds)
     scale = float(np.std(problem.force)) or 1.0
-    reach = np.full(len(start) - p, _REACH)
+    reach = np.full(len(start.values) - p, _REACH)
     low, high = np.append(bounds[0], -reach), np.append(bounds[1], reach)
     # The search needs room around its start.
     room = 1e-6 * (high - low)
+    last = [start]
+
+    def at(x: Array) -> Point:
+        # Derivatives are asked for where the error was.
+        if not np.array_equal(x, last[0].values):
+            last[0] = problem.at(x.copy())
+        return last[0]
 
     def error(x: Array) -> Array:
-        return -problem.left(x) / scale
+        return -at(x).left / scale
 
     def slope(x: Array) -> Array:
-        J = problem.slopes(x)
+        J = at(x).slopes
         J[:, p:] *= problem.travel
         return J / scale
 
     found = least_squares(
         error,
-        np.clip(start, low + room, high - room),
+        np.clip(start.values, low + room, high - room),
         jac=slope,
         bounds=(low, high),
-        xtol=1e-10,
-        ftol=1e-12,
-        gtol=1e-12,
+        xtol=100 * accuracy,
+        ftol=accuracy,
+        gtol=accuracy,
     )
-    return np.asarray(found.x)
+    return at(np.asarray(found.x))

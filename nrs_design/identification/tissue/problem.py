@@ -36,10 +36,14 @@ _SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 
 @dataclass(frozen=True)
 class Problem:
-    """Least squares over one law and one trial; a point is logarithms, and the move of the zero."""
+    """Least squares over one law and one trial."""
 
     kind: type[AbstractContactLaw]
     trial: Trial
+
+    def at(self, values: Array) -> Point:
+        """Return the point with these logarithms of the parameters, and this move of the zero."""
+        return Point(self, values)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -52,13 +56,15 @@ class Problem:
         return offset_columns(self.names, self.trial)
 
     @cached_property
-    def _begins(self) -> tuple[slice, ...]:
-        remembers = any(law is self.kind and law.remembers for law in LINEAR_LAWS.values())
-        return self.trial.unrested if remembers else ()
+    def factors(self) -> tuple[Array, Array]:
+        """The offsets as an orthonormal basis and a triangle."""
+        return _factors(self.offsets)
 
     @cached_property
-    def _basis(self) -> Array:
-        return np.linalg.qr(self.offsets)[0]
+    def begins(self) -> tuple[slice, ...]:
+        """Stretches that do not begin at rest, for a law that remembers."""
+        remembers = any(law is self.kind and law.remembers for law in LINEAR_LAWS.values())
+        return self.trial.unrested if remembers else ()
 
     @cached_property
     def force(self) -> Array:
@@ -80,125 +86,187 @@ class Problem:
         for shift in _SHIFTS if len(self.no_shift) else (0.0,):
             trial = self.trial
             if shift:
-                trial = replace(trial, motion=trial.shifted(shift * self.travel))
+                trial = replace(trial, motion=self.moved(shift * self.travel))
             for law in scan(self.kind, trial, self.offsets):
                 yield np.append(np.log(law.values), self.no_shift + shift)
 
-    def states(self, point: Array) -> Array:
-        """Return what each stretch that does not begin at rest has left of its beginning, (n, s).
+    @cached_property
+    def _position(self) -> Motion:
+        return Motion(self.trial.motion.time, self.trial.position)
 
-        The force of a relaxing element at the beginning is not known; it fades exponentially.
-        """
-        return self._all_states(point)[self.trial.used]
-
-    def _all_states(self, point: Array) -> Array:
-        tau = self.law(point).relaxation_time
-        columns = np.zeros((len(self.trial.force), len(self._begins)))
-        time = self.trial.motion.time
-        for column, rows in zip(columns.T, self._begins, strict=True):
-            column[rows] = np.exp(-(time[rows] - time[rows.start]) / tau) if tau else 0.0
-        return columns
-
-    def constants(self, point: Array) -> Array:
-        """Return all that adds to the force in proportion: offsets, then states."""
-        if not self._begins:
-            return self.offsets
-        return np.column_stack([self.offsets, self.states(point)])
-
-    def basis(self, point: Array) -> Array:
-        """Return an orthonormal basis of the constants."""
-        return np.linalg.qr(self.constants(point))[0] if self._begins else self._basis
-
-    def left(self, point: Array) -> Array:
-        """Return the error with the best constants."""
-        error = self.force - self.simulate(point)
-        basis = self.basis(point)
-        return np.asarray(error - basis @ (basis.T @ error))
-
-    def slopes(self, point: Array) -> Array:
-        """Return the derivatives of the force at constants that follow (Kaufman 1975)."""
-        J, basis = self.sensitivities(point), self.basis(point)
-        return np.asarray(J - basis @ (basis.T @ J))
-
-    def law(self, point: Array) -> AbstractContactLaw:
-        """Return the law at a point."""
-        return self.kind(*np.exp(point[: len(self.kind.kinds)]).tolist())
-
-    def shift(self, point: Array) -> float:
-        """Return the move of the zero in m (rad)."""
-        moves = point[len(self.kind.kinds) :]
-        return float(moves[0]) * self.travel if len(moves) else 0.0
-
-    def motion(self, point: Array) -> Motion:
-        """Return the deflection from the moved zero."""
-        shift = self.shift(point)
-        return self.trial.shifted(shift) if shift else self.trial.motion
-
-    def simulate(self, point: Array) -> Array:
-        """Return the force of the law in the used samples, shape (n,)."""
-        return self._pushing(self.law(point).simulate(self.motion(point)))[self.trial.used]
+    def moved(self, shift: float) -> Motion:
+        """Return the deflection from a position of contact that lies by so much deeper."""
+        return self._position.moved(shift)
 
     @cached_property
-    def _reached(self) -> Flags:
+    def reached(self) -> Flags:
         """Samples in contact; where its position is sought, the way in to it, too."""
-        trial = self.trial
         if not len(self.no_shift):
-            return trial.touching
-        way_in = np.gradient(trial.position, trial.motion.time) > 0
-        return np.asarray(trial.touching | way_in)
+            return self.trial.touching
+        return np.asarray(self.trial.touching | (self._position.velocity > 0))
+
+    @cached_property
+    def ages(self) -> Array:
+        """Time in s since its stretch began, for every sample, used or not; 0 elsewhere."""
+        time = self.trial.motion.time
+        ages = np.zeros(len(time))
+        for rows in self.begins:
+            ages[rows] = time[rows] - time[rows.start]
+        return ages
+
+    @cached_property
+    def members(self) -> Array:
+        """Whether a sample, used or not, is in a stretch, 1 or 0, shape (n, s)."""
+        members = np.zeros((len(self.trial.force), len(self.begins)))
+        for column, rows in zip(members.T, self.begins, strict=True):
+            column[rows] = 1.0
+        return members
+
+    @cached_property
+    def used_members(self) -> tuple[Array, Array]:
+        """Ages and stretches of the used samples."""
+        used = self.trial.used
+        return self.ages[used], self.members[used]
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A law with a position of contact, and what follows from them; each thing is computed once.
+
+    Parameters
+    ----------
+    problem : Problem
+        With n used samples.
+    values : ndarray, shape (p,) or (p + 1,)
+        Logarithms of the parameters, and the move of the zero in travels of the record.
+    """
+
+    problem: Problem
+    values: Array
+
+    @cached_property
+    def law(self) -> AbstractContactLaw:
+        """The law."""
+        kind = self.problem.kind
+        return kind(*np.exp(self.values[: len(kind.kinds)]).tolist())
+
+    @property
+    def shift(self) -> float:
+        """The move of the zero in m (rad)."""
+        moves = self.values[len(self.problem.kind.kinds) :]
+        return float(moves[0]) * self.problem.travel if len(moves) else 0.0
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The deflection from the moved zero."""
+        shift = self.shift
+        return self.problem.moved(shift) if shift else self.problem.trial.motion
+
+    @cached_property
+    def force(self) -> Array:
+        """Force of the law in the used samples, shape (n,)."""
+        return self._pushing(self.law.simulate(self.motion))[self.problem.trial.used]
 
     def _pushing(self, values: Array) -> Array:
         """Return a force, or its derivatives, without what a surface that nothing touches has."""
-        values[~self._reached] = 0.0
+        values[~self.problem.reached] = 0.0
         return values
 
-    def sensitivities(self, point: Array) -> Array:
-        """Return the derivatives by the logarithms, and by the move of the zero in m (rad)."""
-        law, motion = self.law(point), self.motion(point)
-        J = law.sensitivities(motion)
-        if len(point) > len(self.kind.kinds):
-            assert isinstance(law, AbstractNonlinearLaw)
-            J = np.column_stack([J, -law.slope(motion)])
-        J = self._pushing(J)[self.trial.used]
-        return J + self._fading(point) if self._begins else J
+    @cached_property
+    def states(self) -> Array:
+        """What each stretch that does not begin at rest has left of its beginning, (n, s).
 
-    def _fading(self, point: Array) -> Array:
-        """Return what the states add to the derivatives: they fade at the rate of the law."""
-        values = self.solve(point)[0][self.offsets.shape[1] :]
-        tau = self.law(point).relaxation_time
-        if not tau:
-            return np.zeros((len(self.force), len(point)))
-        # A state exp(-t/tau) grows by t/tau exp(-t/tau) with the logarithm of tau.
-        grows = self.states(point) * self._ages / tau @ values
-        slopes = [
-            math.log((self.law(moved).relaxation_time or tau) / tau) / _STEP
-            for moved in point + _STEP * np.eye(len(point))
-        ]
-        return np.outer(grows, slopes)
+        The force of a relaxing element at the beginning is not known; it fades exponentially.
+        """
+        return self._fading(*self.problem.used_members)
+
+    def _fading(self, ages: Array, members: Array) -> Array:
+        tau = self.law.relaxation_time
+        return np.exp(-ages / tau)[:, None] * members if tau else 0.0 * members
 
     @cached_property
-    def _ages(self) -> Array:
-        """Time since each stretch began in the used samples, in s, shape (n, s)."""
-        time = self.trial.motion.time
-        starts = time[[rows.start for rows in self._begins]]
-        return np.asarray(time[self.trial.used, None] - starts)
+    def constants(self) -> Array:
+        """All that adds to the force in proportion: offsets, then states."""
+        problem = self.problem
+        return (
+            np.column_stack([problem.offsets, self.states]) if problem.begins else problem.offsets
+        )
 
-    def cost(self, point: Array) -> float:
-        """Return the mean squared error with the best constants."""
-        error = self.left(point)
-        return float(error @ error) / len(error)
+    @cached_property
+    def _factors(self) -> tuple[Array, Array]:
+        return _factors(self.constants) if self.problem.begins else self.problem.factors
 
-    def solve(self, point: Array) -> tuple[Array, Array]:
-        """Return the best constants and the residuals."""
-        rest, columns = self.force - self.simulate(point), self.constants(point)
-        constants = np.linalg.lstsq(columns, rest, rcond=None)[0]
-        return np.asarray(constants, float), np.asarray(rest - columns @ constants)
+    @cached_property
+    def _rest(self) -> Array:
+        return self.problem.force - self.force
 
-    def simulate_all(self, point: Array, constants: Array) -> Array:
-        """Return the force in all samples, used or not, with its tare."""
-        whole = Problem(self.kind, self.trial.everything())
+    @cached_property
+    def best(self) -> Array:
+        """The best constants; the smallest ones where they cannot be told from each other."""
+        basis, triangle = self._factors
+        cutoff = len(basis) * np.finfo(float).eps
+        return np.asarray(np.linalg.pinv(triangle, rcond=cutoff) @ (basis.T @ self._rest))
+
+    @property
+    def residuals(self) -> Array:
+        """The error with the best constants, shape (n,)."""
+        return np.asarray(self._rest - self.constants @ self.best)
+
+    @cached_property
+    def left(self) -> Array:
+        """What no constants explain of the error: the residuals, where all constants are told."""
+        return self._less_constants(self._rest)
+
+    def _less_constants(self, values: Array) -> Array:
+        basis = self._factors[0]
+        return np.asarray(values - basis @ (basis.T @ values))
+
+    @cached_property
+    def cost(self) -> float:
+        """The mean squared error with the best constants."""
+        return float(self.left @ self.left) / len(self.left)
+
+    @property
+    def slopes(self) -> Array:
+        """The derivatives of the force at constants that follow (Kaufman 1975)."""
+        return self._less_constants(self.sensitivities)
+
+    @cached_property
+    def sensitivities(self) -> Array:
+        """The derivatives by the logarithms, and by the move of the zero in m (rad)."""
+        law, motion = self.law, self.motion
+        J = law.sensitivities(motion)
+        if len(self.values) > len(law.kinds):
+            assert isinstance(law, AbstractNonlinearLaw)
+            J = np.column_stack([J, -law.slope(motion)])
+        J = self._pushing(J)[self.problem.trial.used]
+        return J + self._growing() if self.problem.begins else J
+
+    def _growing(self) -> Array:
+        """Return what the states add to the derivatives: they fade at the rate of the law."""
+        problem, tau = self.problem, self.law.relaxation_time
+        if not tau:
+            return np.zeros((len(problem.force), len(self.values)))
+        # A state exp(-t/tau) grows by t/tau exp(-t/tau) with the logarithm of tau.
+        ages = problem.used_members[0]
+        grows = ages / tau * (self.states @ self.best[problem.offsets.shape[1] :])
+        near = (problem.at(self.values + step).law for step in _STEP * np.eye(len(self.values)))
+        slopes = [math.log((law.relaxation_time or tau) / tau) / _STEP for law in near]
+        return np.outer(grows, slopes)
+
+    @property
+    def whole_force(self) -> Array:
+        """The force in all samples, used or not, with its tare."""
+        problem = self.problem
+        trial = problem.trial
+        offsets = offset_columns(problem.names, trial.everything())
         # Stretches without a used sample have no state of their own.
-        columns = np.column_stack([whole.offsets, self._all_states(point)])
-        force = whole.simulate(point) + columns @ constants
-        tare = self.trial.preparation.tare
-        return force if tare is None else force + self.trial.side * tare
+        constants = np.column_stack([offsets, self._fading(problem.ages, problem.members)])
+        force = self._pushing(self.law.simulate(self.motion)) + constants @ self.best
+        tare = trial.preparation.tare
+        return force if tare is None else force + trial.side * tare
+
+
+def _factors(columns: Array) -> tuple[Array, Array]:
+    basis, triangle = np.linalg.qr(columns)
+    return np.asarray(basis), np.asarray(triangle)

@@ -16,7 +16,7 @@ from nrs_design.identification.tissue.starts import reduce_series
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import Elastic
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.contact.relaxation import relax
+from nrs_design.models.contact.relaxation import Relaxation
 
 Array = NDArray[np.float64]
 
@@ -135,7 +135,7 @@ def _solve(trial: Trial, times: Array) -> tuple[Array, Array]:
     from scipy.optimize import nnls
 
     used, motion = trial.used, trial.motion
-    parts = [motion.deflection, *(relax(motion, float(tau))[0] for tau in times)]
+    parts = [motion.deflection, *(Relaxation(motion, float(tau)).y for tau in times)]
     X = np.column_stack([np.where(trial.touching, part, 0.0)[used] for part in parts])
     basis = np.linalg.qr(_constants(trial, times))[0]
     force = measured(trial)

@@ -92,9 +92,10 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
 def _signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
     """Doubt the sign of the force, unless a law, which pushes back, explains it well.
 
-    A tissue that relaxes at a growing deflection has a force that falls, too.
+    A tissue that relaxes while it is held has its least force at its largest deflection, too; but
+    work was done on it.
     """
-    if explained(trial, residuals) >= LEAST_R2:
+    if explained(trial, residuals) >= LEAST_R2 or _takes_work(trial):
         return
     X = np.column_stack([trial.deflection, offsets])
     found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
@@ -104,6 +105,17 @@ def _signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
             "force and deflection have opposite signs (--negate-force if the sensor measures the "
             "force on the probe)"
         )
+
+
+def _takes_work(trial: Trial) -> bool:
+    """Tell whether the probe works on the tissue; with a wrong sign, it is worked on.
+
+    Forces count from the first one: no passive tissue gives back more than it has taken.
+    """
+    x, force = trial.deflection, trial.measured
+    added = (force[1:] + force[:-1]) / 2 - force[0]
+    work = np.cumsum(added * np.diff(x))
+    return float(work.max()) >= -float(work.min())
 
 
 def _size(trial: Trial, residuals: Array) -> Iterator[str]:

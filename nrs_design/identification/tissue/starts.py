@@ -23,7 +23,7 @@ from nrs_design.models.contact import (
 )
 from nrs_design.models.contact.hunt_crossley import LARGEST_EXPONENT, LEAST_EXPONENT
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
-from nrs_design.models.contact.relaxation import relax
+from nrs_design.models.contact.relaxation import Relaxation
 
 Array = NDArray[np.float64]
 
@@ -73,13 +73,13 @@ def _kelvin_voigt(trial: Trial, linear: Linear) -> Iterator[KelvinVoigt]:
 
 def _maxwell(trial: Trial, linear: Linear) -> Iterator[Maxwell]:
     for tau in _time_constants(trial):
-        (k,) = linear(relax(trial.motion, tau)[0])
+        (k,) = linear(Relaxation(trial.motion, tau).y)
         yield Maxwell(k, k * tau)
 
 
 def _kelvin_boltzmann(trial: Trial, linear: Linear) -> Iterator[KelvinBoltzmann]:
     for tau in _time_constants(trial):
-        eta1, arm = linear(trial.motion.deflection, relax(trial.motion, tau)[0])
+        eta1, arm = linear(trial.motion.deflection, Relaxation(trial.motion, tau).y)
         yield KelvinBoltzmann.from_eta(eta1, (eta1 + arm) * tau, tau)
 
 

@@ -188,10 +188,6 @@ class Trial:
             yield "the tare is fitted as moving in proportion to time"
         yield from map(str, self.cuts)
 
-    def shifted(self, shift: float) -> Motion:
-        """Return the deflection from a position of contact that lies by so much deeper."""
-        return Motion(self.motion.time, self.position - shift)
-
     def everything(self) -> Trial:
         """Return the trial with all samples used."""
         return replace(self, used=np.ones(len(self.force), bool))

@@ -94,19 +94,20 @@ class KelvinBoltzmann(AbstractLinearLaw):
 
         The law is a spring eta1 beside a Maxwell element with stiffness ``k2 - eta1``.
         """
-        from nrs_design.models.contact.relaxation import relax
+        from nrs_design.models.contact.relaxation import Relaxation
 
         eta1, _, eta3 = self.eta
-        return eta1 * motion.deflection + (float(self.k2) - eta1) * relax(motion, eta3)[0]
+        return eta1 * motion.deflection + (float(self.k2) - eta1) * Relaxation(motion, eta3).y
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k1, log k2 and log b, shape (n, 3)."""
         import numpy as np
 
-        from nrs_design.models.contact.relaxation import relax
+        from nrs_design.models.contact.relaxation import Relaxation
 
         eta1, _, eta3 = self.eta
-        y, slope = relax(motion, eta3)
+        relaxed = Relaxation(motion, eta3)
+        y, slope = relaxed.y, relaxed.slope
         arm = float(self.k2) - eta1
         # By log eta1, log arm and log eta3, and then by the chain rule.
         inner = np.column_stack([eta1 * motion.deflection, arm * y, arm * slope])

@@ -93,7 +93,7 @@ class AbstractContactLaw(ABC):
     @property
     def values(self) -> tuple[float, ...]:
         """The parameters in the order of `parameters`."""
-        return tuple(map(float, astuple(self)))
+        return tuple(float(getattr(self, name)) for name in self.parameters())
 
     @classmethod
     def parameters(cls) -> tuple[str, ...]:

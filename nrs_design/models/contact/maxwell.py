@@ -58,17 +58,18 @@ class Maxwell(AbstractLinearLaw):
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m)."""
-        from nrs_design.models.contact.relaxation import relax
+        from nrs_design.models.contact.relaxation import Relaxation
 
-        return float(self.k) * relax(motion, self.relaxation_time)[0]
+        return float(self.k) * Relaxation(motion, self.relaxation_time).y
 
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k and log b, shape (n, 2)."""
         import numpy as np
 
-        from nrs_design.models.contact.relaxation import relax
+        from nrs_design.models.contact.relaxation import Relaxation
 
-        y, slope = relax(motion, self.relaxation_time)
+        relaxed = Relaxation(motion, self.relaxation_time)
+        y, slope = relaxed.y, relaxed.slope
         return np.column_stack([float(self.k) * (y - slope), float(self.k) * slope])
 
     @classmethod

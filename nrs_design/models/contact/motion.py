@@ -56,3 +56,9 @@ class Motion:
 
         order: Literal[1, 2] = 2 if len(self) > 2 else 1
         return np.asarray(np.gradient(self.deflection, self.time, edge_order=order), float)
+
+    def moved(self, shift: float) -> Motion:
+        """Return the motion with its deflection counted from so much further; velocities stay."""
+        moved = Motion(self.time, self.deflection - shift)
+        vars(moved)["velocity"] = self.velocity
+        return moved

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +14,9 @@ if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
 
 
-def relax(motion: Motion, time_constant: float) -> tuple[Array, Array]:
-    """Solve ``y' = -y / tau + ddelta`` exactly, from y = 0.
+@dataclass(frozen=True, eq=False)
+class Relaxation:
+    """The solution of ``y' = -y / tau + ddelta`` from y = 0, exactly.
 
     The deflection is linear between samples, so that ``y+ = a y + (1 - a)/h Delta`` with
     ``h = dt / tau`` and ``a = exp(-h)`` has no discretization error.
@@ -24,15 +27,30 @@ def relax(motion: Motion, time_constant: float) -> tuple[Array, Array]:
         Deflection, n samples.
     time_constant : float
         tau in s.
-
-    Returns
-    -------
-    tuple of ndarray
-        y and its derivative by log tau at the samples, shape (n,) each, in m (rad).
     """
-    h = motion.steps / time_constant
-    a = np.exp(-h)
-    gain = -np.expm1(-h) / h
-    y = run_first_order(a, gain * motion.increments)
-    slope = run_first_order(a, a * h * y[:-1] + (gain - a) * motion.increments)
-    return y, slope
+
+    motion: Motion
+    time_constant: float
+
+    @cached_property
+    def _h(self) -> Array:
+        return self.motion.steps / self.time_constant
+
+    @cached_property
+    def _a(self) -> Array:
+        return np.exp(-self._h)
+
+    @cached_property
+    def _gain(self) -> Array:
+        return np.asarray(-np.expm1(-self._h) / self._h)
+
+    @cached_property
+    def y(self) -> Array:
+        """At the samples, shape (n,), in m (rad)."""
+        return run_first_order(self._a, self._gain * self.motion.increments)
+
+    @property
+    def slope(self) -> Array:
+        """The derivative of y by log tau, shape (n,), in m (rad)."""
+        a, increments = self._a, self.motion.increments
+        return run_first_order(a, a * self._h * self.y[:-1] + (self._gain - a) * increments)

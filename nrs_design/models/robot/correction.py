@@ -97,9 +97,7 @@ def correct(full: ArrayLike, simplified: ArrayLike) -> Correction:
     )
 
 
-def correction_coefficients(
-    robot: Robot, sines: Sine | Sequence[Sine], samples: int = SAMPLES
-) -> Correction:
+def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
     """Return the coefficients over one or several trajectories.
 
     Over several, the coefficients are the means of those of each, as in the thesis; the errors
@@ -111,8 +109,6 @@ def correction_coefficients(
         The robot, on its base.
     sines : Sine or sequence of Sine
         The trajectories.
-    samples : int
-        Poses along each.
 
     Returns
     -------
@@ -125,7 +121,7 @@ def correction_coefficients(
         If a trajectory leaves what the legs can reach.
     """
     chosen = (sines,) if isinstance(sines, Sine) else tuple(sines)
-    torques = [_torques(robot, sine, samples) for sine in chosen]
+    torques = [_torques(robot, sine) for sine in chosen]
     each = [correct(full, simplified) for full, simplified in torques]
     mean_ratio = np.mean([item.mean_ratio for item in each], axis=0)
     least_squares = np.mean([item.least_squares for item in each], axis=0)
@@ -194,9 +190,9 @@ def thesis_tilts() -> Array:
     return np.asarray(np.radians(np.arange(-75.0, 1.0)))
 
 
-def _torques(robot: Robot, sine: Sine, samples: int) -> tuple[Array, Array]:
-    """Full and simplified torques along a trajectory; shapes (samples, 3)."""
-    phase = 2 * pi * (np.arange(samples) + 0.5) / samples
+def _torques(robot: Robot, sine: Sine) -> tuple[Array, Array]:
+    """Full and simplified torques along a trajectory; shapes (SAMPLES, 3)."""
+    phase = 2 * pi * (np.arange(SAMPLES) + 0.5) / SAMPLES
     rate = 2 * pi / sine.period
     low, high = sine.d
     swing = np.array([sine.phi, sine.psi, (high - low) / 2])

@@ -20,6 +20,8 @@ from nrs_design.models.robot.robot import Robot
 from nrs_design.models.robot.vectors import Array
 
 _DEGREE = np.radians(1.0)
+# Values of phi and of psi, and of d, in a survey.
+_ANGLES, _DEPTHS = 31, 21
 
 
 def pose_grid(phi: ArrayLike, psi: ArrayLike, d: ArrayLike) -> Array:
@@ -109,15 +111,13 @@ class WorkspaceSurvey:
     obstacle: PoseError | None
 
 
-def survey_workspace(robot: Robot, angles: int = 31, depths: int = 21) -> WorkspaceSurvey:
+def survey_workspace(robot: Robot) -> WorkspaceSurvey:
     """Examine the workspace of the spec on a regular grid.
 
     Parameters
     ----------
     robot : Robot
         The robot.
-    angles, depths : int
-        Values of phi and of psi, and of d.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def survey_workspace(robot: Robot, angles: int = 31, depths: int = 21) -> Worksp
         If not even the middle of the workspace is reachable.
     """
     posture(robot, robot.home)
-    poses = workspace_grid(robot, angles, depths).reshape(-1, 3)
+    poses = workspace_grid(robot, _ANGLES, _DEPTHS).reshape(-1, 3)
     inside = is_reachable(robot, poses)
     joints = inverse_kinematics(robot, poses[inside])
     margins = singularity_margins(robot, poses[inside])

@@ -9,6 +9,7 @@ from itertools import product
 from math import lcm
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.evidence.conewise_quadratic import in_threes, multiplier_count
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
@@ -16,6 +17,8 @@ from nrs_design.proof.evidence.fields import (
     read_dyadic,
     read_integer,
     read_ratio,
+    read_roundings,
+    rounding_fields,
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import (
@@ -26,7 +29,8 @@ from nrs_design.proof.exact import (
     scaled,
 )
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
-from nrs_design.proof.system import Contact, SwitchedSystem
+from nrs_design.proof.steps import Steps, find_odd_roundings
+from nrs_design.proof.system import SwitchedSystem, Time
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 NO_COUPLING = "the system does not say what axes do to each other"
@@ -49,6 +53,10 @@ class CoupledAxes(AbstractFunction):
 
     Where the system has no contact to lose, the first is all there is, and w_i is x_i.
 
+    In discrete time, the forms are those of `nrs_design.proof.steps.Steps` for every motion, with
+    the tau of what axes do to each other, and with those of what their arithmetic rounds if that is
+    covered; their sums over the axes give ``V+ <= rho^2 V``.
+
     Parameters
     ----------
     Q : tuple of tuple of int, shape (n, n)
@@ -56,11 +64,15 @@ class CoupledAxes(AbstractFunction):
     denominator_log2 : int
         Q, tau and lambda are these numerators over two to this power.
     rate : Fraction
-        The alpha in 1/s.
+        The alpha in 1/s, or rho per step.
     taus : tuple of int
         One for each coupling of the system.
     multipliers : tuple of int
-        The lambdas, for each free mode and each force in turn.
+        The lambdas, as in `nrs_design.proof.evidence.conewise_quadratic`: in continuous time for
+        each free mode and each force in turn; none where contact is kept.
+    roundings : tuple of int
+        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "coupled-axes"
@@ -74,6 +86,12 @@ class CoupledAxes(AbstractFunction):
     rate: Fraction
     taus: tuple[int, ...]
     multipliers: tuple[int, ...] = ()
+    roundings: tuple[int, ...] = ()
+
+    @property
+    def covers_rounding(self) -> bool:
+        """Whether it has the multipliers for it."""
+        return bool(self.roundings)
 
     @property
     def is_common_quadratic(self) -> bool:
@@ -93,15 +111,23 @@ class CoupledAxes(AbstractFunction):
             return f"Q is not a {system.order} x {system.order} matrix"
         if len(self.taus) != len(system.couplings):
             return "there is not one multiplier for each coupling"
-        if len(self.multipliers) != pair_count(system.contact):
+        contact = system.contact
+        needed = 0 if contact is None else multiplier_count(contact, system.time)
+        if len(self.multipliers) != needed:
             return "there is not one multiplier for each condition that needs it"
         if any(entry < 0 for entry in self.multipliers):
             return "a multiplier is negative"
+        if (odd := find_odd_roundings(self.roundings, system)) is not None:
+            return odd
         return self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q and the decreases in contact, free, and while an environment lags."""
         yield "Q is not symmetric and positive definite", self.Q
+        if system.time is Time.DISCRETE:
+            for where, form in self._steps().forms(system):
+                yield _failure(where), form
+            return
         for k, mode in enumerate(system.modes):
             form, _ = self._form(self.Q, mode.A, *_parts(system, k), 1)
             yield _failure(f"in mode {mode.name}"), form
@@ -121,6 +147,19 @@ class CoupledAxes(AbstractFunction):
             pull = [weight * entry for entry in _row(f)]
             lagging = with_crossing(form, len(self.Q) - 1, pull)
             yield _failure(f"while the environment lags, mode {mode.name}"), lagging
+
+    def _steps(self) -> Steps:
+        """Return the conditions in discrete time."""
+        crossing, *lagging = self.multipliers or (0,)
+        return Steps(
+            self.Q,
+            self.denominator_log2,
+            self.rate**2,
+            crossing,
+            self.roundings,
+            lagging=in_threes(lagging),
+            couplings=self.taus,
+        )
 
     def _form(
         self,
@@ -177,10 +216,12 @@ class CoupledAxes(AbstractFunction):
                 "deflection where it is positive,"
             )
         end = "" if system.contact is None else " Where free motion ends is not claimed."
+        discrete = system.time is Time.DISCRETE
+        bound = "rho^t |w(0)|" if discrete else "exp(-alpha t) |w(0)|"
         return (
             "For any number of axes that act on each other within the stated bounds "
             f"({names}), each by itself in any of {moves}, every solution satisfies "
-            f"|w(t)| <= exp(-alpha t) |w(0)| with {rate_words(self.rate, system.time)}, {w} "
+            f"|w(t)| <= {bound} with {rate_words(self.rate, system.time)}, {w} "
             f"in the norm |w|^2 = sum of w_i' Q w_i over the axes.{end}"
         )
 
@@ -191,6 +232,7 @@ class CoupledAxes(AbstractFunction):
             "rate": str(self.rate),
             "taus": list(self.taus),
             "multipliers": list(self.multipliers),
+            **rounding_fields(self.roundings),
         }
 
     @classmethod
@@ -200,12 +242,8 @@ class CoupledAxes(AbstractFunction):
         taus, multipliers = (
             tuple(read_integer(entry) for entry in fields[key]) for key in ("taus", "multipliers")
         )
-        return cls(Q, denominator_log2, read_ratio(fields["rate"]), taus, multipliers)
-
-
-def pair_count(contact: Contact | None) -> int:
-    """Return how many pairs there are of a free mode and a force that could pull."""
-    return 0 if contact is None else len(contact.free) * len(contact.pulls)
+        rate, roundings = read_ratio(fields["rate"]), read_roundings(fields)
+        return cls(Q, denominator_log2, rate, taus, multipliers, roundings)
 
 
 def _failure(where: str) -> str:
@@ -224,5 +262,8 @@ def _row(q: RationalMatrix) -> tuple[int, ...]:
 
 def _parts(system: SwitchedSystem, k: int) -> tuple[list[RationalMatrix], list[RationalMatrix]]:
     """Return the B and the q of the k-th mode; free modes come after those in contact."""
-    couplings = system.couplings
-    return [item.columns[k] for item in couplings], [item.rows[k] for item in couplings]
+    couplings, n = system.couplings, system.order
+    # What disturbs is zero in a statement about stability.
+    rows = (item.rows[k] for item in couplings)
+    seen = [RationalMatrix((_row(q)[:n],), q.denominator) for q in rows]
+    return [item.columns[k] for item in couplings], seen

@@ -52,6 +52,12 @@ class InvariantEllipsoid(AbstractEvidence):
     with the multipliers of `nrs_design.proof.evidence.conewise_quadratic`; the disturbances then
     take part in where the deflection goes.
 
+    Where axes act on each other, by w with ``sum |w_k|^2 <= sum |q_k (x, d)|^2``, all of this is
+    about V as a sum over N axes, each with disturbances of its own. The forms have w as further
+    entries and ``sum tau_k (w_k^2 - (q_k (x, d))^2)`` as further terms with one tau_k >= 0 for all
+    motions, which add up to nothing positive over the axes. So V comes down to N, and
+    ``[[Q, q'], [q, level^2/N]] > 0`` gives ``z^2 < level^2 V/N`` on every axis.
+
     Parameters
     ----------
     channels : tuple of str
@@ -71,11 +77,14 @@ class InvariantEllipsoid(AbstractEvidence):
     roundings : tuple of int
         Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
         arithmetic rounds is covered.
+    taus : tuple of int
+        Over the denominator of Q: one for each coupling of the system.
     """
 
     kind: ClassVar[str] = "invariant-ellipsoid"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
+    covers_coupling: ClassVar[bool] = True
 
     channels: tuple[str, ...]
     output: str
@@ -85,6 +94,7 @@ class InvariantEllipsoid(AbstractEvidence):
     level: Fraction
     multipliers: tuple[int, ...] = ()
     roundings: tuple[int, ...] = ()
+    taus: tuple[int, ...] = ()
 
     @property
     def shows(self) -> Shows:
@@ -117,11 +127,22 @@ class InvariantEllipsoid(AbstractEvidence):
             return "a multiplier is negative"
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
             return odd
+        if (unlike := self._find_unlike_axes(system)) is not None:
+            return unlike
         if len(self.shares) != len(self.channels):
             return "there is not one share for each disturbance"
         if min(self.shares) <= 0 or (system.time is Time.DISCRETE and sum(self.shares) >= 1):
             return "the shares are not those of a set that is not left"
         return None if self.level > 0 else "the level is not positive"
+
+    def _find_unlike_axes(self, system: SwitchedSystem) -> str | None:
+        if len(self.taus) != len(system.couplings):
+            return "there is not one multiplier for each coupling"
+        if any(tau < 0 for tau in self.taus):
+            return "the multiplier of a coupling is negative"
+        if system.couplings and system.axes is None:
+            return "the system does not say how many axes are disturbed"
+        return None
 
     def _find_unknown(self, system: SwitchedSystem) -> str | None:
         known = {channel.name for channel in system.channels}
@@ -143,7 +164,7 @@ class InvariantEllipsoid(AbstractEvidence):
         for q in output.rows:
             row = q.fractions()[0]
             rows = [[*q_row, entry] for q_row, entry in zip(Q, row, strict=True)]
-            form = [*rows, [*row, self.level**2]]
+            form = [*rows, [*row, self.level**2 / (system.axes or 1)]]
             failure = f"{self.output} can be beyond the level"
             yield failure, RationalMatrix.from_rows(form).numerators
 
@@ -152,8 +173,10 @@ class InvariantEllipsoid(AbstractEvidence):
         named = self.acting(system)
         weights = tuple(a / c.bound**2 for a, c in zip(self.shares, named, strict=True))
         if system.time is Time.CONTINUOUS:
-            flows = _Flows(system, named, Q, sum(self.shares, Fraction(0)), weights)
-            multipliers = [Fraction(entry, 2**self.denominator_log2) for entry in self.multipliers]
+            unit = 2**self.denominator_log2
+            taus = [Fraction(tau, unit) for tau in self.taus]
+            flows = _Flows(system, named, Q, sum(self.shares, Fraction(0)), weights, taus)
+            multipliers = [Fraction(entry, unit) for entry in self.multipliers]
             for where, form in flows.forms(multipliers):
                 yield where, RationalMatrix.from_rows(form).numerators
             return
@@ -167,6 +190,7 @@ class InvariantEllipsoid(AbstractEvidence):
             channels=tuple(system.channels.index(channel) for channel in named),
             weights=weights,
             lagging=in_threes(lagging),
+            couplings=self.taus,
         ).forms(system)
 
     def bound(self, system: SwitchedSystem) -> Bound:
@@ -186,9 +210,16 @@ class InvariantEllipsoid(AbstractEvidence):
         named = self.acting(system)
         sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
+        among = ""
+        if system.couplings:
+            names = ", ".join(item.name for item in system.couplings)
+            among = (
+                f", on each of at most {system.axes} axes that act on each other within the stated "
+                f"bounds ({names}), every axis disturbed and switched by itself"
+            )
         return (
             f"While {', '.join(sizes)} and nothing else disturbs, switching arbitrarily"
-            f"{lost}: from rest, |{output.name}|{steps} never exceeds "
+            f"{lost}{among}: from rest, |{output.name}|{steps} never exceeds "
             f"{rounded_up(self.level, output.unit)}; from any state, it comes below every larger "
             f"value and stays there.{self._beside_limit(output, named)}"
         )
@@ -221,6 +252,7 @@ class InvariantEllipsoid(AbstractEvidence):
             "level": str(self.level),
             "multipliers": list(self.multipliers),
             **rounding_fields(self.roundings),
+            **({"taus": list(self.taus)} if self.taus else {}),
         }
 
     @classmethod
@@ -236,6 +268,7 @@ class InvariantEllipsoid(AbstractEvidence):
             read_ratio(fields["level"]),
             tuple(read_integer(entry) for entry in fields["multipliers"]),
             read_roundings(fields),
+            tuple(read_integer(tau) for tau in fields.get("taus", [])),
         )
         if (unknown := evidence._find_unknown(system)) is not None:
             raise ValueError(unknown)
@@ -251,21 +284,23 @@ class _Flows:
     Q: Rows
     share: Fraction
     weights: Sequence[Fraction]
+    taus: Sequence[Fraction] = ()
 
     def forms(self, multipliers: Sequence[Fraction]) -> Iterator[tuple[str, Rows]]:
         """Yield the condition of every motion, with where it is."""
         contact = self.system.contact or Contact(())
         inner, last, count = leading(self.Q), len(self.Q) - 1, len(self.system.modes)
         for k, mode in enumerate(self.system.modes):
-            form = self._flow(mode.A.fractions(), self._columns(k), self.Q)
+            form = self._flow(mode.A.fractions(), self._columns(k), self.Q, self._rows(k))
             yield f"in mode {mode.name}", form
         for k, mode in enumerate(contact.free, count):
-            form = self._flow(leading(mode.A.fractions()), self._columns(k)[:-1], inner)
+            own = [[*row[:last], *row[last + 1 :]] for row in self._rows(k)]
+            form = self._flow(leading(mode.A.fractions()), self._columns(k)[:-1], inner, own)
             yield f"in free motion, mode {mode.name}", form
         pairs = product(enumerate(contact.free, count), contact.pulls)
         for ((k, mode), q), multiplier in zip(pairs, multipliers, strict=True):
-            form = self._flow(mode.A.fractions(), self._columns(k), self.Q)
-            pushed = [*q.fractions()[0], *(Fraction(0) for _ in self.channels)]
+            form = self._flow(mode.A.fractions(), self._columns(k), self.Q, self._rows(k))
+            pushed = [*q.fractions()[0], *(Fraction(0) for _ in (*self.channels, *self.taus))]
             crossing = [multiplier * entry for entry in pushed]
             yield (
                 f"while the environment lags, mode {mode.name}",
@@ -273,21 +308,34 @@ class _Flows:
             )
 
     def _columns(self, k: int) -> Rows:
-        """Return the B of the k-th mode."""
+        """Return the B of the k-th mode: of the disturbances, then of the couplings."""
         columns = [channel.columns[k].fractions() for channel in self.channels]
+        columns += [item.columns[k].fractions() for item in self.system.couplings]
         return [[row[0] for row in rows] for rows in zip(*columns, strict=True)]
 
-    def _flow(self, A: Rows, B: Rows, Q: Rows) -> Rows:
-        """Return ``[[-(A'Q + QA + a Q), -QB], [., diag(weights)]]``."""
+    def _rows(self, k: int) -> Rows:
+        """Return the q of the couplings of the k-th mode, over the state and what disturbs it."""
+        n, known = self.system.order, self.system.channels
+        rows = [item.rows[k].fractions()[0] for item in self.system.couplings]
+        acting = [n + known.index(channel) for channel in self.channels]
+        return [[*row[:n], *(row[i] for i in acting)] for row in rows]
+
+    def _flow(self, A: Rows, B: Rows, Q: Rows, q: Rows) -> Rows:
+        """Return ``[[-(A'Q + QA + a Q), -QB], [., diag(weights, tau)]] - sum tau_k q_k' q_k``."""
         moved = multiply(Q, [[*row, *entries] for row, entries in zip(A, B, strict=True)])
         n = len(Q)
-        size = n + len(self.weights)
+        diagonal = (*self.weights, *self.taus)
+        size = n + len(diagonal)
         form = [[Fraction(0)] * size for _ in range(size)]
         for i in range(n):
             for j in range(n):
                 form[i][j] = -moved[i][j] - moved[j][i] - self.share * Q[i][j]
             for j in range(n, size):
                 form[i][j] = form[j][i] = -moved[i][j]
-        for j, weight in enumerate(self.weights, n):
+        for j, weight in enumerate(diagonal, n):
             form[j][j] = weight
+        for tau, row in zip(self.taus, q, strict=True):
+            for i, left in enumerate(row):
+                for j, right in enumerate(row):
+                    form[i][j] -= tau * left * right
         return form

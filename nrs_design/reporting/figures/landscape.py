@@ -18,6 +18,7 @@ from nrs_design.reporting.style import (
     curve,
     legend,
     new_axes,
+    settle,
     styled,
 )
 
@@ -50,7 +51,7 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
     figure, axes = new_axes(4.2)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    _draw_levels(axes, found)
+    labels = _draw_levels(axes, found)
     _draw_border(axes, found)
     _draw_bounds(axes, item, found)
     points = (
@@ -66,27 +67,26 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
     axes.set_xlim(found.Mt[0], found.Mt[-1])
     axes.set_ylim(found.Bt[0], found.Bt[-1])
     legend(figure, axes, 2)
+    settle(figure)
+    _keep_apart(labels)
     return figure
 
 
-def _draw_levels(axes: Axes, found: CostMap) -> None:
+def _draw_levels(axes: Axes, found: CostMap) -> list[Text]:
+    """Draw lines of equal cost; return the labels of some."""
     finite = found.cost[np.isfinite(found.cost)]
     if not len(finite) or np.quantile(finite, _UP_TO) <= finite.min():
-        return
+        return []
     # Closer together near the least cost, where the choice is made; not up to peaks at the border.
     span = float(np.quantile(finite, _UP_TO)) - finite.min()
     levels = finite.min() + span * np.linspace(0, 1, _LEVELS + 1)[1:] ** 2
     lines = axes.contour(found.Mt, found.Bt, found.cost, levels=levels, colors=BLUE, linewidths=0.9)
-    labels = axes.clabel(lines, levels[1::2].tolist(), fmt="%.3g", fontsize=9, colors=INK)
-    _keep_apart(axes, labels)
     axes.plot([], [], color=BLUE, linewidth=0.9, label="equal cost")
+    return list(axes.clabel(lines, levels[1::2].tolist(), fmt="%.3g", fontsize=9, colors=INK))
 
 
-def _keep_apart(axes: Axes, labels: Iterable[Text]) -> None:
-    """Drop the labels that would lie on another one."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    figure.draw_without_rendering()
+def _keep_apart(labels: Iterable[Text]) -> None:
+    """Drop the labels that would lie on another one, where the layout has put them."""
     kept: list[BboxBase] = []
     for label in labels:
         box = label.get_window_extent().expanded(*_ROOM)

@@ -40,6 +40,9 @@ _ONE = (
     "the bounds) jumping between the ends at will, which is one of the cases that are covered."
 )
 
+# Of more couplings, not every combination of ends is a mode of the run.
+MOST_COMBINED = 3
+
 
 class CoupledAxesPage(AbstractKindPage[CoupledAxes]):
     """Q, the multipliers, and a run of one axis at the ends of what acts on it."""
@@ -124,10 +127,10 @@ def extremes(system: SwitchedSystem) -> SwitchedSystem:
     modes, free = list[Mode](), list[Mode]()
     every = (*system.modes, *(() if contact is None else contact.free))
     for k, mode in enumerate(every):
-        for ends in product((-1, 1), repeat=len(system.couplings)):
+        for ends in _ends(len(system.couplings)):
             A = mode.A.fractions()
             for sign, item in zip(ends, system.couplings, strict=True):
-                (q,) = item.rows[k].fractions()
+                q = item.rows[k].fractions()[0][: system.order]
                 for row, (entry,) in zip(A, item.columns[k].fractions(), strict=True):
                     row[:] = [a + sign * entry * b for a, b in zip(row, q, strict=True)]
             label = "/".join((mode.name, *(names[end > 0] for end in ends)))
@@ -135,3 +138,10 @@ def extremes(system: SwitchedSystem) -> SwitchedSystem:
             part.append(Mode(label, RationalMatrix.from_rows(A)))
     lost = None if contact is None else replace(contact, free=tuple(free))
     return replace(system, modes=tuple(modes), contact=lost, couplings=())
+
+
+def _ends(count: int) -> list[tuple[int, ...]]:
+    """Return at which ends couplings are: all combinations, or of many all at the same end."""
+    if count <= MOST_COMBINED:
+        return list(product((-1, 1), repeat=count))
+    return [(-1,) * count, (1,) * count]

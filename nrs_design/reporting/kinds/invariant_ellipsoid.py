@@ -15,9 +15,7 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.run import simulated
-from nrs_design.simulation.disturbed import worst_run
-from nrs_design.simulation.norms import Array
-from nrs_design.simulation.switched import SwitchedRun
+from nrs_design.simulation.worst_case import WorstRun, output_values, worst_against
 
 _DECIDED = (
     "Q holds integers over a power of two, and exact arithmetic decides that no motion leaves the "
@@ -77,8 +75,8 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the level beside the run that an adversary finds."""
         evidence, output = self.evidence, self._output
-        response, motions = worst_run(self.system, self.evidence.bound(self.system))
-        values = motions.outputs(response.state)
+        run = self._found()
+        values = output_values(self.system, output, run.states)
         found = nearly(Fraction(float(np.abs(values).max())), output.unit)
         rows = [
             *(
@@ -102,32 +100,32 @@ class InvariantEllipsoidPage(AbstractKindPage[InvariantEllipsoid]):
                 (
                     Paragraph(text),
                     Table("Bound and simulation", ("Quantity", "Value"), tuple(rows)),
-                    self._illustration(response, values),
+                    self._illustration(run),
                 ),
             ),
         )
 
     def run(self) -> Section:
         """Draw the adversary's run between the bounds."""
-        response, motions = worst_run(self.system, self.evidence.bound(self.system))
-        return simulated(self._illustration(response, motions.outputs(response.state)))
+        return simulated(self._illustration(self._found()))
+
+    def _found(self) -> WorstRun:
+        return worst_against(self.system, self.evidence.bound(self.system))
 
     @property
     def _is_discrete(self) -> bool:
         return self.system.time is Time.DISCRETE
 
-    def _illustration(self, response: SwitchedRun, values: Array) -> Illustration:
+    def _illustration(self, run: WorstRun) -> Illustration:
         system, output = self.system, self._output
-        shown, unit = 1.0, "steps" if self._is_discrete else "s"
-        if system.sample_time is not None:
-            shown, unit = float(system.sample_time), "s"
+        unit = "steps" if self._is_discrete and system.sample_time is None else "s"
         return Illustration(
             f"bound-{self._disturbance}-{output.name}".replace(" ", "-"),
             f"{output.name.capitalize()} under {self._disturbance}",
             _RUN,
             draw_bound(
-                response.time * shown,
-                values,
+                run.time,
+                output_values(system, output, run.states),
                 float(self.evidence.level),
                 None if output.limit is None else float(output.limit),
                 f"{output.name.capitalize()} [{output.unit}]",

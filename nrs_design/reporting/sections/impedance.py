@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.proof.bounds import lower
+from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number
@@ -16,6 +16,7 @@ from nrs_design.reporting.sections.places import linked
 if TYPE_CHECKING:
     from nrs_design.design.analysis import ImpedanceAnalysis
     from nrs_design.design.passivity import PassiveBand
+    from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.pipeline import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
@@ -29,6 +30,12 @@ NOMINAL = (
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
     "stiffness limit all parameters of the law grow in proportion to it."
+)
+
+_PASSIVE_SAMPLED = (
+    "Sampled: any force whose frequencies all lie below takes no energy from the robot, at the "
+    "worst of the ages of the force sample, each of them kept, with the nominal motor. No law that "
+    "samples a force is passive for every force: between two samples it acts unseen."
 )
 
 
@@ -61,6 +68,8 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Stiffness limit [N·m/rad]", lambda item: number(item.margins.stiffness_limit)),
     ("Stiffness limit at the lever arm [N/m]", _at_arm),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
+    ("The same, sampled [Hz], exact", lambda item: _sampled(item.sampled)),
+    ("Sampled, not passive at [Hz], exact", lambda item: _broken(item.sampled)),
 )
 
 # Where a spec says what a row of the table shows, or what it follows from.
@@ -126,6 +135,8 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     paragraphs = [Paragraph(NOMINAL)]
     if any(item.problem.loop.contact.remembers for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
+    if any(item.sampled for item in items):
+        paragraphs.append(Paragraph(_PASSIVE_SAMPLED))
     return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
 
 
@@ -135,6 +146,20 @@ def _passive(band: PassiveBand | None) -> str:
     if band.passive is None:
         return "every frequency"
     return lower(band.passive * Fraction(1000, 6284), 4)
+
+
+def _sampled(bands: Sequence[SampledBand]) -> str:
+    """Write the least band over the ages of the force sample."""
+    if not bands:
+        return ""
+    passive = min(band.passive for band in bands)
+    return lower(passive * Fraction(1000, 6284), 4) if passive else "not shown"
+
+
+def _broken(bands: Sequence[SampledBand]) -> str:
+    """Write the least frequency at which an age of the force sample is not passive."""
+    found = [band.broken[1] for band in bands if band.broken is not None]
+    return upper(min(found) * Fraction(1000, 6283), 4) if found else ""
 
 
 def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:

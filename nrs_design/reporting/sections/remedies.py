@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline import find_relief
+from nrs_design.pipeline.subsets import subset_lines
 from nrs_design.reporting.document import Block, Bullets, Section, Sentence
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
@@ -12,12 +14,15 @@ from nrs_design.reporting.next_steps import next_steps
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.pipeline.subsets import Subset
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"
 
 
-def remedies_section(result: Result, margins: ProofMargins | None) -> Section | None:
+def remedies_section(
+    result: Result, margins: ProofMargins | None, subsets: tuple[Subset, ...] | None = None
+) -> Section | None:
     """Say how far the proof reaches and what to try; None where there is neither to say.
 
     Parameters
@@ -26,10 +31,15 @@ def remedies_section(result: Result, margins: ProofMargins | None) -> Section | 
         Of the certification.
     margins : ProofMargins or None
         Where they were searched.
+    subsets : tuple of Subset, optional
+        What is proved of parts, where that was looked for.
     """
     blocks: list[Block] = []
     if relief := find_relief(result):
         blocks.append(Bullets("Gains that would hold", relief))
+    if subsets is not None and result.certification.verdict is not Verdict.PROVED:
+        parts = tuple(f"{line[0].upper()}{line[1:]}" for line in subset_lines(subsets))
+        blocks.append(Bullets("Not proved together; the strongest parts that are", parts))
     if margins is not None and (lines := tuple(margin_lines(margins, result.loaded))):
         said = tuple(map(_begun, lines))
         blocks.append(Bullets("How far a proof reaches", said))

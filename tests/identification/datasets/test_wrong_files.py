@@ -41,6 +41,7 @@ WRONG = {
     "empty": ("a.csv", b"", "has no header line", None),
     "only comments": ("a.csv", b"# a\n# b\n", "has no header line", None),
     "no rows": ("a.csv", HEAD.encode(), "has 0 rows", 2),
+    "one column of numbers": ("a.csv", b"0\n1\n2\n", "begins with numbers", 1),
     "no header": ("a.csv", text(head=""), "begins with numbers", 1),
     "UTF-16": ("a.csv", text().decode().encode("utf-16"), "UTF-16", 1),
     "binary": ("a.csv", b"\x00\x01\x02" * 50, "is no text", 1),
@@ -121,7 +122,7 @@ WRONG = {
     "a matrix": (
         "a.npz",
         {"time_s": TIME, "deflection_m": np.ones((60, 3)), "force_N": TIME},
-        "60 x 3",
+        r"it has time_s, deflection_m\[:,0\], deflection_m\[:,1\]",
         None,
     ),
     "words in NumPy": (

@@ -101,13 +101,13 @@ def test_a_touch_that_only_grazes_the_tissue():
 def test_derivatives_of_stretches_that_do_not_begin_at_rest(law):
     """Of the law and of what fades from the beginning of each touch, at constants that stay."""
     problem = Problem(type(law), prepare(robot_record(law, slow(1), 0.005, 1)))
-    point = np.log(law.values) + 0.1
-    values = problem.solve(point)[0][problem.offsets.shape[1] :]
+    point = problem.at(np.log(law.values) + 0.1)
+    values = point.best[problem.offsets.shape[1] :]
     assert len(values) > 1
 
     def force(x):
-        return problem.simulate(x) + problem.states(x) @ values
+        return problem.at(x).force + problem.at(x).states @ values
 
-    steps = 1e-5 * np.eye(len(point))
-    slopes = [(force(point + step) - force(point - step)) / 2e-5 for step in steps]
-    assert problem.sensitivities(point) == pytest.approx(np.column_stack(slopes), abs=1e-8)
+    steps = 1e-5 * np.eye(len(point.values))
+    slopes = [(force(point.values + h) - force(point.values - h)) / 2e-5 for h in steps]
+    assert point.sensitivities == pytest.approx(np.column_stack(slopes), abs=1e-8)

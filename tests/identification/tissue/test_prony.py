@@ -7,7 +7,7 @@ from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import prepare
 from nrs_design.identification.tissue.prony import fit_series
 from nrs_design.models.contact import KelvinBoltzmann, Motion
-from nrs_design.models.contact.relaxation import relax
+from nrs_design.models.contact.relaxation import Relaxation
 from tests.identification import synthetic
 from tests.identification.support import record, slow, source
 
@@ -19,7 +19,7 @@ HOLD = Motion(TIME, 0.005 * np.clip((TIME - 2) / 0.5, 0, 1))
 def relaxing(motion, rest, arms, noise, seed):
     force = rest * motion.deflection
     for stiffness, tau in arms:
-        force = force + stiffness * relax(motion, tau)[0]
+        force = force + stiffness * Relaxation(motion, tau).y
     force = force + noise * np.random.default_rng(seed).standard_normal(len(motion))
     return prepare(TissueRecord(source("hold"), motion, force, False))
 

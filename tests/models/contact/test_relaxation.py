@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from nrs_design.models.contact.motion import Motion
-from nrs_design.models.contact.relaxation import relax
+from nrs_design.models.contact.relaxation import Relaxation
 from tests.identification.support import wobble
 
 TAU = 0.3
@@ -16,7 +16,7 @@ TAU = 0.3
 def test_ramp_then_hold():
     time = np.array([0.0, 0.05, 0.3, 0.5, 1.1, 1.2])
     motion = Motion(time, 2.0 * np.minimum(time, 0.5))
-    y, _ = relax(motion, TAU)
+    y = Relaxation(motion, TAU).y
     top = 2.0 * TAU * (1 - np.exp(-0.5 / TAU))
     wanted = np.where(
         time <= 0.5, 2.0 * TAU * (1 - np.exp(-time / TAU)), top * np.exp((0.5 - time) / TAU)
@@ -38,19 +38,19 @@ def test_uneven_steps_against_an_integrator():
             derivative, (start, end * (1 - 1e-15)), [wanted[-1]], rtol=1e-10, atol=1e-12
         )
         wanted.append(run.y[0, -1])
-    assert relax(motion, TAU)[0] == pytest.approx(np.array(wanted), abs=1e-8)
+    assert Relaxation(motion, TAU).y == pytest.approx(np.array(wanted), abs=1e-8)
 
 
 @given(st.floats(-2.0, 2.0))
 def test_slope_by_the_logarithm_of_the_time_constant(log_tau):
     motion, h = wobble(2), 1e-5
-    above, below = (relax(motion, np.exp(log_tau + step))[0] for step in (h, -h))
-    _, slope = relax(motion, float(np.exp(log_tau)))
+    above, below = (Relaxation(motion, np.exp(log_tau + step)).y for step in (h, -h))
+    slope = Relaxation(motion, float(np.exp(log_tau))).slope
     assert slope == pytest.approx((above - below) / (2 * h), abs=1e-7)
 
 
 def test_limits():
     motion = wobble(3)
     # Never forgets, and forgets at once.
-    assert relax(motion, 1e12)[0] == pytest.approx(motion.deflection, rel=1e-9, abs=1e-9)
-    assert np.abs(relax(motion, 1e-9)[0]).max() < 1e-7
+    assert Relaxation(motion, 1e12).y == pytest.approx(motion.deflection, rel=1e-9, abs=1e-9)
+    assert np.abs(Relaxation(motion, 1e-9).y).max() < 1e-7

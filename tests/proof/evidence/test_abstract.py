@@ -315,7 +315,7 @@ FACTS = {
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
     "covers_clock": {"periodic-quadratic", "unstable-period"},
-    "covers_coupling": {"coupled-axes"},
+    "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING | {"invariant-ellipsoid", "no-common-quadratic"},
     "covers_mixtures": SETS | BOUNCING | {"common-polynomial", "block-triangular"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},

@@ -10,7 +10,16 @@ import pytest
 
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, CoupledAxes, Shows
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Contact, Coupling, Mode, Reset, SwitchedSystem, Switching, Time
+from nrs_design.proof.system import (
+    Contact,
+    Coupling,
+    Mode,
+    Reset,
+    Rounding,
+    SwitchedSystem,
+    Switching,
+    Time,
+)
 from tests.proof.systems import bouncing, family, genuine, leaning, matrix
 from tests.proof.truth import decrease, holds, is_positive_multiple
 from tests.support import broken
@@ -324,3 +333,116 @@ def test_resets_are_not_covered():
     assert "kind of switching" in GENUINE.find_fault(
         replace(SYSTEM, switching=Switching(resets=resets))
     )
+
+
+IN_STEPS = ("coupled-axes, steps", "coupled-axes, kept in steps", "coupled-axes, pulling in steps")
+
+
+@pytest.mark.parametrize("example", IN_STEPS)
+def test_axes_that_lean_on_each_other_in_steps_are_proved(example):
+    system, evidence = genuine(example)
+    assert evidence.find_fault(system) is None
+    assert agrees(system, evidence)
+    assert holds(system, evidence)
+    assert "|w(t)| <= rho^t |w(0)|" in evidence.claim(system)
+    assert type(evidence).from_fields(evidence.to_fields(), system) == evidence
+
+
+def scalar_in_steps(size: str) -> SwitchedSystem:
+    """``x+ = x/2 + w`` with ``|w| <= c |x|`` over all axes: decays iff c < 1/2, at 1/2 + c."""
+    return coupled(family([["1/2"]], time=Time.DISCRETE), ([[[1]]], [[[size]]]))
+
+
+def test_a_scalar_in_steps_is_proved_up_to_its_rate():
+    system = scalar_in_steps("1/4")
+    assert CoupledAxes(((1,),), 0, Fraction("0.7501"), (3,)).find_fault(system) is None
+    for numerator in range(1, 200):
+        item = CoupledAxes(((16,),), 4, Fraction("0.7499"), (numerator,))
+        assert "in mode m0" in item.find_fault(system)
+        border = CoupledAxes(((16,),), 4, Fraction("0.9999"), (numerator,))
+        assert border.find_fault(scalar_in_steps("1/2")) is not None
+
+
+def test_one_tau_for_every_mode_in_steps():
+    """As in continuous time: each mode has a tau of its own, and two axes that take turns grow."""
+    A = [["1/2"]]
+    modes = family(A, A, time=Time.DISCRETE)
+    pair = coupled(modes, ([[[2]], [["1/100"]]], [[["1/100"]], [[2]]]))
+    (c,) = pair.couplings
+    unit = 1024
+    for k, tau in enumerate((40 * unit, unit // 200)):
+        part = replace(c, columns=c.columns[k : k + 1], rows=c.rows[k : k + 1])
+        single = replace(pair, modes=pair.modes[k : k + 1], couplings=(part,))
+        item = CoupledAxes(((unit,),), 10, Fraction(9, 10), (tau,))
+        assert item.find_fault(single) is None
+    for power in range(24):
+        item = CoupledAxes(((unit,),), 10, Fraction(99, 100), (1 << power,))
+        assert item.find_fault(pair) is not None
+    # One axis is pushed twofold by twice the state of the other, then the other way round.
+    turn = np.array([[0.5, 4.0], [0.0, 0.5]])
+    assert np.abs(np.linalg.eigvals(turn @ turn.T)).max() > 16
+
+
+@pytest.mark.parametrize("motion", range(3))
+@pytest.mark.parametrize("column", [[[1], [0]], [[0], [1]]])
+def test_a_wild_push_in_any_motion_is_refused(motion, column):
+    """In either mode, and in free motion; on the speed, or on the way by which contact is lost."""
+    system, item = genuine("coupled-axes, steps")
+    first = system.couplings[0]
+    rows, columns = list(first.rows), list(first.columns)
+    rows[motion], columns[motion] = matrix([[4, 0]]), matrix(column)
+    part = replace(first, rows=tuple(rows), columns=tuple(columns))
+    pushed = replace(system, couplings=(part, *system.couplings[1:]))
+    for tau in (0, 1, 100, 10**4, 10**6, 10**8, item.taus[0]):
+        assert replace(item, taus=(tau, *item.taus[1:])).find_fault(pushed) is not None
+
+
+@pytest.mark.parametrize("example", ["coupled-axes, steps", "coupled-axes, pulling in steps"])
+@pytest.mark.parametrize("seed", range(20))
+def test_no_step_of_three_axes_within_the_bounds_raises_the_function(example, seed):
+    system, item = genuine(example)
+    random, scale = Random(seed), Fraction(1, 2**item.denominator_log2)
+    Q = [[scale * entry for entry in row] for row in item.Q]
+    axes = [situation(system, random) for _ in range(3)]
+    sizes = [
+        sum(dot(part.rows[k].fractions()[0], x) ** 2 for k, _, x, _ in axes)
+        for part in system.couplings
+    ]
+    pushes = [share(size, random) for size in sizes]
+    before = after = Fraction(0)
+    for i, (k, A, x, _) in enumerate(axes):
+        moved = [dot(row, x) for row in A]
+        for part, push in zip(system.couplings, pushes, strict=True):
+            column = part.columns[k].fractions()
+            moved = [a + push[i] * b for a, (b,) in zip(moved, column, strict=True)]
+        before, after = before + value(Q, x), after + value(Q, moved)
+    assert after <= item.rate**2 * before
+
+
+def value(Q, x):
+    w = [*x[:-1], max(x[-1], Fraction(0))]
+    return dot(w, [dot(row, w) for row in Q])
+
+
+def test_what_is_rounded_pushes_the_other_axes():
+    """``x+ = x/2 + r + w``, |r| <= |x|/8 and |w| <= |x + 2 r|/8: 25/32 a step, without 2 r 3/4."""
+    system = replace(
+        family([["1/2"]], time=Time.DISCRETE),
+        roundings=(Rounding("a", (matrix([[1]]),), (matrix([["1/8"]]),)),),
+        couplings=(Coupling("c", (matrix([[1]]),), (matrix([["1/8", "1/4"]]),)),),
+    )
+    blind = replace(system, couplings=(Coupling("c", (matrix([[1]]),), (matrix([["1/8", 0]]),)),))
+
+    def some(rate: str, target: SwitchedSystem) -> bool:
+        return any(
+            CoupledAxes(((8,),), 3, Fraction(rate), (tau,), (), (rho,)).find_fault(target) is None
+            for tau in range(1, 120, 2)
+            for rho in range(1, 120, 2)
+        )
+
+    assert some("0.79", system)
+    assert some("0.76", blind)
+    assert not some("0.78", system)
+    exact = CoupledAxes(((8,),), 3, Fraction("0.63"), (40,))
+    assert exact.find_fault(system) is None
+    assert "computed without rounding" in exact.claim(system)

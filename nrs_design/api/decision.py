@@ -1,0 +1,192 @@
+"""A verdict on stability under switching, as the library gives it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design import pipeline
+from nrs_design.certificates.certificate import dump
+from nrs_design.errors import DesignError, OutputError, SpecError
+from nrs_design.output import CERTIFICATE, PAGE, write_output
+from nrs_design.ownership import check_certificate, origin_of
+from nrs_design.search.certification import Attempt
+from nrs_design.spec import LoadedSpec, read_spec
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from nrs_design.proof.evidence import AbstractEvidence
+    from nrs_design.reporting import Report
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A verdict on stability under switching, with all that carries it.
+
+    Parameters
+    ----------
+    result : nrs_design.pipeline.Result
+        The spec with its design, its exact modes, every attempt and the certificate.
+    """
+
+    result: pipeline.Result
+
+    @property
+    def verdict(self) -> str:
+        """``proved``, ``refuted`` or ``inconclusive``."""
+        return str(self.result.certification.verdict)
+
+    @property
+    def common_quadratic(self) -> str:
+        """Whether a common quadratic function exists: ``exists``, ``impossible``, ``unknown``."""
+        return str(self.result.certification.common_quadratic)
+
+    @property
+    def decay_rate(self) -> Fraction | None:
+        """The proved rate: alpha in 1/s, in discrete time rho per step; None without a proof."""
+        evidence = self.evidence
+        return evidence.proved_rate(self.result.certification.system) if evidence else None
+
+    @property
+    def evidence(self) -> AbstractEvidence | None:
+        """The statement that decides the verdict; None if it is inconclusive."""
+        return self.result.certification.evidence
+
+    @property
+    def claim(self) -> str:
+        """What is claimed about stability, in words."""
+        from nrs_design.reporting.sections.head import claim_of
+
+        return claim_of(self.result.certification)
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What the claim takes for granted."""
+        return self.result.certification.system.assumptions
+
+    @property
+    def attempts(self) -> tuple[Attempt, ...]:
+        """Every step of the search: what was tried, how it ended, and its time in s."""
+        return self.result.certification.attempts
+
+    def state_spaces(self) -> dict[str, Any]:
+        """Return every mode by name, as a ``StateSpace`` of python-control.
+
+        Inputs are the disturbances of the spec, if it names any, outputs the states; dt is the
+        sample time in s. Entries are the doubles next to the exact numbers of the proof.
+        """
+        from nrs_design.exporters.state_space import mode_state_spaces
+
+        return mode_state_spaces(self.result.certification.system)
+
+    def plot(self, name: str | None = None) -> Figure:
+        """Return a figure of the report: the run beside its bound, or another one by name.
+
+        Raises
+        ------
+        DesignError
+            If there is no figure of that name; the message lists those that there are.
+        """
+        figures = {item.name: item.figure for item in self._page().illustrations}
+        default = "run" if "run" in figures else next(iter(figures), None)
+        chosen = default if name is None else name
+        if chosen is None or chosen not in figures:
+            raise DesignError(
+                f"there is no figure {chosen!r}", remedy=f"figures here: {', '.join(figures)}"
+            )
+        return figures[chosen]
+
+    def report(self, file: str | Path | None = None) -> str:
+        """Return the report as one HTML page, and write it if a file is named.
+
+        Raises
+        ------
+        OutputError
+            If the file cannot be written.
+        """
+        from nrs_design.reporting import render_html
+
+        page = render_html(self._page())
+        if file is not None:
+            write_output(Path(file), page, replaces=PAGE)
+        return page
+
+    def save(self, folder: str | Path) -> Path:
+        """Write ``NAME.cert.json``, and the spec beside it if no file holds it as it was decided.
+
+        Returns
+        -------
+        Path
+            The certificate, which `nrs_design.verify` checks against the spec.
+
+        Raises
+        ------
+        OutputError
+            If nothing was shown, so that there is no certificate, or a file cannot be written, or
+            another spec stands in its place; or if a file is named, not a folder.
+        """
+        place, loaded = Path(folder), self.result.loaded
+        if place.suffix == ".json":
+            raise OutputError(
+                f"is the name of a file; the certificate is {loaded.spec.name}.cert.json",
+                path=place,
+                remedy=f"name the folder for it, such as {str(place.parent)!r}",
+            )
+        if self.result.certificate is None:
+            raise OutputError(
+                "nothing was proved or refuted, so there is no certificate",
+                path=place,
+                remedy="search longer, with a larger budget or max_degree",
+            )
+        file, spec = place / f"{loaded.spec.name}.cert.json", loaded.path
+        if not _holds(spec, loaded):
+            spec = place / loaded.path.name
+        check_certificate(spec, file)
+        if not spec.exists():
+            write_output(spec, loaded.text)
+        elif not _holds(spec, loaded):
+            raise OutputError(
+                "exists already and is another spec, so it is not overwritten",
+                path=spec,
+                remedy="choose another folder or another name",
+            )
+        origin = origin_of(spec, file)
+        write_output(file, dump(self.result.certificate, origin), replaces=CERTIFICATE)
+        return file
+
+    def _page(self) -> Report:
+        from nrs_design.reporting import build_report
+
+        analysis = None
+        if self.result.designed is not None:
+            try:
+                analysis = pipeline.run_analysis(self.result.designed)
+            except DesignError:
+                # Where a nominal loop has no margins, the page has none.
+                analysis = None
+        return build_report(self.result, analysis)
+
+    def __str__(self) -> str:
+        """Say verdict and claim."""
+        return f"{self.result.loaded.spec.name}: {self.verdict.upper()}\n{self.claim}"
+
+    def _repr_html_(self) -> str:
+        """Show verdict, claim and assumptions in a notebook."""
+        items = "".join(f"<li>{escape(text)}</li>" for text in self.assumptions)
+        return (
+            f"<p><strong>{escape(self.result.loaded.spec.name)}: {self.verdict.upper()}</strong>"
+            f"</p><p>{escape(self.claim)}</p>"
+            f"<details><summary>taken for granted</summary><ul>{items}</ul></details>"
+        )
+
+
+def _holds(path: Path, loaded: LoadedSpec) -> bool:
+    """Tell whether a file says what a spec says."""
+    try:
+        return read_spec(path).sha256 == loaded.sha256
+    except SpecError:
+        return False

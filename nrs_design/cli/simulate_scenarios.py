@@ -1,0 +1,233 @@
+"""``nrs-design simulate`` without more: the scenarios of a spec, each run once."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.tables import print_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from nrs_design.certificates.certificate import Certificate
+    from nrs_design.pipeline import Designed, Progress
+    from nrs_design.pipeline.scenarios import CertifiedBound, CertifiedRate, Runs, Simulated
+    from nrs_design.spec import InteractionDesignSpec
+
+# A run, and the bounds and the rate that are certified beside it.
+Bounded = tuple["Simulated", "tuple[CertifiedBound, ...]", "CertifiedRate | None"]
+
+
+def simulate_scenarios(
+    designed: Designed,
+    wanted: Runs,
+    prove: Callable[[], Certificate | None],
+    out: Path | None,
+    step: Progress,
+) -> Callable[..., int]:
+    """Simulate, and write the figures and tables of every run; return what prints them.
+
+    Parameters
+    ----------
+    designed : Designed
+        The spec and its gains.
+    wanted : Runs
+        Which scenarios, and how they are run.
+    prove : callable
+        Returns the certificate whose bounds are shown, if any; called when all has run.
+    out : Path or None
+        Folder for files.
+    step : callable
+        Told what is done.
+    """
+    from nrs_design.pipeline.scenarios import run_scenarios
+
+    _check_places(designed.spec, wanted.names, out)
+    found = list(run_scenarios(designed, wanted, step))
+    proof = prove()
+    runs = [(one, *_certified(designed, proof, one)) for one in found]
+    step("figures")
+    return partial(_show, designed, runs, _write(designed, out, runs), out)
+
+
+def _show(
+    designed: Designed,
+    runs: Sequence[Bounded],
+    files: Sequence[Path],
+    out: Path | None,
+    *,
+    as_json: bool,
+    quiet: bool,
+) -> int:
+    if files:
+        note(f"written to {out}", quiet=quiet)
+    if as_json:
+        head = {"spec": designed.spec.name, "spec_sha256": designed.loaded.sha256}
+        found = {"runs": [_document(*run) for run in runs], "files": list(map(str, files))}
+        print_json("simulate", head | found)
+    elif not quiet:
+        for run in runs:
+            _print(*run)
+        say("not modelled:")
+        for line in dict.fromkeys(line for one, *_ in runs for line in one.run.left_out):
+            say(f"  - {line}")
+    stopped = any(one.run.stopped for one, *_ in runs)
+    return exit_codes.INCONCLUSIVE if stopped else exit_codes.PROVED
+
+
+def _certified(
+    designed: Designed, proof: Certificate | None, one: Simulated
+) -> tuple[tuple[CertifiedBound, ...], CertifiedRate | None]:
+    """Return what is certified beside a run: bounds, and a rate."""
+    from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
+
+    if proof is None:
+        return (), None
+    return hold_bounds(designed, proof, one), hold_rate(designed, proof, one)
+
+
+def _check_places(spec: InteractionDesignSpec, names: Sequence[str], out: Path | None) -> None:
+    """Refuse, before the runs, a folder in which something else stands in the place of a file."""
+    from nrs_design.output import check_place
+    from nrs_design.simulation.build_scenario import default_names, run_names
+
+    if out is None:
+        return
+    for name in run_names(spec, tuple(names or spec.scenarios or default_names(spec))):
+        for path, beginning in _places(out, spec.name, name).values():
+            check_place(path, beginning)
+
+
+def _places(out: Path, spec: str, scenario: str) -> dict[str, tuple[Path, bytes]]:
+    """Return where each file of a run goes, and how one begins that it may replace."""
+    from nrs_design.output import ARCHIVE, PNG, RESPONSE, SVG
+
+    beginnings = {"csv": RESPONSE, "npz": ARCHIVE, "svg": SVG, "png": PNG}
+    return {
+        suffix: (out / f"{spec}.{scenario}.{suffix}", beginning)
+        for suffix, beginning in beginnings.items()
+    }
+
+
+def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> list[Path]:
+    """Write every run, once all of them are there."""
+    if out is None:
+        return []
+    from nrs_design.output import write_output
+    from nrs_design.reporting.figures.simulated import draw_simulated
+    from nrs_design.reporting.images import to_png, to_svg_file
+    from nrs_design.simulation.run import common_lever_arm
+
+    limits, files = designed.spec.limits, []
+    for one, bounds, _ in runs:
+        response = one.run.response
+        touched = [surface.environment for surface in one.scenario.surfaces]
+        arm = common_lever_arm(designed.spec, touched)
+        level = next(((b.level, not b.uncovered) for b in bounds if b.output == "force"), None)
+        figure = draw_simulated(response, limits.torque.si, limits.velocity.si, arm, level)
+        contents: dict[str, str | bytes] = {
+            "csv": response.to_csv(),
+            "npz": response.to_npz(),
+            "svg": to_svg_file(figure),
+            "png": to_png(figure),
+        }
+        places = _places(out, designed.spec.name, one.scenario.name)
+        for suffix, (path, beginning) in places.items():
+            write_output(path, contents[suffix], replaces=beginning)
+            files.append(path)
+    return files
+
+
+def _document(
+    one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None
+) -> dict[str, Any]:
+    run = one.run
+    return {
+        "scenario": run.scenario,
+        "engine": run.engine,
+        "seed": one.scenario.seed,
+        "stopped": run.stopped,
+        "steps": run.steps,
+        "refused_samples": run.refused,
+        "saturated_samples": run.saturated,
+        "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
+        "not_modelled": list(run.left_out),
+        "metrics": dict(one.metrics),
+        "switches": [{"time": time, "to": name} for time, name in run.switches],
+        "contacts": [
+            {"time": time, "environment": name, "made": made} for time, name, made in run.contacts
+        ],
+        "certified_bounds": [
+            {
+                "output": b.output,
+                "unit": b.unit,
+                "level": b.level,
+                "holds_for_this_run": not b.uncovered,
+                "uncovered": list(b.uncovered),
+            }
+            for b in bounds
+        ],
+        "certified_rate": None
+        if rate is None
+        else {
+            "rate": rate.rate,
+            "unit": rate.unit,
+            "attained": rate.attained,
+            "from": rate.start,
+            "holds_for_this_run": not rate.uncovered,
+            "uncovered": list(rate.uncovered),
+        },
+    }
+
+
+def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None) -> None:
+    """Print the metrics of a run, bounds beside what they bound."""
+    from fractions import Fraction
+
+    from nrs_design.proof.bounds import upper
+    from nrs_design.reporting.simulation import metric_rows, rounded_up
+
+    run = one.run
+    print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
+                metric_rows(one.metrics))  # fmt: skip
+    peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
+    for b in bounds:
+        peak = peaks.get(b.output)
+        shown = "" if peak is None else f", simulated peak {rounded_up(peak)} {b.unit}"
+        level = upper(Fraction(b.level))
+        say(f"  certified bound on the {b.output}: {level} {b.unit}{shown}")
+        for reason in b.uncovered:
+            say(f"    it is not about this run: {reason}")
+    if rate is not None:
+        here = "" if rate.start is None else f", here from {rate.start:.6g} s on"
+        say(f"  certified decay once nothing is commanded{here}: {_rate(rate)}")
+        for reason in rate.uncovered:
+            say(f"    it is not about this run: {reason}")
+    if run.refused:
+        say(f"  the law refused {run.refused} samples: an input was beyond its limits")
+    if run.saturated:
+        say(f"  the motor's command met its limit at {run.saturated} samples")
+    if run.deviation is not None:
+        apart = run.deviation
+        say(
+            f"  from the sampled engine, at most: angle {rounded_up(apart.angle)} rad, velocity "
+            f"{rounded_up(apart.velocity)} rad/s, torque {rounded_up(apart.torque)} N m"
+        )
+    if run.stopped:
+        say(f"  STOPPED: {run.stopped}")
+
+
+def _rate(rate: CertifiedRate) -> str:
+    """Return the rate in words, rounded to the safe side."""
+    from fractions import Fraction
+
+    from nrs_design.proof.bounds import lower, upper
+
+    number = Fraction(rate.rate)
+    text = f"{lower(number)} 1/s" if rate.unit else f"by {upper(number)} a sample"
+    return text + ("" if rate.attained else ", or any slower one")

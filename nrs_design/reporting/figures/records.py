@@ -1,0 +1,244 @@
+"""Signals over time in panels, one column for each run; who is in control is shaded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nrs_design.reporting.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MUTED,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    new_figure,
+    styled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+# Two points from each of so many parts of a curve are drawn: its least and its largest value.
+_PARTS = 400
+_LOOKS: tuple[dict[str, Any], ...] = (
+    {"color": BLUE, "lw": 1.6},
+    {"color": VERMILLION, "lw": 1.4, "linestyle": (0, (5, 2))},
+    {"color": PURPLE, "lw": 1.4, "linestyle": (0, (2, 1.5))},
+    {"color": INK, "lw": 1.2, "linestyle": (0, (6, 2, 1.5, 2))},
+    {"color": SKY, "lw": 1.6},
+    {"color": ORANGE, "lw": 1.4, "linestyle": (0, (5, 2))},
+)
+_PRINTED: dict[str, Any] = {
+    "color": INK,
+    "linestyle": "none",
+    "marker": "x",
+    "markersize": 7,
+    "mew": 1.8,
+}
+_LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
+_INSTANT: dict[str, Any] = {"color": MUTED, "linestyle": (0, (1, 2)), "lw": 1.2}
+# Pale, so that a page's light or dark shows through.
+_SHADES, _PALE = (SKY, ORANGE, GREEN, PURPLE), 0.16
+# Width of all panels in letters; a stay that is narrower than its name goes without.
+_LETTERS = 56
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """One signal.
+
+    Parameters
+    ----------
+    t, y : ndarray, shape (N,)
+        In s, and in the unit of the panel.
+    label : str
+        For the legend.
+    look : int
+        Which colour and dashes.
+    printed : bool
+        Whether these are numbers that a publication prints: crosses, not a line.
+    """
+
+    t: NDArray[np.float64]
+    y: NDArray[np.float64]
+    label: str
+    look: int = 0
+    printed: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panel:
+    """Axes with signals.
+
+    Parameters
+    ----------
+    label : str
+        Quantity and unit.
+    curves : tuple of Curve
+        Signals.
+    limits : tuple of float
+        Horizontal lines.
+    limit : str
+        What they are.
+    ticks : tuple of float
+        Where the axis has numbers; by default matplotlib says.
+    other : tuple of (str, float) or None
+        Quantity and unit of a second scale at the right, and what one unit is there.
+    """
+
+    label: str
+    curves: tuple[Curve, ...]
+    limits: tuple[float, ...] = ()
+    limit: str = "limit"
+    ticks: tuple[float, ...] = ()
+    other: tuple[str, float] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Record:
+    """A run: a column of panels.
+
+    Parameters
+    ----------
+    title : str
+        Above it; may be empty.
+    panels : tuple of Panel
+        From top to bottom, alike in all columns.
+    span : tuple of (float, float)
+        Which time is shown, in s.
+    stays : tuple of (float, float, str)
+        From when to when which controller is in force; empty where there is but one.
+    instants : tuple of float
+        Times that a publication names, in s.
+    """
+
+    title: str
+    panels: tuple[Panel, ...]
+    span: tuple[float, float]
+    stays: tuple[tuple[float, float, str], ...] = ()
+    instants: tuple[float, ...] = ()
+
+
+@styled
+def draw_records(records: Sequence[Record]) -> Figure:
+    """Draw runs beside each other.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        One, or a few with panels alike.
+    """
+    rows = len(records[0].panels)
+    figure = new_figure(1.1 + 1.45 * rows)
+    grid = figure.subplots(rows, len(records), sharex="col", sharey="row", squeeze=False)
+    names = list(dict.fromkeys(name for r in records for _, _, name in r.stays))
+    handles: dict[str, Artist] = {}
+    for column, record in enumerate(records):
+        for row, panel in enumerate(record.panels):
+            axes: Axes = grid[row, column]
+            _draw_panel(axes, panel, record, handles)
+            _shade(axes, record, names, _LETTERS / len(records) if row == 0 else 0.0)
+            if column == 0:
+                axes.set_ylabel(panel.label)
+            if panel.other is not None and column == len(records) - 1:
+                _second_scale(axes, *panel.other)
+        grid[-1, column].set_xlabel("Time [s]")
+        grid[-1, column].set_xlim(record.span)
+        if record.title:
+            grid[0, column].set_title(record.title, fontsize=9.5, pad=18 if record.stays else 6)
+    figure.align_ylabels(grid[:, 0])
+    _legend(figure, handles, names)
+    return figure
+
+
+def _draw_panel(axes: Axes, panel: Panel, record: Record, handles: dict[str, Artist]) -> None:
+    for curve in panel.curves:
+        look = _PRINTED if curve.printed else _LOOKS[curve.look]
+        t, y = (curve.t, curve.y) if curve.printed else _thinned(curve, record.span)
+        (line,) = axes.plot(t, y, label=curve.label, **look)
+        # What stands alone is named by its axis.
+        if len(panel.curves) > 1:
+            handles.setdefault(curve.label, line)
+    for level in panel.limits:
+        handles.setdefault(panel.limit, axes.axhline(level, **_LIMIT))
+    if panel.ticks:
+        axes.set_yticks(panel.ticks)
+    for instant in record.instants:
+        line = axes.axvline(instant, **_INSTANT)
+        handles.setdefault("printed instant", line)
+
+
+def _thinned(
+    curve: Curve, span: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return what is seen of a curve, with the least and the largest value of every part."""
+    inside = (curve.t >= span[0]) & (curve.t <= span[1])
+    t, y = curve.t[inside], curve.y[inside]
+    if len(t) <= 2 * _PARTS:
+        return t, y
+    parts = np.array_split(np.arange(len(t)), _PARTS)
+    kept = {0, len(t) - 1}
+    for part in parts:
+        seen = part[np.isfinite(y[part])]
+        if len(seen):
+            kept |= {int(seen[y[seen].argmin()]), int(seen[y[seen].argmax()])}
+        # A gap stays one.
+        kept |= set(part[~np.isfinite(y[part])][:1].tolist())
+    picked = np.array(sorted(kept))
+    return t[picked], y[picked]
+
+
+def _shade(axes: Axes, record: Record, names: Sequence[str], letters: float) -> None:
+    begin, end = record.span
+    for start, stop, name in record.stays:
+        low, high = max(start, begin), min(stop, end)
+        if low >= high:
+            continue
+        tint = _SHADES[names.index(name) % len(_SHADES)]
+        axes.axvspan(low, high, color=tint, alpha=_PALE, linewidth=0, zorder=0)
+        if letters * (high - low) > (len(name) + 1) * (end - begin):
+            middle, above = (low + high) / 2, axes.get_xaxis_transform()
+            place: dict[str, Any] = {
+                "transform": above,
+                "ha": "center",
+                "va": "bottom",
+                "fontsize": 8.5,
+            }
+            axes.text(middle, 1.02, name, color=MUTED, **place)
+
+
+def _second_scale(axes: Axes, label: str, factor: float) -> None:
+    def there(y: ArrayLike) -> ArrayLike:
+        return np.asarray(y, float) * factor
+
+    def back(y: ArrayLike) -> ArrayLike:
+        return np.asarray(y, float) / factor
+
+    scale = axes.secondary_yaxis("right", functions=(there, back))
+    scale.set_ylabel(label)
+    scale.spines["right"].set_visible(False)
+
+
+def _legend(figure: Figure, handles: dict[str, Artist], names: Sequence[str]) -> None:
+    from matplotlib.patches import Patch
+
+    shades = [
+        Patch(facecolor=_SHADES[i % len(_SHADES)], alpha=_PALE, label=f"controller: {name}")
+        for i, name in enumerate(names)
+    ]
+    items = [*handles.values(), *shades]
+    labels = [*handles, *(str(shade.get_label()) for shade in shades)]
+    if not items:
+        return
+    columns = max(1, min(3, 70 // (max(map(len, labels)) + 6)))
+    figure.set_figheight(figure.get_figheight() + 0.2 * -(-len(items) // columns))
+    figure.legend(items, labels, loc="outside lower center", ncols=columns)

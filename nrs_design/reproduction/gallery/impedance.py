@@ -1,0 +1,179 @@
+"""Figures 6.14 and 6.15: command and torque in soft tissue under one impedance controller."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nrs_design.reporting.document import Illustration
+from nrs_design.reporting.figures.records import Record, draw_records
+from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reproduction.gallery.counterpart import (
+    Counterpart,
+    Outcome,
+    Statement,
+    measured,
+    taken,
+)
+from nrs_design.reproduction.gallery.panels import (
+    ENGINE,
+    at,
+    depth_panel,
+    impedance_panel,
+    met,
+    speed_panel,
+    torque_panel,
+)
+from nrs_design.reproduction.interaction import DESIRED, admittance, into, simulated
+from nrs_design.reproduction.thesis import VELOCITY
+from nrs_design.simulation.metrics import displayed_impedance, impedance_rmse
+
+# 6.2: so fast moves the robot in the thesis's example of a held slider, deg/s.
+HELD = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """One of the two experiments of 6.3.1.2.
+
+    Parameters
+    ----------
+    figure, axis : str
+        Which.
+    contact : str
+        When contact is made, s, as printed.
+    impedances : tuple of (float, str)
+        Instants in s and displayed impedances in N m s/rad, as printed.
+    rmse : str
+        N m s/rad, as printed.
+    tissue : float
+        Angle where the tissue begins in the run, deg.
+    command : tuple of (float, float)
+        Of the run: s and deg/s.
+    """
+
+    figure: str
+    axis: str
+    contact: str
+    impedances: tuple[tuple[float, str], ...]
+    rmse: str
+    tissue: float
+    command: tuple[tuple[float, float], ...]
+
+
+def _press(begin: float, held: float, end: float) -> tuple[tuple[float, float], ...]:
+    """Return a command that rises to `HELD`, is held about an instant, and leaves the tissue."""
+    rise, fall = (begin, 1), (end, 0)
+    return (rise, (held - 2, HELD), (held + 2, HELD), fall, (end + 0.5, -1), (end + 1, -1))
+
+
+EXPERIMENTS = (
+    Experiment(
+        "6.14",
+        "phi",
+        "15",
+        ((26, "2.1372"), (46, "2.0997"), (57, "2.1766")),
+        "0.0595",
+        9.48,
+        ((0, 0), (5, 0), (6, 1), *_press(20, 26, 33), *_press(37, 46, 50), *_press(53, 57, 62),
+         (65, 0)),
+    ),
+    Experiment(
+        "6.15",
+        "psi",
+        "5.3",
+        ((20, "2.0494"), (30, "2.0883"), (43, "2.1131")),
+        "0.0444",
+        3.78,
+        ((0, 0), (1, 0), (2, 1), *_press(14, 20, 24), *_press(26.5, 30, 35), *_press(38, 43, 47),
+         (50, 0)),
+    ),
+)  # fmt: skip
+
+
+def counterparts() -> tuple[Counterpart, ...]:
+    """Simulate both experiments."""
+    return tuple(map(_counterpart, EXPERIMENTS))
+
+
+def _counterpart(one: Experiment) -> Counterpart:
+    controllers = {"impedance": admittance("0", "2.15")}
+    run = simulated(controllers, into(one.tissue, *one.command))
+    response = run.response
+    t, hand, torque = response.t, response["hand"], response["torque"]
+    shown, _ = displayed_impedance(hand, torque)
+    error = impedance_rmse(t, hand, torque, DESIRED)
+    assert error is not None
+    name = f"figure-{one.figure.replace('.', '-')}"
+    printed = [(instant, float(value)) for instant, value in one.impedances]
+    panels = (
+        speed_panel(response, one.axis),
+        torque_panel(response),
+        depth_panel(response),
+        impedance_panel(response, printed),
+    )
+    instants = (float(one.contact), *(instant for instant, _ in one.impedances))
+    record = Record("", panels, (0.0, float(t[-1])), (), instants)
+    figure = draw_records([record])
+    return Counterpart(
+        shows={one.figure: f"Commanded speed of {one.axis} and torque, soft specimen"},
+        section="6.3.1.2",
+        title=f"in and out of soft tissue, {one.axis}",
+        statements=(
+            taken("contact is made first, s", one.contact, met(run, 0)),
+            *(
+                measured(
+                    f"displayed impedance at {instant:g} s, N m s/rad",
+                    value,
+                    at(response, shown, instant),
+                    "at rest the model displays Bt",
+                )
+                for instant, value in one.impedances
+            ),
+            measured(
+                "RMSE of the displayed impedance, N m s/rad",
+                one.rmse,
+                error,
+                "it is that of the command's course, which the thesis moves by a slider and does "
+                "not print",
+                Outcome.OMITTED,
+            ),
+            Statement(
+                "largest torque, N m",
+                "safe (chapter 8); T_max is 0.3",
+                rounded_up(float(np.abs(torque).max())),
+                Outcome.OMITTED,
+                "at rest it is Bt times the command, whose size is not printed: "
+                f"{2.15 * VELOCITY:.4f} at 8 deg/s",
+            ),
+            Statement(
+                "scatter of the displayed impedance",
+                "2.0997 to 2.1766" if one.axis == "phi" else "2.0494 to 2.1131",
+                "2.150 whenever the command rests",
+                Outcome.HARDWARE_ONLY,
+                "the model has no sensor noise, no joint clearance and one specimen",
+            ),
+        ),
+        given=(
+            "motion loop of 4.29 and 4.30, k_soft 43.0356 N m/rad, Mt 0 and Bt 2.15 N m s/rad "
+            "(6.3.1.1)",
+            f"contact at {one.contact} s; instants of the displayed impedance; no contact at first",
+            "4 deg/s, the held slider of the example in 6.2",
+        ),
+        chosen=(
+            "the course of the command: 1 deg/s up to the tissue, 4 deg/s for four seconds about "
+            "each instant, straight lines between, out of the tissue at 1 deg/s",
+            f"where the tissue begins, {one.tissue} deg",
+        ),
+        illustrations=(
+            Illustration(
+                f"{name}-record",
+                f"Counterpart of figure {one.figure}: command, torque, depth, displayed impedance",
+                "Crosses: what the thesis prints. Where the command rests, the model displays "
+                f"Bt; while it changes, the depth lags by Bt/k = 50 ms. {ENGINE}",
+                figure,
+            ),
+        ),
+        runs={name: response},
+    )

@@ -1,0 +1,388 @@
+"""The conditions on a quadratic function under disturbances and errors, in floating point.
+
+Those of `nrs_design.proof.evidence.invariant_ellipsoid`, and in discrete time those of
+`nrs_design.proof.steps`: linear in Q and the multipliers (untrusted).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.system import Channel, Contact, Coupling, Output, Rounding, Time
+from nrs_design.search.conewise_quadratic import Motions, in_numerators, multiplied, numerators
+from nrs_design.search.family import Family, to_floats
+from nrs_design.search.rounding import unscale
+
+Array = NDArray[np.float64]
+
+BITS = (30, 40, 50, 60)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The conditions in coordinates where the state, disturbances and output are about one.
+
+    Parameters
+    ----------
+    time : Time
+        Continuous or discrete.
+    contact, free : ndarray, shapes (m, n, n + c + r) and (f, n, n + c + r)
+        Maps of state, c disturbances and r errors: what axes do to each other, then roundings.
+    contact_sizes, free_sizes : ndarray, shapes (m, r, n + c) and (f, r, n + c)
+        How large the errors are at most; of couplings over all axes. That these depend on the
+        roundings, too, is left to the exact check.
+    pulls : ndarray, shape (p, n)
+        Forces of environments that could pull.
+    rows : ndarray, shape (q, n)
+        The output.
+    disturbances : int
+        The c.
+    losable : bool
+        Whether contact may be lost.
+    couplings : int
+        How many of the errors are what axes do to each other.
+    """
+
+    time: Time
+    contact: Array
+    free: Array
+    contact_sizes: Array
+    free_sizes: Array
+    pulls: Array
+    rows: Array
+    disturbances: int
+    losable: bool
+    couplings: int = 0
+
+    @property
+    def order(self) -> int:
+        """Number of states."""
+        return int(self.contact.shape[1])
+
+    @property
+    def errors(self) -> int:
+        """How many couplings and roundings there are."""
+        return int(self.contact_sizes.shape[1])
+
+    @property
+    def multipliers(self) -> int:
+        """How many multipliers there are for lost contact."""
+        if not self.losable:
+            return 0
+        if self.time is Time.CONTINUOUS:
+            return len(self.free) * len(self.pulls)
+        return 1 + 3 * len(self.pulls)
+
+    def without_roundings(self) -> Problem:
+        """Return the conditions of exact arithmetic."""
+        count = self.couplings
+        width = self.order + self.disturbances + count
+        return replace(
+            self,
+            contact=self.contact[:, :, :width],
+            free=self.free[:, :, :width],
+            contact_sizes=self.contact_sizes[:, :count],
+            free_sizes=self.free_sizes[:, :count],
+        )
+
+    def distinct(self) -> Problem:
+        """Return the conditions with motions that floating point cannot tell apart left out."""
+        touching = _distinct(self.contact, self.contact_sizes)
+        # In continuous time, every free motion has multipliers of its own for what lags.
+        all_free = self.time is Time.CONTINUOUS and len(self.pulls)
+        flying = slice(None) if all_free else _distinct(self.free, self.free_sizes)
+        return replace(
+            self,
+            contact=self.contact[touching],
+            free=self.free[flying],
+            contact_sizes=self.contact_sizes[touching],
+            free_sizes=self.free_sizes[flying],
+        )
+
+    def conditions(self, Q: Array, share: float) -> Iterator[Condition]:
+        """Yield the forms of all motions, for a stack of Q and the sum of the shares."""
+        n = self.order
+        inner, last = Q[:, :-1, :-1], np.zeros(self.contact.shape[2])
+        last[n - 1] = 1.0
+        if self.time is Time.CONTINUOUS:
+            for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
+                yield Condition(_flow(Q, A, share), n, sizes=sizes)
+            for A, sizes in zip(self.free, self.free_sizes, strict=True):
+                moved, own = np.delete(A[:-1], n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
+                yield Condition(_flow(inner, moved, share), n - 1, sizes=own)
+            for k, (i, j) in enumerate(np.ndindex(len(self.free), len(self.pulls))):
+                pull = _crossing(last, np.pad(self.pulls[j], (0, len(last) - n)))
+                yield Condition(_flow(Q, self.free[i], share), n, {k: pull}, self.free_sizes[i])
+            return
+        for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
+            yield Condition(_step(Q, A, Q, share), n, sizes=sizes)
+            if self.losable:
+                lost = _step(Q, A[:-1], inner, share)
+                yield Condition(lost, n, {0: _crossing(last, A[-1])}, sizes)
+        for A, sizes in zip(self.free, self.free_sizes, strict=True):
+            moved, own = np.delete(A, n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
+            yield Condition(_step(inner, moved[:-1], inner, share), n - 1, sizes=own)
+            yield Condition(_step(inner, moved, Q, share), n - 1, sizes=own)
+            for k, q in enumerate(self.pulls):
+                pulled = _crossing(last, np.pad(q, (0, len(last) - n)))
+                yield Condition(_step(Q, A, Q, share), n, {3 * k + 1: pulled}, sizes)
+                crossings = {3 * k + 2: pulled, 3 * k + 3: _crossing(last, A[-1])}
+                yield Condition(_step(Q, A[:-1], inner, share), n, crossings, sizes)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One form that must be positive: images of a stack of Q, and what the multipliers add.
+
+    Parameters
+    ----------
+    images : ndarray, shape (k, s, s)
+        Of every Q.
+    order : int
+        States in it; disturbances and errors follow.
+    crossings : mapping of int to ndarray, each of shape (s, s)
+        The images of its multipliers for lost contact, by which they are.
+    sizes : ndarray or None, shape (r, s - r)
+        Of the errors.
+    """
+
+    images: Array
+    order: int
+    crossings: Mapping[int, Array] = field(default_factory=dict)
+    sizes: Array | None = None
+
+    def stack(self, disturbances: int, multipliers: int) -> Array:
+        """Return the images of Q, lambda, shares and tau in turn."""
+        side, n = self.images.shape[-1], self.order
+        crossings, shares = (
+            np.zeros((multipliers, side, side)),
+            np.zeros((disturbances, side, side)),
+        )
+        for k, crossing in self.crossings.items():
+            crossings[k] = crossing
+        for i in range(disturbances):
+            shares[i, n + i, n + i] = 1.0
+        sizes = np.zeros((0, side)) if self.sizes is None else self.sizes
+        taus = np.zeros((len(sizes), side, side))
+        for i, row in enumerate(sizes):
+            taus[i, : len(row), : len(row)] = -np.outer(row, row)
+            taus[i, n + disturbances + i, n + disturbances + i] = 1.0
+        return np.concatenate([self.images, crossings, shares, taus])
+
+
+def _distinct(maps: Array, sizes: Array) -> list[int]:
+    found: dict[bytes, int] = {}
+    for index, (A, q) in enumerate(zip(maps, sizes, strict=True)):
+        found.setdefault(A.tobytes() + q.tobytes(), index)
+    return list(found.values())
+
+
+def _crossing(last: Array, row: Array) -> Array:
+    return np.asarray(np.outer(last, row) + np.outer(row, last))
+
+
+def _flow(Q: Array, A: Array, share: float) -> Array:
+    """Return the images of Q in a motion in continuous time."""
+    n, side = Q.shape[-1], A.shape[1]
+    half = np.zeros((len(Q), side, side))
+    half[:, :n] = Q @ A
+    form = -(half + np.swapaxes(half, -1, -2))
+    form[:, :n, :n] -= share * Q
+    return form
+
+
+def _step(before: Array, A: Array, after: Array, share: float) -> Array:
+    """Return the images of Q in a step in discrete time."""
+    n = before.shape[-1]
+    form = -(A.T @ after @ A)
+    form[:, :n, :n] += (1 - share) * before
+    return form
+
+
+@dataclass(frozen=True)
+class Found:
+    """A solution in floating point: Q, the multipliers, and what was to be large or small.
+
+    That is the square of the level, or what is left to spare.
+    """
+
+    Q: Array
+    crossings: Array
+    shares: Array
+    taus: Array
+    last: float
+
+
+def problem_of(
+    family: Family,
+    motions: Motions,
+    channels: Sequence[Channel] = (),
+    output: Output | None = None,
+) -> Problem:
+    """Join disturbances, couplings, roundings and output, in the coordinates of the family.
+
+    Disturbances go up to one. Columns are those of the modes in contact, then of the free ones.
+
+    Parameters
+    ----------
+    family : Family
+        Of the system.
+    motions : Motions
+        Its motions.
+    channels : sequence of Channel
+        The disturbances that act; none for stability.
+    output : Output, optional
+        What is to be bounded.
+    """
+    system, d = family.system, family.exponents
+    n, count = len(d), len(system.modes)
+    maps = np.concatenate([motions.contact, motions.free])
+    bounds = np.array([float(channel.bound) for channel in channels])
+    columns = [to_floats(c.columns)[:, :, 0] * b for c, b in zip(channels, bounds, strict=True)]
+    errors: tuple[Coupling | Rounding, ...] = (*system.couplings, *system.roundings)
+    columns += [to_floats(item.columns)[:, :, 0] for item in errors]
+    scaled = [np.ldexp(column, -d)[:, :, None] for column in columns]
+    maps = np.concatenate([maps, *scaled], axis=2)
+    acting = [n + system.channels.index(channel) for channel in channels]
+    sizes = np.zeros((len(maps), len(errors), n + len(channels)))
+    for i, item in enumerate(errors):
+        rows = to_floats(item.rows)[:, 0]
+        sizes[:, i, :n], sizes[:, i, n:] = np.ldexp(rows[:, :n], d), rows[:, acting] * bounds
+    shown = () if output is None else output.rows
+    rows = np.array([to_floats([q])[0, 0] for q in shown]).reshape(-1, n)
+    rows = np.ldexp(rows, d[None, :])
+    return Problem(
+        system.time,
+        maps[:count],
+        maps[count:],
+        sizes[:count],
+        sizes[count:],
+        motions.pulls,
+        rows,
+        len(channels),
+        system.contact is not None,
+        len(system.couplings),
+    )
+
+
+def transformed(problem: Problem, T: Array, size: float = 1.0, level: float = 1.0) -> Problem:
+    """Return the problem in coordinates ``x = size T z``, with outputs divided by a level.
+
+    Parameters
+    ----------
+    problem : Problem
+        In the coordinates of a family.
+    T : ndarray, shape (n, n)
+        Invertible.
+    size, level : float
+        Of the state and of the outputs.
+    """
+    n, inverse = problem.order, np.linalg.inv(T)
+
+    def moved(maps: Array) -> Array:
+        return np.concatenate(
+            [inverse @ maps[:, :, :n] @ T, inverse @ maps[:, :, n:] / size], axis=2
+        )
+
+    def seen(sizes: Array) -> Array:
+        return np.concatenate([sizes[:, :, :n] @ T * size, sizes[:, :, n:]], axis=2)
+
+    return replace(
+        problem,
+        contact=moved(problem.contact),
+        free=moved(problem.free),
+        contact_sizes=seen(problem.contact_sizes),
+        free_sizes=seen(problem.free_sizes),
+        pulls=problem.pulls @ T,
+        rows=problem.rows @ T * (size / level),
+    )
+
+
+def balanced(problem: Problem) -> tuple[Problem, Array]:
+    """Return the problem with every error in units of its own, and what a tau is in them.
+
+    In them, what an error does to the state and what the state does to it are of like size.
+
+    Parameters
+    ----------
+    problem : Problem
+        In coordinates of like size.
+    """
+    start = problem.order + problem.disturbances
+    columns = np.concatenate([problem.contact, problem.free])[:, :, start:]
+    sizes = np.concatenate([problem.contact_sizes, problem.free_sizes])
+    pushed = np.linalg.norm(columns, axis=1).max(axis=0)
+    seen = np.linalg.norm(sizes, axis=2).max(axis=0)
+    units = np.divide(pushed, seen, out=np.ones_like(pushed), where=seen > 0)
+    root = np.sqrt(np.maximum(units, np.finfo(float).tiny))
+
+    def scaled(maps: Array) -> Array:
+        return np.concatenate([maps[:, :, :start], maps[:, :, start:] / root], axis=2)
+
+    own = replace(
+        problem,
+        contact=scaled(problem.contact),
+        free=scaled(problem.free),
+        contact_sizes=problem.contact_sizes * root[:, None],
+        free_sizes=problem.free_sizes * root[:, None],
+    )
+    return own, root**2
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """The integers of a solution over two to a power, in the coordinates of the spec."""
+
+    Q: tuple[tuple[int, ...], ...]
+    log2: int
+    multipliers: tuple[int, ...]
+    couplings: tuple[int, ...]
+    roundings: tuple[int, ...]
+
+
+def roundings(
+    family: Family, found: Found, T: Array, units: Array, size: float = 1.0
+) -> Iterator[Rounded]:
+    """Yield roundings of a solution in coordinates ``x = size T z`` of the family.
+
+    The scale of Q is kept: a set may be ``V <= 1``.
+
+    Parameters
+    ----------
+    family : Family
+        Of the system.
+    found : Found
+        In these coordinates.
+    T : ndarray, shape (n, n)
+        Invertible.
+    units : ndarray
+        As `balanced` gives them.
+    size : float
+        Of the state.
+    """
+    inverse = np.linalg.inv(T) / size
+    Q = inverse.T @ found.Q @ inverse
+    contact = family.system.contact or Contact(())
+    times = multiplied(contact, family.system.time)[: len(found.crossings)]
+    multipliers = found.crossings / T[-1, -1] ** times / size**2
+    multipliers = in_numerators(multipliers, contact, family.system.time)
+    multipliers = np.ldexp(multipliers, -times * int(family.exponents[-1]))
+    taus = found.taus * units[: len(found.taus)]
+    count = len(family.system.couplings)
+    exponent = int(np.frexp(np.abs(Q).max())[1])
+    for bits in BITS:
+        rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
+        log2 -= exponent
+        if log2 < 0:
+            rows, log2 = tuple(tuple(v << -log2 for v in row) for row in rows), 0
+        yield Rounded(
+            rows,
+            log2,
+            numerators(multipliers, log2),
+            numerators(taus[:count], log2),
+            numerators(taus[count:], log2),
+        )

@@ -1,0 +1,243 @@
+"""The game of an adversary: what can happen to a loop from rest, what he wants, what he chooses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.system import Channel, SwitchedSystem, Time
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.rules import Indices, Rules
+
+
+@dataclass(frozen=True, eq=False)
+class Game:
+    """What can happen to a loop that begins at rest, and what the adversary wants of it.
+
+    Parameters
+    ----------
+    maps : ndarray, shape (m, n, n + c)
+        Step of each mode in contact: of the state, and of shares of the largest disturbances.
+    flights : ndarray, shape (m, n, n + c)
+        What takes its place without contact; empty, shape (0, n, n + c), where contact is kept.
+    pulls : ndarray, shape (q, n)
+        Forces of tissue that could pull: while none is positive, contact is lost, too.
+    rules : Rules
+        Which mode may follow which.
+    """
+
+    maps: Array
+    flights: Array
+    pulls: Array
+    rules: Rules
+
+    @classmethod
+    def of(cls, system: SwitchedSystem, channels: Sequence[Channel], step: float) -> Game:
+        """Lay a system on a grid of time, in floating point.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            Modes of one size.
+        channels : sequence of Channel
+            The disturbances that act.
+        step : float
+            Over which choices are held, in s; one in discrete time.
+
+        Raises
+        ------
+        ValueError
+            If the rules of switching are too fine for this grid.
+        """
+        contact = system.contact
+        free = () if contact is None else contact.free
+        parts = [np.array([mode.A.floats() for mode in (*system.modes, *free)])]
+        for channel in channels:
+            columns = np.array([column.floats() for column in channel.columns])
+            parts.append(columns * float(channel.bound))
+        maps = np.concatenate(parts, axis=2)
+        if system.time is Time.CONTINUOUS:
+            maps = _held(maps, step)
+        touching, flying = maps[: len(system.modes)], maps[len(system.modes) :]
+        pulls = () if contact is None else contact.pulls
+        rows = np.array([row.floats()[0] for row in pulls]).reshape(-1, system.order)
+        flights = flying[free_modes(system)] if free else flying
+        return cls(touching, flights, rows, Rules.of(system, step))
+
+    @property
+    def order(self) -> int:
+        """Number of states n."""
+        return int(self.maps.shape[1])
+
+    @property
+    def disturbances(self) -> int:
+        """Number of disturbances c."""
+        return int(self.maps.shape[2]) - self.order
+
+    @property
+    def losable(self) -> bool:
+        """Whether contact may be lost."""
+        return bool(len(self.flights))
+
+    def flies(self, states: Array) -> NDArray[np.bool_]:
+        """Tell at which states, shape (..., n), nothing is touched; shape (...)."""
+        if not self.losable:
+            return np.zeros(states.shape[:-1], dtype=np.bool_)
+        lost = states[..., -1] <= 0
+        if len(self.pulls):
+            lost |= (states @ self.pulls.T <= 0).all(axis=-1)
+        return np.asarray(lost)
+
+
+@dataclass(frozen=True, eq=False)
+class Aim:
+    """What is to become large at the end of each of S runs.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (S, r, n)
+        Rows over the state; a run that has fewer repeats one.
+    allowed : ndarray of bool, shape (S, m, r)
+        Which of them apply in each mode.
+    one_sided : ndarray of bool, shape (S,)
+        Whether positive values alone count, and those without contact not at all.
+    """
+
+    rows: Array
+    allowed: NDArray[np.bool_]
+    one_sided: NDArray[np.bool_]
+
+    def values(self, game: Game, states: Array, modes: Indices) -> tuple[Array, Array]:
+        """Return the largest size at states in modes, and the row with the sign that has it.
+
+        Parameters
+        ----------
+        game : Game
+            That is played.
+        states : ndarray, shape (S, n)
+            One of each run.
+        modes : ndarray of int, shape (S,)
+            In force there.
+
+        Returns
+        -------
+        ndarray, shape (S,), and ndarray, shape (S, n)
+        """
+        runs = np.arange(len(states))
+        found = (self.rows @ states[:, :, None])[:, :, 0]
+        lost = self.one_sided & game.flies(states)
+        size = np.where(self.one_sided[:, None], found, np.abs(found))
+        size = np.where(self.allowed[runs, modes], size, -np.inf)
+        best = size.argmax(axis=1)
+        sign = np.where(~self.one_sided & (found[runs, best] < 0), -1.0, 1.0)
+        return np.where(lost, 0.0, size[runs, best]), self.rows[runs, best] * sign[:, None]
+
+    def repeated(self, times: int) -> Aim:
+        """Return the same aims again and again."""
+        return Aim(
+            np.tile(self.rows, (times, 1, 1)),
+            np.tile(self.allowed, (times, 1, 1)),
+            np.tile(self.one_sided, times),
+        )
+
+    def only(self, runs: Indices) -> Aim:
+        """Return the aims of some runs."""
+        return Aim(self.rows[runs], self.allowed[runs], self.one_sided[runs])
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """What was chosen in S runs.
+
+    Parameters
+    ----------
+    actions : ndarray of int, shape (K, S)
+        Of `Rules`, one for each step.
+    shares : ndarray, shape (K, S, c)
+        Of the largest disturbances, from -1 to 1.
+    """
+
+    actions: Indices
+    shares: Array
+
+    def only(self, runs: Indices) -> Signals:
+        """Return the signals of some runs."""
+        return Signals(self.actions[:, runs], self.shares[:, runs])
+
+    def beside(self, other: Signals) -> Signals:
+        """Return these runs and others."""
+        return Signals(
+            np.concatenate([self.actions, other.actions], axis=1),
+            np.concatenate([self.shares, other.shares], axis=1),
+        )
+
+    def after_rest(self) -> Signals:
+        """Return the runs without the time in which all of them rest; for rules as for `finer`."""
+        begun = int(self.shares.any(axis=(1, 2)).argmax())
+        return Signals(self.actions[begun:], self.shares[begun:])
+
+    def longer(self) -> Signals:
+        """Return runs twice as long, at rest at first; for rules as for `finer`."""
+        rest = Signals(np.zeros_like(self.actions), np.zeros_like(self.shares))
+        return Signals(
+            np.concatenate([rest.actions, self.actions]), np.concatenate([rest.shares, self.shares])
+        )
+
+    def finer(self, times: int) -> Signals:
+        """Return every step cut into some; for rules that let every mode follow every mode."""
+        return Signals(np.repeat(self.actions, times, 0), np.repeat(self.shares, times, 0))
+
+
+def play(game: Game, signals: Signals) -> Array:
+    """Simulate runs from rest.
+
+    Returns
+    -------
+    ndarray, shape (K + 1, S, n)
+        Where a switch resets the state, before the reset.
+    """
+    steps, runs = signals.actions.shape
+    states = np.zeros((steps + 1, runs, game.order))
+    for k in range(steps):
+        states[k + 1] = _step(game, states[k], signals.actions[k], signals.shares[k])
+    return states
+
+
+def _step(game: Game, x: Array, action: Indices, shares: Array) -> Array:
+    rules = game.rules
+    mode = rules.mode[action]
+    if len(rules.jumps) > 1:
+        x = (rules.jumps[rules.jump[action]] @ x[:, :, None])[:, :, 0]
+    maps = game.maps[mode]
+    if game.losable:
+        maps = np.where(game.flies(x)[:, None, None], game.flights[mode], maps)
+    full = np.concatenate([x, shares], axis=1)
+    return np.asarray((maps @ full[:, :, None])[:, :, 0])
+
+
+def free_modes(system: SwitchedSystem) -> Indices:
+    """Return which free mode takes the place of each mode where contact is lost; shape (m,).
+
+    It is of the same controller, with the same gains, motor and delay: of all free modes the one
+    whose name has the most in common.
+    """
+    assert system.contact is not None
+    free = [mode.name.split("/") for mode in system.contact.free]
+    found = []
+    for mode in system.modes:
+        parts = mode.name.split("/")
+        common = [(names[0] == parts[0], len(set(names) & set(parts))) for names in free]
+        found.append(max(range(len(free)), key=lambda i: common[i]))
+    return np.array(found, dtype=np.int64)
+
+
+def _held(maps: Array, step: float) -> Array:
+    """Return the maps over a step of continuous time; shape (k, n, n + c)."""
+    from scipy.linalg import expm
+
+    count, n, width = maps.shape
+    square = np.concatenate([maps, np.zeros((count, width - n, width))], axis=1)
+    return np.asarray(expm(square * step))[:, :n]

@@ -1,0 +1,178 @@
+"""All axes of a robot at once in the sampled loop: what their links do within a period.
+
+docs/certificates/coupled-axes.md derives it. With z the slip, by how much the speeds are not those
+that the motors come to under the commands that are held, and Lambda = (I + M/J)^-1,
+
+    z' = -Lambda D z + h,    |h| <= kappa |omega| + gamma |delta|,    D = diag(1/tau_i)
+
+and what an axis does differs from what it does by itself with a motor of the time constant tau/s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from nrs_design.errors import AssemblyError
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.system import Channel, Coupling
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.coupled import AxesCoupling, check_gravity, not_below
+from nrs_design.switched.sampled_frame import INPUTS, Frame
+from nrs_design.switched.sampled_inputs import Motion, known_entries
+
+# Of the middle of a range, which need not be exact.
+LARGEST_DENOMINATOR = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class Push:
+    """How far a period takes all axes from where each would be by itself: at most this, per signal.
+
+    Parameters
+    ----------
+    slip, speed, deflection : Fraction
+        Times the norm of the slips, speeds and deflections over all axes, at the sample.
+    """
+
+    slip: Fraction
+    speed: Fraction
+    deflection: Fraction
+
+
+def slowed_motor(ranges: ActuatorRanges, coupling: AxesCoupling) -> ActuatorRanges:
+    """Return the motor of an axis with links of the middle weight: its time constant is tau/s.
+
+    Parameters
+    ----------
+    ranges : ActuatorRanges
+        Of a drive without links.
+    coupling : AxesCoupling
+        What is known of the links.
+    """
+    s, tau = _middle(coupling), ranges.time_constant
+    return replace(ranges, time_constant=Interval(tau.nominal / s, tau.low / s, tau.high / s))
+
+
+def couplings_of(
+    frame: Frame,
+    coupling: AxesCoupling,
+    ranges: ActuatorRanges,
+    channels: Sequence[Channel],
+    motions: Sequence[Motion],
+    *,
+    losable: bool,
+) -> Iterator[Coupling]:
+    """Yield what the links do to the speed and to the way of an axis within a period.
+
+    Parameters
+    ----------
+    frame : Frame
+        Of all modes, with the motor of `slowed_motor`.
+    coupling : AxesCoupling
+        What is known of the links.
+    ranges : ActuatorRanges
+        Of a drive without links.
+    channels : sequence of Channel
+        The disturbances.
+    motions : sequence of Motion
+        All modes, those of free motion last.
+    losable : bool
+        Whether contact may be lost where the spring of the tissue ends.
+
+    Raises
+    ------
+    AssemblyError
+        If the period is too long, or gravity changes while contact may be lost.
+    """
+    if coupling.gravity_gradient is not None:
+        check_gravity(losable=losable)
+    states = frame.states
+    omega, delta = states.index("omega [rad/s]"), len(states) - 1
+    unit = coordinates(len(states))
+    way = list(unit[delta])
+    if states[0] == "e [rad]":
+        way[0] = Fraction(-1)
+    on_speed, on_way = pushes(coupling, ranges.time_constant, frame.period)
+    kept = known_entries(frame, channels)
+    first = len(states) + len(INPUTS)
+    seen = [*kept, *range(first, first + len(frame.roundings))]
+    slips = [[motion.slip[i] for i in seen] for motion in motions]
+    wide = coordinates(len(seen))
+    signals = {
+        "the inertia of the links": ("slip", slips),
+        "Coriolis torques": ("speed", [wide[omega]] * len(motions)),
+        "gravity": ("deflection", [wide[delta]] * len(motions)),
+    }
+    for name, (signal, rows) in signals.items():
+        for what, column, push in (
+            ("on the speed", unit[omega], on_speed),
+            ("on the way", way, on_way),
+        ):
+            size = getattr(push, signal)
+            if size:
+                yield _coupling(f"{name} {what}", column, size, rows)
+
+
+def pushes(coupling: AxesCoupling, tau: Interval, period: Fraction) -> tuple[Push, Push]:
+    """Return how far the links take speeds and angles within a period, over all axes.
+
+    Parameters
+    ----------
+    coupling : AxesCoupling
+        What is known of the links.
+    tau : Interval
+        Time constant of a drive without links, in s.
+    period : Fraction
+        In s.
+
+    Raises
+    ------
+    AssemblyError
+        If the period is too long for the bound.
+    """
+    (low, high), s, T = coupling.shares, _middle(coupling), period
+    r, fast, slow = max(high - s, s - low), 1 / tau.low, 1 / tau.high
+    gamma = high * (coupling.gravity_gradient or 0) / coupling.drive
+    kappa = high * (coupling.coriolis or 0) / coupling.drive + gamma * T
+    left = 1 - kappa * T * (1 + high * fast * T)
+    if left <= 0:
+        raise AssemblyError(
+            "a period is too long for a bound on what the links do within it",
+            remedy="shorten the period, or leave coupling out",
+            at=("coupling",),
+        )
+    # The largest |h| within the period, per |z|, |omega| and |delta| at its beginning.
+    torques = Push(kappa * T * high * fast / left, kappa / left, gamma / left)
+    share = 1 + r * fast * T / 2
+    speed = Push(
+        not_below(r * fast * T / (1 + low * slow * T) + T * share * torques.slip),
+        not_below(T * share * torques.speed),
+        not_below(T * share * torques.deflection),
+    )
+    half = T**2 / 2
+    way = Push(
+        not_below(half * (r * fast + share * torques.slip)),
+        not_below(half * share * torques.speed),
+        not_below(half * share * torques.deflection),
+    )
+    return speed, way
+
+
+def _coupling(
+    name: str, column: Sequence[Fraction], size: Fraction, rows: Sequence[LinearForm]
+) -> Coupling:
+    """Return a push along a column, of a size times what a row of each mode sees."""
+    bounds = (RationalMatrix.from_rows([[size * entry for entry in row]]) for row in rows)
+    B = RationalMatrix.from_rows([[entry] for entry in column])
+    return Coupling(name, (B,) * len(rows), tuple(bounds))
+
+
+def _middle(coupling: AxesCoupling) -> Fraction:
+    """Return s, a short number near the middle of the eigenvalues of Lambda, and among them."""
+    low, high = coupling.shares
+    short = ((low + high) / 2).limit_denominator(LARGEST_DENOMINATOR)
+    return short if low <= short <= high else (low + high) / 2

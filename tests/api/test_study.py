@@ -1,0 +1,39 @@
+"""What can be done with a spec file."""
+
+import pytest
+
+import nrs_design as nrs
+from nrs_design.errors import DesignError
+from tests.api.pairs import pair
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
+
+
+def test_unknown_method():
+    with pytest.raises(DesignError, match="no method 'foo'"):
+        nrs.certify(pair(6), method="foo")
+
+
+def test_a_study_of_a_spec(tmp_path):
+    study = nrs.load(SOFT_TISSUE)
+    assert [c.name for c in study.design().controllers] == ["insertion", "withdrawal"]
+    decision = study.certify(coordinates="deflection")
+    assert decision.verdict == "proved"
+    decision.save(tmp_path)
+    # The spec is a file already, so no second copy is made.
+    assert [file.name for file in tmp_path.iterdir()] == ["soft-tissue.cert.json"]
+    assert study.export(tmp_path / "soft-tissue.cert.json").verdict == "proved"
+    assert nrs.verify(tmp_path / "soft-tissue.cert.json", FORCE_LIMIT).fault is not None
+
+
+def test_scenarios_are_simulated():
+    study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
+    switched, not_switched = study.simulate("withdrawal-switched", "withdrawal-not-switched")
+    (sooner,), (later,) = (one.metrics["withdrawal_times"] for one in (switched, not_switched))
+    # Thesis 6.3.2.3 measures about 20 %, from torques that it does not print.
+    assert 1 - sooner / later == pytest.approx(0.289, abs=0.002)
+    (one,) = study.simulate("shaken", period=0.001)
+    assert one.run.sampling == (0.001, 0, 0)
+    with pytest.raises(DesignError, match="no engine"):
+        study.simulate(engine="fast")
+    with pytest.raises(DesignError, match="describes no interaction"):
+        nrs.load(ROOT / "specs/examples/commuting.nrs.yaml").simulate()

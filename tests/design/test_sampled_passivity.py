@@ -1,0 +1,158 @@
+"""Where a sampled admittance is passive: beside a grid, the matrices of a proof, and a run."""
+
+from fractions import Fraction
+from math import pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.sampled import SampledMotion
+from nrs_design.design.passivity import passive_band
+from nrs_design.design.sampled_passivity import sampled_bands
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.motion_loop import close_motion_loop
+from nrs_design.switched.sampled_frame import INPUTS, Frame
+
+MOTOR = Actuator(Fraction("4.8417e-4"), Fraction("0.0351"))
+MOTION = ProportionalDerivative(to_float32(Fraction("117359.436")), Fraction(2060))
+PERIOD = Fraction("0.002")
+
+
+def law_of(Mt, Bt, period=PERIOD, Kt=0):
+    gains = (to_float32(Fraction(gain)) for gain in (Mt, Bt, Kt))
+    return Admittance(*gains).sampled(period, "exact")
+
+
+def real_part(omega, law, period, age):
+    """Return Re V by the formula in floating point, from the matrices that a proof is about."""
+    E = Fraction(float(np.exp(-float(period / MOTOR.time_constant))))
+    motion = SampledMotion.of(MOTION, period)
+    frame = Frame(period, motion, law.a is not None, age, MOTOR.time_constant)
+    rows = frame.rows(law, age, {"Km": MOTOR.gain, "E": E})
+    n = len(frame.states)
+    # The velocity that the command holds on to; the last state only counts the angle.
+    A = np.array([[float(v) for v in row[:n]] for row in rows[:n]])
+    B = np.array([float(row[n + INPUTS.index("force error")]) for row in rows[:n]])
+    z = np.exp(1j * omega * float(period))
+    inner, pushed = A[:-1, :-1], B[:-1]
+    states = np.linalg.solve(
+        z[:, None, None] * np.eye(n - 1) - inner,
+        np.broadcast_to(pushed, (len(z), n - 1))[..., None],
+    )
+    speed = states[:, frame.states.index("omega [rad/s]"), 0]
+    command = (z - float(E)) * speed / float(MOTOR.gain * (1 - E))
+    tau, T = float(MOTOR.time_constant), float(period)
+    held = float(MOTOR.gain) / (tau * 1j * omega + 1) * (1 - 1 / z) / (1j * omega * T)
+    # A force of the hand is one that the environment does not exert.
+    return -(held * command).real
+
+
+@pytest.mark.parametrize("period", ["0.002", "0.01"])
+@pytest.mark.parametrize(("Mt", "Bt"), [(1, 4), (3, 8), ("0.01", "2.15"), (0, "2.15")])
+def test_against_a_scan(Mt, Bt, period):
+    """The first frequency of a dense scan with a negative real part is where the band ends."""
+    T = Fraction(period)
+    law = law_of(Mt, Bt, T)
+    for band in sampled_bands(MOTOR, MOTION, law, T, (0, 1, 5)):
+        low, high = map(float, band.broken)
+        omega = np.linspace(1e-2, pi / float(T) * 0.99, 5000)
+        found = omega[real_part(omega, law, T, band.age) < 0]
+        assert low == pytest.approx(2 / float(T) * np.arctan(float(band.tangent)), abs=2e-9)
+        assert float(band.passive) < low <= high < float(band.passive) * 1.0001
+        assert found[0] - (omega[1] - omega[0]) <= high
+        assert found[0] >= float(band.passive)
+        ends = real_part(np.array([float(band.passive), high]), law, T, band.age)
+        assert ends[0] > -1e-9 * abs(ends).max() > ends[1] or ends[0] > 0 > ends[1]
+
+
+def test_short_periods_tend_to_continuous_time():
+    """The continuous band, and what a late force takes from it."""
+    whole = passive_band(close_motion_loop(MOTOR, MOTION.Kp, MOTION.Kd), Fraction(1), Fraction(4))
+    bands = [
+        sampled_bands(MOTOR, MOTION, law_of(1, 4, T), T, (0,))[0].passive
+        for T in map(Fraction, ("0.004", "0.002", "0.001", "0.0005"))
+    ]
+    assert bands == sorted(bands)
+    assert float(bands[-1]) == pytest.approx(float(whole.passive), rel=0.02)
+    assert bands[-1] < whole.passive
+
+
+@pytest.mark.parametrize("age", [0, 2])
+def test_a_run(age):
+    """Mean power of a sinusoidal force on a run of the law, motor followed between samples."""
+    T = Fraction("0.01")
+    law = law_of(1, 4, T)
+    (band,) = sampled_bands(MOTOR, MOTION, law, T, (age,))
+    for factor, gives in ((0.97, False), (1.03, True)):
+        # A whole number of oscillations in a whole number of samples.
+        samples = 4000
+        turns = round(factor * float(band.passive) * samples * float(T) / (2 * pi))
+        omega = 2 * pi * turns / (samples * float(T))
+        power = _work(law, float(T), age, lambda t, w=omega: sin(w * t), samples)
+        assert (power < 0) == gives
+
+
+def test_a_force_between_samples_takes_any_amount():
+    """One sample moves the robot; what pulls back between the others is not seen."""
+    T, law = 0.01, law_of(1, 4, Fraction("0.01"))
+
+    def force(t, pull):
+        return 1.0 if t < T / 2 else -pull * sin(pi * t / T) ** 2
+
+    works = [
+        _work(law, T, 0, lambda t, p=pull: force(t, p), samples=40, settled=0)
+        for pull in (0, 10, 1000)
+    ]
+    assert works[0] == 0 > works[1] > works[2]
+
+
+def _work(law, T, age, force, samples, settled=2000):
+    """Return the energy that a force puts into the robot within the last samples of a run."""
+    Km, tau, parts = float(MOTOR.gain), float(MOTOR.time_constant), 20
+    Kp, D = float(MOTION.Kp), float(SampledMotion.of(MOTION, Fraction(T).limit_denominator(1000)).D)
+    theta = omega = before = reference = velocity = work = 0.0
+    late = [0.0] * age
+    fine = np.arange(parts) / parts * T + T / parts / 2
+    shrink, s = np.exp(-T / tau), tau * (1 - np.exp(-T / tau))
+    for k in range(settled + samples):
+        late = [*late, force(k * T)]
+        error = reference - theta
+        u = Kp * error + D * (error - before)
+        before = error
+        reference += T * velocity
+        velocity = float(law.a) * velocity + float(law.b) * late.pop(0)
+        if k >= settled:
+            speeds = Km * u + (omega - Km * u) * np.exp(-fine / tau)
+            work += sum(force(k * T + t) * v for t, v in zip(fine, speeds, strict=True)) * T / parts
+        theta += s * omega + Km * (T - s) * u
+        omega = shrink * omega + Km * (1 - shrink) * u
+    return work
+
+
+@settings(deadline=None, max_examples=15)
+@given(
+    Mt=st.fractions(0, 3, max_denominator=100),
+    Bt=st.fractions(Fraction(1, 2), 20, max_denominator=100),
+    T=st.sampled_from([Fraction("0.0005"), Fraction("0.002"), Fraction("0.007")]),
+    age=st.integers(0, 6),
+)
+def test_no_grid_point_contradicts(Mt, Bt, T, age):
+    law = law_of(Mt, Bt, T)
+    (band,) = sampled_bands(MOTOR, MOTION, law, T, (age,))
+    inside = np.linspace(1e-2, float(band.passive) * (1 - 1e-9), 300)
+    values = real_part(inside, law, T, age)
+    assert band.passive > 0
+    assert values.min() > -1e-9 * values.max()
+    assert real_part(np.array([float(band.broken[0])]), law, T, age)[0] < 1e-9 * values.max()
+
+
+def test_what_is_not_decided():
+    with pytest.raises(ValueError, match="spring"):
+        sampled_bands(MOTOR, MOTION, law_of(1, 4, Kt=10), PERIOD, (0,))
+    # The motion loop itself is not stable at half the rate.
+    slow = Fraction("0.08")
+    assert sampled_bands(MOTOR, MOTION, law_of(1, 4, slow), slow, (0,)) == ()

@@ -1,0 +1,41 @@
+"""The virtual wall of Colgate and Schenkel: passive exactly if b > K T/2 + |B|.
+
+Passivity of a class of sampled-data systems: application to haptic interfaces, Journal of Robotic
+Systems 14(1), 1997, equations 13 and 22: a device with the damping b that displays the law H(z) is
+passive if and only if ``b > T/2 Re{(1 - exp(-j omega T)) H}/(1 - cos omega T)`` at all frequencies;
+the wall is ``H = K + B (z - 1)/(T z)``.
+"""
+
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.design.enclosed_polynomial import in_tangent, multiply, negative, numbers
+from nrs_design.design.passivity import first_root
+
+NEAR = Fraction(1, 10**9)
+
+
+def is_passive(b, K, B, T):
+    """Decide the condition by Sturm's theorem, in ``x = tan(omega T/2)^2``.
+
+    With ``1 - cos = 2 x/(1 + x)`` and ``(1 - 1/z) H = N/(T z^2)``, it is that ``4 b T x (1 + x)``
+    is above the real part of N times the conjugate of ``T z^2``; both have a factor x.
+    """
+    above = multiply(numbers(-1, 1), numbers(-B, K * T + B))
+    N, below = in_tangent(above, 2), in_tangent(numbers(0, 0, T), 2)
+    mirrored = [negative(c) if k % 2 else c for k, c in enumerate(below)]
+    even = [low for low, _ in multiply(N, mirrored)][::2]
+    real = [c * (-1) ** k for k, c in enumerate(even)]
+    assert real[0] == 0
+    P = [4 * b * T - real[1], 4 * b * T - real[2]]
+    return P[0] > 0 and P[1] > 0 and first_root(P[::-1]) is None
+
+
+@pytest.mark.parametrize("K", [Fraction(1000), Fraction(1)])
+@pytest.mark.parametrize("B", [Fraction(0), Fraction(3), Fraction("-0.25")])
+@pytest.mark.parametrize("T", [Fraction("0.001"), Fraction("0.01")])
+def test_the_wall(K, B, T):
+    limit = K * T / 2 + abs(B)
+    assert is_passive(limit + NEAR, K, B, T)
+    assert not is_passive(limit - NEAR, K, B, T)

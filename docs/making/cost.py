@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from nrs_design import pipeline
-from nrs_design.design.impedance import (
+from nrs_design.design.impedance import stabilizes
+from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
-    stabilizes,
 )
 from nrs_design.plotting import load_matplotlib
 from nrs_design.spec import read_spec

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.exporters.export import Export
     from nrs_design.exporters.state_space import StateSpaces
-    from nrs_design.pipeline.scenarios import Simulated
+    from nrs_design.pipeline.monte_carlo import Drawing
+    from nrs_design.pipeline.scenarios import Runs, Simulated
+    from nrs_design.pipeline.worst_case import WorstCase
 
 
 @dataclass(frozen=True)
@@ -131,21 +133,102 @@ class Study:
         >>> bool(abs(one.run.response["torque"]).max() < 0.3)
         True
         """
-        if engine not in (None, "exact", "sampled", "mujoco"):
-            remedy = "write exact, sampled or mujoco"
-            raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
-        designed = pipeline.run_design(self.loaded)
-        if designed is None:
-            raise pipeline.wrong_kind(
-                self.loaded,
-                f"a spec of kind {self.loaded.spec.kind} describes no interaction",
-                "use a spec of kind interaction-design",
-            )
-        if engine is None and (period is not None or delay is not None):
-            engine = "sampled"
-        from nrs_design.pipeline.scenarios import Runs, run_scenarios
+        from nrs_design.pipeline.scenarios import run_scenarios
 
-        return tuple(run_scenarios(designed, Runs(tuple(scenarios), engine, period, delay)))
+        wanted = _runs(scenarios, engine, period, delay)
+        return tuple(run_scenarios(self._interaction(), wanted))
+
+    def worst_case(
+        self, certificate: str | Path | None = None, *, seed: int = 0, rounds: int | None = None
+    ) -> WorstCase:
+        """Let an adversary choose all that the spec leaves open, and return his worst runs.
+
+        What he finds may happen in the model: a lower bound of the worst that may. There is a run
+        for each quantity (force, velocity, deflection), beside limits and certified bounds, in SI.
+
+        Parameters
+        ----------
+        certificate : path-like, optional
+            Checked against the spec; its bounds stand beside the runs.
+        seed : int
+            Of what he begins with.
+        rounds : int, optional
+            How often the best runs are changed, and improved again; more find more.
+
+        Raises
+        ------
+        DesignError
+            If the spec is no interaction design, or its controllers are none that he plays against.
+        CertificateError
+            If the file is no certificate of the spec.
+
+        Examples
+        --------
+        >>> import nrs_design as nrs
+        >>> case = nrs.load("docs/examples/scenarios.nrs.yaml").worst_case(rounds=1)
+        >>> force = case.runs[0]
+        >>> force.output.name, force.value > case.limits["force"]
+        ('force', True)
+        """
+        from nrs_design.pipeline.certified_runs import read_certificate
+        from nrs_design.pipeline.worst_case import run_worst_case
+
+        designed = self._interaction()
+        proof = None if certificate is None else read_certificate(Path(certificate), designed)
+        return run_worst_case(designed, proof, seed=seed, rounds=rounds)
+
+    def monte_carlo(
+        self,
+        runs: int,
+        *scenarios: str,
+        seed: int = 0,
+        jobs: int = 1,
+        engine: str | None = None,
+        period: float | None = None,
+        delay: int | None = None,
+    ) -> Drawing:
+        """Simulate scenarios again and again, with parameters drawn from the ranges of the spec.
+
+        Run i depends on the seed and i alone, whatever processes there are.
+
+        Parameters
+        ----------
+        runs : int
+            How many; at least one.
+        *scenarios : str
+            Names, which take turns; by default all of one axis.
+        seed : int
+            Of what is drawn, not negative.
+        jobs : int
+            Processes.
+        engine, period, delay
+            As for `simulate`.
+
+        Returns
+        -------
+        Drawing
+            What every run came to, and the share of runs above each limit with its interval.
+
+        Raises
+        ------
+        DesignError, DataError
+            If there is nothing to draw for, or a scenario cannot be simulated.
+
+        Examples
+        --------
+        >>> import nrs_design as nrs
+        >>> found = nrs.load("docs/examples/scenarios.nrs.yaml").monte_carlo(4, "shaken")
+        >>> share = found.shares["torque"]
+        >>> share.runs, share.low <= share.value <= share.high
+        (4, True)
+        """
+        from nrs_design.pipeline.monte_carlo import MonteCarlo, draw_runs
+
+        for name, value, least in (("runs", runs, 1), ("jobs", jobs, 1), ("seed", seed, 0)):
+            if value < least:
+                raise DesignError(f"{name} is {value}", remedy=f"give {least} or more")
+        wanted = _runs(scenarios, engine, period, delay)
+        return draw_runs(MonteCarlo(self._interaction(), wanted, runs, seed), jobs)
 
     def export(self, certificate: str | Path | None = None) -> Export:
         """Return the gains that ship with their proof, or why there are none.
@@ -165,6 +248,31 @@ class Study:
         from nrs_design.exporters.export import export_design
 
         return export_design(self.loaded, None if certificate is None else Path(certificate))
+
+    def _interaction(self) -> pipeline.Designed:
+        """Design what interacts; refuse another kind of spec."""
+        designed = pipeline.run_design(self.loaded)
+        if designed is None:
+            raise pipeline.wrong_kind(
+                self.loaded,
+                f"a spec of kind {self.loaded.spec.kind} describes no interaction",
+                "use a spec of kind interaction-design",
+            )
+        return designed
+
+
+def _runs(
+    scenarios: tuple[str, ...], engine: str | None, period: float | None, delay: int | None
+) -> Runs:
+    """Return how scenarios are run; who names a period wants the sampled engine."""
+    from nrs_design.pipeline.scenarios import Runs
+
+    if engine not in (None, "exact", "sampled", "mujoco"):
+        remedy = "write exact, sampled or mujoco"
+        raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
+    if engine is None and (period is not None or delay is not None):
+        engine = "sampled"
+    return Runs(scenarios, engine, period, delay)
 
 
 def load(path: str | Path) -> Study:

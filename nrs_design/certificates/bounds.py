@@ -59,3 +59,23 @@ def bound_on(
     every = set(system.channels)
     found = (b for b in bounds if b is not None and b.output.name == output)
     return next((b for b in found if set(b.channels) == every), None)
+
+
+def keeps_command(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> bool:
+    """Tell whether a bound shows that the motor's driver does not saturate from rest.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What the statements are about.
+    statements : iterable of AbstractEvidence
+        Checked; bounds that leave out what is rounded do not count.
+    """
+    from nrs_design.spec.motion import MOTOR_COMMAND
+
+    bounds = (item.bound(system) for item in statements if item.covers_rounding)
+    return any(
+        bound.output.limit is not None and bound.level <= bound.output.limit
+        for bound in bounds
+        if bound is not None and bound.output.name.startswith(MOTOR_COMMAND)
+    )

@@ -211,6 +211,7 @@ def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
         return
     from nrs_design.pipeline.subsets import subset_lines
 
+    say("  not proved together; with as little left out as possible:")
     for line in subset_lines(parts):
         say(f"  {line}")
     if unlooked := " and ".join(_unlooked(result)):

@@ -50,6 +50,10 @@ def _understood(path: Path) -> dict[str, Any]:
     from nrs_design.spec.describe import describe
 
     loaded = read_spec(path)
+    if loaded.spec.kind == "interaction-design" and "csv:" in loaded.text:
+        from nrs_design.simulation.build_scenario import check_recordings
+
+        check_recordings(loaded.spec, path.parent)
     places = Places(loaded)
     return {
         "path": str(path),

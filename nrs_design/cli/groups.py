@@ -53,7 +53,8 @@ def _printable_faults() -> Iterator[None]:
     except Exception as error:
         # Wrong usage, which the command-line library prints itself.
         if hasattr(error, "format_message") and hasattr(error, "message"):
-            error.message = printable(error.message)
+            # What checks a value puts its own name in front of what is wrong with it.
+            error.message = printable(error.message).removeprefix("Value error, ")
         raise
 
 

@@ -128,17 +128,18 @@ def _head(asked: MonteCarlo) -> dict[str, Any]:
     return {
         "spec": loaded.spec.name,
         "spec_sha256": loaded.sha256,
+        "options": asdict(asked.wanted) | {"names": list(asked.wanted.names)},
         "commands_sha256": sha256(commands.encode()).hexdigest(),
         "version": __version__,
         "runs": asked.runs,
         "seed": asked.seed,
-        "options": asdict(asked.wanted) | {"names": list(asked.wanted.names)},
     }
 
 
 def _bounds(asked: MonteCarlo, proof: Certificate) -> dict[str, tuple[float, tuple[str, ...]]]:
     """Return the bounds, and what of the scenarios as written they are not about."""
-    from nrs_design.pipeline.scenarios import hold_bounds, run_scenarios
+    from nrs_design.pipeline.certified_runs import hold_bounds
+    from nrs_design.pipeline.scenarios import run_scenarios
 
     names = {"force": "torque"}
     found: dict[str, tuple[float, tuple[str, ...]]] = {}

@@ -99,7 +99,7 @@ def report(
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
         raise typer.Exit(_report_robot(loaded, file_format, out, day, as_json=as_json, quiet=quiet))
     _check_out(loaded, file_format, out)
-    asked = _Asked(compare_methods, margin, shortest_dwell, stability_map, times, day, certificate)
+    asked = _Asked(certificate, compare_methods, margin, shortest_dwell, stability_map, times, day)
     with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
         result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step, quiet)
         files = _write(page, file_format, out, spec)
@@ -117,13 +117,13 @@ def report(
 class _Asked:
     """What a report is to hold beside design and proof."""
 
+    certificate: Path | None
     compare_methods: bool
     margin: bool
     shortest_dwell: bool
     stability_map: bool
     times: bool
     date: Day | None
-    certificate: Path | None
 
 
 def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) -> None:

@@ -168,7 +168,7 @@ def _proof(
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
     from nrs_design.pipeline import run_certification
-    from nrs_design.pipeline.scenarios import read_certificate
+    from nrs_design.pipeline.certified_runs import read_certificate
 
     if file is not None:
         return read_certificate(file, designed)

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed, Progress
-    from nrs_design.pipeline.scenarios import CertifiedBound, CertifiedRate, Runs, Simulated
+    from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
+    from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.spec import InteractionDesignSpec
 
 # A run, and the bounds and the rate that are certified beside it.
@@ -84,7 +85,7 @@ def _certified(
     designed: Designed, proof: Certificate | None, one: Simulated
 ) -> tuple[tuple[CertifiedBound, ...], CertifiedRate | None]:
     """Return what is certified beside a run: bounds, and a rate."""
-    from nrs_design.pipeline.scenarios import hold_bounds, hold_rate
+    from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 
     if proof is None:
         return (), None
@@ -158,6 +159,7 @@ def _document(
         "deviation_from_sampled": None if run.deviation is None else asdict(run.deviation),
         "not_modelled": list(run.left_out),
         "metrics": dict(one.metrics),
+        "limits": dict(one.scenario.limits),
         "switches": [{"time": time, "to": name} for time, name in run.switches],
         "contacts": [
             {"time": time, "environment": name, "made": made} for time, name, made in run.contacts
@@ -194,7 +196,7 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
 
     run = one.run
     print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
-                metric_rows(one.metrics))  # fmt: skip
+                metric_rows(one.metrics, one.scenario.limits))  # fmt: skip
     peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
     for b in bounds:
         peak = peaks.get(b.output)

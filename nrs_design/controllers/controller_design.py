@@ -20,7 +20,7 @@ class ImpedanceOptimum:
     Bt : float
         Virtual damping, N m s/rad.
     cost : float
-        Value of `nrs_design.design.impedance.impedance_cost` there.
+        Value of `nrs_design.design.impedance_optimum.impedance_cost` there.
     evaluations : int
         Number of admittances that the search tried.
     """

@@ -10,7 +10,7 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import Requirement
-from nrs_design.design.impedance import (
+from nrs_design.design.impedance_optimum import (
     NODES,
     ImpedanceProblem,
     admittance_at,

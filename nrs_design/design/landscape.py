@@ -10,12 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
+from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
-    stabilizes,
 )
 from nrs_design.design.loops import Loops
 from nrs_design.design.transfer import FloatArray, trim

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from math import hypot, isfinite
 from pathlib import Path
@@ -13,6 +12,7 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
+from nrs_design.identification.spec_document import SpecDocument
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
@@ -27,8 +27,6 @@ from nrs_design.spec.sampling import LONGEST_DELAY
 _DIGITS = 6
 # What only a power law has in a spec.
 _POWER_KEYS = ("exponent", "about", "preload")
-# A longer text is a sentence, and no quantity.
-_SENTENCE = 40
 
 
 def merge_tissue(
@@ -69,7 +67,7 @@ def merge_tissue(
         )
     spec = _interaction(loaded)
     name = _environment(spec, environment, loaded.path)
-    document = _Document(loaded)
+    document = SpecDocument(loaded)
     node = document.root["environments"][name]
     power = found.tangent is not None and has_place(found.tangent)
     if found.tangent is not None and power:
@@ -125,7 +123,7 @@ def _exponent_range(estimate: Estimate) -> tuple[Decimal, Decimal]:
 
 
 def _put_power_law(
-    document: _Document, node: Any, about: Tangent, law: AbstractLinearLaw, *, rotational: bool
+    document: SpecDocument, node: Any, about: Tangent, law: AbstractLinearLaw, *, rotational: bool
 ) -> tuple[str, ...]:
     """Write a Hunt-Crossley law by its tangent; return the keys that it has."""
     document.put(node, "model", HuntCrossley.name)
@@ -149,7 +147,7 @@ def _preload(found: TissueIdentification) -> str:
     return f"deflections from {about.low:.6g} {unit} to {about.high:.6g} {unit}"
 
 
-def _put_doubts(document: _Document, node: Any, doubts: Sequence[str]) -> None:
+def _put_doubts(document: SpecDocument, node: Any, doubts: Sequence[str]) -> None:
     """Note doubts; a reason that was given for others does not hold for them."""
     texts = [_one_line(doubt) for doubt in doubts]
     if len(texts) > MAX_DOUBTS:
@@ -188,7 +186,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
             remedy="leave --write out, or record commands that a first order describes",
         )
     _check_commands(spec, found.unit, loaded.path)
-    document = _Document(loaded)
+    document = SpecDocument(loaded)
     node = document.root["actuator"]
     if found.unit != spec.actuator.command:
         document.put(node, "command", found.unit)
@@ -268,7 +266,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
             remedy="record longer or livelier forces, or sample with a longer period",
         )
-    document = _Document(loaded)
+    document = SpecDocument(loaded)
     node = document.root["sampling"]
     document.put(node, "delay", low if low == high else [low, high])
     document.put(node, "provenance", [_provenance(found.record.source)])
@@ -290,7 +288,7 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
         If the interval of the mass reaches zero.
     """
     spec = _interaction(loaded)
-    document = _Document(loaded)
+    document = SpecDocument(loaded)
     sensor = document.child(document.root, "sensor", ("bias", "tool"))
     document.put(sensor, "bias", _left(found.torque_bias, "N*m"))
     if spec.sensor is not None and spec.sensor.pivot is not None:
@@ -345,7 +343,7 @@ def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> s
     return name
 
 
-def _put_range(document: _Document, node: Any, key: str, value: dict[str, Any]) -> None:
+def _put_range(document: SpecDocument, node: Any, key: str, value: dict[str, Any]) -> None:
     """Replace a quantity with range in place, so that comments within it stay."""
     old = node.get(key)
     if not isinstance(old, dict):
@@ -387,100 +385,3 @@ def _plain(number: Decimal) -> str:
 def _provenance(source: Source) -> dict[str, str]:
     data = "synthetic" if source.synthetic else "measured"
     return {"file": source.path.name, "sha256": source.sha256, "data": data}
-
-
-class _Document:
-    """A YAML text that is changed in few places."""
-
-    def __init__(self, loaded: LoadedSpec) -> None:
-        from ruamel.yaml import YAML
-        from ruamel.yaml.util import load_yaml_guess_indent
-
-        self._loaded = loaded
-        _, indent, offset = load_yaml_guess_indent(loaded.text)
-        self._yaml = YAML(typ="rt")
-        self._yaml.preserve_quotes = True
-        # Lines are never folded anew.
-        self._yaml.width = 1 << 20
-        self._yaml.indent(mapping=2, sequence=indent or 4, offset=2 if offset is None else offset)
-        self.root: Any = self._yaml.load(loaded.text)
-
-    def put(self, node: Any, key: str, value: object) -> None:
-        """Set a key; a new one goes second to last, as the last one carries what comes after."""
-        flow = _flow(value)
-        if key in node or not len(node):
-            node[key] = flow
-        else:
-            node.insert(max(len(node) - 1, 1), key, flow)
-
-    def child(self, node: Any, key: str, names: Iterable[str]) -> Any:
-        """Return the mapping at a key; where there is none, a new one in block style.
-
-        Parameters
-        ----------
-        node : mapping
-            The one above.
-        key : str
-            In it.
-        names : iterable of str
-            What is going to be put into a new one, in this order.
-        """
-        from ruamel.yaml.comments import CommentedMap
-
-        if node.get(key) is None:
-            self.put(node, key, "")
-            node[key] = CommentedMap.fromkeys(names)
-        return node[key]
-
-    def drop(self, node: Any, key: str) -> None:
-        """Remove a key, but not the comments that follow it."""
-        if key not in node:
-            return
-        comments = node.ca.items.pop(key, None)
-        del node[key]
-        if comments is not None and len(node):
-            node.ca.items.setdefault(list(node)[-1], comments)
-
-    def text(self) -> str:
-        """Return the new text, checked.
-
-        Raises
-        ------
-        SpecError
-            If the result is no valid spec, or a comment would be lost.
-        """
-        stream = io.StringIO()
-        self._yaml.dump(self.root, stream)
-        text = stream.getvalue()
-        if "\r\n" in self._loaded.text:
-            text = text.replace("\n", "\r\n")
-        lost = [line for line in _comments(self._loaded.text) if line not in set(_comments(text))]
-        if lost:
-            raise SpecError(
-                f"the comment {lost[0]!r} would be lost",
-                path=self._loaded.path,
-                remedy="move it out of the value that is replaced",
-            )
-        parse_spec(text, self._loaded.path)
-        return text
-
-
-def _flow(value: object) -> object:
-    """Return a value in flow style, except for a list of mappings or of sentences."""
-    from ruamel.yaml.comments import CommentedMap, CommentedSeq
-
-    if isinstance(value, dict):
-        mapping = CommentedMap({key: _flow(item) for key, item in value.items()})
-        mapping.fa.set_flow_style()
-        return mapping
-    if isinstance(value, list):
-        sequence = CommentedSeq(_flow(item) for item in value)
-        if not any(isinstance(item, dict) or len(str(item)) > _SENTENCE for item in value):
-            sequence.fa.set_flow_style()
-        return sequence
-    return value
-
-
-def _comments(text: str) -> Sequence[str]:
-    lines: Iterable[str] = (line.strip() for line in text.splitlines())
-    return [line for line in lines if line.startswith("#")]

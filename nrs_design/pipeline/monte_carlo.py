@@ -12,7 +12,7 @@ from nrs_design.pipeline.scenarios import Runs, scenarios_of, simulate_group
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
-    from nrs_design.simulation.monte_carlo import Outcome
+    from nrs_design.simulation.monte_carlo import Outcome, Share
     from nrs_design.simulation.scenario import Scenario
 
 # Runs that a process is given at once.
@@ -70,6 +70,41 @@ class MonteCarlo:
         return {one.name: common | dict(one.limits) for one in self.scenarios}
 
 
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """What all runs came to.
+
+    Parameters
+    ----------
+    outcomes : tuple of Outcome
+        Of one run after the other, in SI.
+    shares : mapping of str to Share
+        Of runs above the limit, for each quantity that has one.
+    limits : mapping of str to mapping of str to float
+        Of the quantities in every scenario, in SI.
+    """
+
+    outcomes: tuple[Outcome, ...]
+    shares: Mapping[str, Share]
+    limits: Mapping[str, Mapping[str, float]]
+
+
+def draw_runs(asked: MonteCarlo, jobs: int = 1) -> Drawing:
+    """Simulate all runs.
+
+    Parameters
+    ----------
+    asked : MonteCarlo
+        What is simulated.
+    jobs : int
+        Processes.
+    """
+    from nrs_design.simulation.monte_carlo import shares
+
+    outcomes = tuple(run_monte_carlo(asked, 0, jobs))
+    return Drawing(outcomes, shares(outcomes, asked.limits), asked.limits)
+
+
 def run_monte_carlo(asked: MonteCarlo, first: int = 0, jobs: int = 1) -> Iterator[Outcome]:
     """Simulate the runs from one on, in their order, whatever processes there are.
 
@@ -113,9 +148,16 @@ class _Simulator:
         from nrs_design.simulation.monte_carlo import Outcome, draw
 
         designed = self.asked.designed
-        drawn = draw(designed.spec, designed.plant, self.scenarios, self.asked.seed, index)
+        drawn = draw(
+            designed.spec,
+            designed.plant,
+            designed.design,
+            self.scenarios,
+            self.asked.seed,
+            index,
+        )
         with placed(designed.loaded):
-            mine = replace(designed, plant=drawn.plant)
+            mine = replace(designed, plant=drawn.plant, design=drawn.design)
             scenario = drawn.scenario
             (one,) = simulate_group(mine, scenario.name, (scenario,), self.asked.wanted)
         uncovered = [*uncovered_by_chance(designed.spec, one.run)]

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed
@@ -86,20 +85,15 @@ def _sampled(designed: Designed, system: SwitchedSystem) -> Outputs:
 
 def _following_velocities(designed: Designed, system: SwitchedSystem) -> Outputs:
     """Return what a loop shows whose controllers command velocities."""
+    from nrs_design.switched.commanded import force_rows
+
     plant, motion = designed.plant, designed.design.motion
     touched = plant.among(designed.design.contacts)
     joint = Joint.of(plant, motion)
     loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal
     first = touched[0].law.states[0]
     pressed = _unit(system, first)
-    rows = list[RationalMatrix]()
-    for environment in touched:
-        memories = (f"{environment.name}: {name}" for name in environment.law.states[1:])
-        places = [system.states.index(name) for name in (first, *memories)]
-        own = [coordinates(system.order)[place] for place in places]
-        for law in environment.corners:
-            force, _ = law.react(loop.output(system.order), own)
-            rows.append(RationalMatrix.from_rows([force]))
+    rows = list(force_rows(loop, system.states, touched))
     velocity = [float(x) for x in loop.output(system.order)]
     deflection = pressed if first == _DEFLECTION else None
     return _outputs(designed, system, rows, [velocity], deflection, pressed)

@@ -1,4 +1,4 @@
-"""From a design to runs of its scenarios, and what is certified beside them."""
+"""From a design to runs of its scenarios."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.certificates.certificate import Certificate
-from nrs_design.errors import CertificateError, DesignError
+from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import Designed, Progress, placed, silent
 from nrs_design.proof.noun import dataclass
 
@@ -37,26 +36,6 @@ class Simulated:
     scenario: Scenario
     run: Run
     metrics: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedBound:
-    """A certified bound beside a run.
-
-    Parameters
-    ----------
-    output, unit : str
-        What is bounded.
-    level : float
-        Not below what is proved.
-    uncovered : tuple of str
-        What happens in the run that the proof says nothing about; empty if the bound holds for it.
-    """
-
-    output: str
-    unit: str
-    level: float
-    uncovered: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,106 +239,3 @@ def _names(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:
                 at=("scenarios", name, "axes"),
             )
     return wanted.names or known
-
-
-def hold_bounds(
-    designed: Designed, certificate: Certificate, simulated: Simulated
-) -> tuple[CertifiedBound, ...]:
-    """Hold what is certified against a run.
-
-    Parameters
-    ----------
-    designed : Designed
-        The spec and its plant.
-    certificate : Certificate
-        Checked, of that spec.
-    simulated : Simulated
-        A run of that spec.
-    """
-    from nrs_design.proof.bounds import upper_float
-    from nrs_design.simulation.coverage import uncovered
-
-    system, found = certificate.system, []
-    for statement in certificate.statements:
-        bound = statement.bound(system)
-        # One bound for each output is about all disturbances at once.
-        if bound is None or set(bound.channels) != set(system.channels):
-            continue
-        reasons = uncovered(designed.spec, system, statement, simulated.scenario, simulated.run)
-        level = upper_float(bound.level)
-        found.append(CertifiedBound(bound.output.name, bound.output.unit, level, tuple(reasons)))
-    return tuple(found)
-
-
-@dataclass(frozen=True, slots=True)
-class CertifiedRate:
-    """A certified rate of decay beside a run.
-
-    Parameters
-    ----------
-    rate : float
-        Not better than what is proved: in 1/s, or the factor per sample.
-    unit : str
-        ``1/s``, or empty for a factor.
-    attained : bool
-        Whether it is proved itself, not only what is slower.
-    start : float or None
-        From when on nothing is commanded, in s; None where the run ends before.
-    uncovered : tuple of str
-        Why it is not about the run from then on; empty if it is.
-    """
-
-    rate: float
-    unit: str
-    attained: bool
-    start: float | None
-    uncovered: tuple[str, ...]
-
-
-def hold_rate(
-    designed: Designed, certificate: Certificate, simulated: Simulated
-) -> CertifiedRate | None:
-    """Hold the certified rate of decay, if there is one, against the end of a run.
-
-    Parameters
-    ----------
-    designed, certificate, simulated
-        As `hold_bounds` takes them.
-    """
-    from nrs_design.proof.bounds import lower_float, upper_float
-    from nrs_design.proof.evidence.abstract import Shows
-    from nrs_design.proof.system import Time
-    from nrs_design.simulation.coverage import end_of_command, undecayed
-
-    system, one = certificate.system, simulated
-    evidence = certificate.evidence
-    proved = None if evidence is None else evidence.proved_rate(system)
-    if evidence is None or evidence.shows is not Shows.STABILITY or proved is None:
-        return None
-    continuous = system.time is Time.CONTINUOUS
-    reasons = undecayed(designed.spec, system, evidence, one.scenario, one.run)
-    return CertifiedRate(
-        (lower_float if continuous else upper_float)(proved),
-        "1/s" if continuous else "",
-        evidence.attains_rate,
-        end_of_command(one.scenario),
-        tuple(reasons),
-    )
-
-
-def read_certificate(file: Path, designed: Designed) -> Certificate:
-    """Return what a certificate file holds, checked exactly against the spec.
-
-    Raises
-    ------
-    CertificateError
-        If it is none, or does not hold for this spec.
-    """
-    from nrs_design.certificates.verify import verify
-
-    found = verify(file, designed.loaded, plant=designed.plant)
-    if found.certificate is None or found.fault is not None:
-        raise CertificateError(
-            str(found.fault), path=file, remedy="make it anew with certify-switching"
-        )
-    return found.certificate

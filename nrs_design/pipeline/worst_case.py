@@ -15,6 +15,7 @@ from nrs_design.proof.noun import dataclass
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem
     from nrs_design.simulation.worst_case import WorstRun
+    from nrs_design.spec import InteractionDesignSpec
 
 _REMEDY = "use --monte-carlo, which simulates every controller"
 
@@ -73,7 +74,6 @@ def run_worst_case(
         If what acts on the loop is not modelled for its controllers, or its rules not searched.
     """
     from nrs_design.simulation.worst_case import (
-        ROUNDS,
         bounds_of,
         deflection_of,
         forces_by_mode,
@@ -88,7 +88,6 @@ def run_worst_case(
         outputs = (*system.outputs, *(() if deflection is None else (deflection,)))
         touched = designed.plant.among(designed.design.contacts)
         allowed = {"force": forces_by_mode(system, touched)}
-        rounds = ROUNDS if rounds is None else rounds
         runs = worst_runs(system, outputs, allowed, seed=seed, rounds=rounds)
     except (AssemblyError, ValueError) as error:
         message = error.message if isinstance(error, AssemblyError) else str(error)
@@ -101,18 +100,46 @@ def run_worst_case(
     return WorstCase(
         system,
         runs,
-        {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si},
+        _limits(spec, system),
         {} if certificate is None else bounds_of(certificate.system, certificate.statements),
         spec.disturbances is not None,
     )
+
+
+def _limits(spec: InteractionDesignSpec, system: SwitchedSystem) -> dict[str, float]:
+    """Return what the spec or an output says that a quantity keeps."""
+    own = {o.name: float(o.limit) for o in system.outputs if o.limit is not None}
+    return own | {"force": spec.limits.torque.si, "velocity": spec.limits.velocity.si}
 
 
 def _commanded(designed: Designed) -> SwitchedSystem:
     """Return the loop under what the spec says disturbs it, else under any allowed command."""
     from nrs_design.spec.sampling import DisturbancesSpec
 
-    spec = designed.spec
-    if spec.disturbances is None:
-        text = {"command": spec.limits.velocity.text}
-        spec = spec.model_copy(update={"disturbances": DisturbancesSpec.model_validate(text)})
-    return assemble_spec(designed.loaded, replace(designed, spec=spec), spec.coordinates)
+    spec, at = designed.spec, designed.spec.coordinates
+    placing = next((name for name, c in spec.controllers.items() if c.commands == "position"), None)
+    if placing is not None:
+        raise AssemblyError(
+            f"{placing} is given a position, and a command that is held moves that on without "
+            "end, so the force from rest grows as long as the run"
+        )
+    if spec.disturbances is not None:
+        return assemble_spec(designed.loaded, designed, at)
+    text = {"command": spec.limits.velocity.text}
+    disturbances = DisturbancesSpec.model_validate(text)
+    if spec.sampling is not None:
+        spec = spec.model_copy(update={"disturbances": disturbances})
+        return assemble_spec(designed.loaded, replace(designed, spec=spec), at)
+    # In continuous time a run may be on tissue for which no bound is stated.
+    from nrs_design.switched.commanded import with_command
+    from nrs_design.switched.joint import Joint
+
+    plant, motion = designed.plant, designed.design.motion
+    return with_command(
+        assemble_spec(designed.loaded, designed, at),
+        spec,
+        disturbances,
+        plant.motion_loop(motion.Kp, motion.Kd),
+        Joint.of(plant, motion),
+        plant.among(designed.design.contacts),
+    )

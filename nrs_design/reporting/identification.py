@@ -55,7 +55,9 @@ _MEANING = (
 )
 
 
-def tissue_report(found: TissueIdentification, arm: float | None = None) -> Report:
+def tissue_report(
+    found: TissueIdentification, arm: float | None = None, series: Sequence[str] = ()
+) -> Report:
     """Say and draw everything about the identification of a tissue.
 
     Parameters
@@ -64,8 +66,11 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
         As `identify_tissue` gives it.
     arm : float, optional
         Lever arm in m: the chosen law is shown at the pivot, too.
+    series : sequence of str
+        Prony series of the records in words, without intervals.
     """
     chosen = found.chosen
+    several = (Section("Several relaxations", (Bullets("", tuple(series)),)),) if series else ()
     units = units_of(chosen.law, found.rotational)
     names = chosen.law.parameters()
     values = ", ".join(
@@ -84,6 +89,7 @@ def tissue_report(found: TissueIdentification, arm: float | None = None) -> Repo
             Section("What of the records is used", tuple(_used(found))),
             Section("Comparison of laws", tuple(_comparison(found))),
             Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
+            *several,
             Section("Measured against fitted", tuple(_tissue_figures(found))),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
             source_section([record.source for record in found.records]),

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 COLUMNS = ("peak", "median", "largest", "unit", "limit", "above", "share of runs", "95 % interval")
 MEANING = (
     f"Intervals are those of Clopper and Pearson at {CONFIDENCE:.0%}, for the share under what was "
-    "drawn alone: every parameter uniform in its range, each for itself. That is no "
+    "drawn alone: every parameter and gain uniform in its range, each for itself, and kept for the "
+    "run, while a proof lets them move. That is no "
     "statement about the robot's own distribution, and none about the worst case."
 )
 _SCALES = {

@@ -11,15 +11,17 @@ from typing import Any
 _NOTHING = 1e-9
 
 
-def metric_rows(metrics: Mapping[str, Any]) -> list[list[str]]:
+def metric_rows(metrics: Mapping[str, Any], limits: Mapping[str, float]) -> list[list[str]]:
     """Return rows of name, value, unit and limit.
 
     Parameters
     ----------
     metrics : mapping
         As `nrs_design.simulation.summary.summarize` gives them, in SI.
+    limits : mapping of str to float
+        Of the scenario, by the names of `PEAKS`, in SI; the spec's of the torque is in the metrics.
     """
-    return list(_rows(metrics))
+    return list(_rows(metrics, limits))
 
 
 def rounded_up(value: float) -> str:
@@ -27,12 +29,13 @@ def rounded_up(value: float) -> str:
     return f"{float(Context(prec=4, rounding=ROUND_CEILING).create_decimal(repr(value))):.4g}"
 
 
-def _rows(m: Mapping[str, Any]) -> Iterator[list[str]]:
-    limit = f"{m['torque_limit']:.4g}"
+def _rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[str]]:
+    limit = f"{limits.get('torque', m['torque_limit']):.4g}"
     # What has a limit is never shown below it, nor as nothing, where it is not.
     yield ["largest torque", rounded_up(m["peak_torque"]), "N m", limit]
-    yield ["time above the limit", rounded_up(m["time_above_limit"]), "s", "0"]
-    yield _row("largest deflection", math.degrees(m["peak_depth"]), "deg")
+    above = f"time above {m['torque_limit']:.4g} N m"
+    yield [above, rounded_up(m["time_above_limit"]), "s", "0"]
+    yield _peak("largest deflection", m["peak_depth"], "deg", limits.get("deflection"))
     yield _row("time in contact", m["time_in_contact"], "s")
     if m["impedance_rmse"] is not None:
         wanted = f"{m['desired_impedance']:.4g} wanted"
@@ -42,7 +45,7 @@ def _rows(m: Mapping[str, Any]) -> Iterator[list[str]]:
     for time in m["withdrawal_times"]:
         yield _row("withdrawal from tissue", time, "s")
     yield _row("mean speed", math.degrees(m["mean_speed"]), "deg/s")
-    yield _row("largest speed", math.degrees(m["peak_velocity"]), "deg/s")
+    yield _peak("largest speed", m["peak_velocity"], "deg/s", limits.get("velocity"))
     yield _row("applied torque, total", m["effort"]["total"], "N m s")
     yield _row("applied torque, rms", m["effort"]["rms"], "N m")
     yield _row("energy", m["effort"]["energy"], "J")
@@ -55,6 +58,13 @@ def _rows(m: Mapping[str, Any]) -> Iterator[list[str]]:
         yield _row("stays below 10 ms (chatter)", m["chatter"], "", "0")
     if m["shortest_stay"] is not None:
         yield _row("shortest stay", m["shortest_stay"], "s")
+
+
+def _peak(name: str, value: float, unit: str, limit: float | None) -> list[str]:
+    """Return an angle or a speed, never below a limit where it is not."""
+    if limit is None:
+        return _row(name, math.degrees(value), unit)
+    return [name, rounded_up(math.degrees(value)), unit, f"{math.degrees(limit):.4g}"]
 
 
 def _row(name: str, value: float, unit: str, limit: str = "") -> list[str]:

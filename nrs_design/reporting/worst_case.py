@@ -103,7 +103,7 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
     """
     rows = []
     for item in found_in(case):
-        factor, unit = scale_of(item.name, lever_arm)
+        factor, unit = scale_of(item.name, item.unit, lever_arm)
         limit = "–" if item.limit is None else f"{factor * item.limit:.4g}"
         bound = "–" if item.bound is None else upper(Fraction(factor * item.bound), 4)
         ratio = "–" if item.ratio is None else upper(Fraction(item.ratio), 3)
@@ -114,11 +114,12 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
     return rows
 
 
-def scale_of(name: str, lever_arm: float | None) -> tuple[float, str]:
+def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
     """Return by what SI numbers of a quantity are multiplied for people, and their unit."""
     if name == DEFLECTION and lever_arm is not None:
         return 1e3 * lever_arm, "mm"
-    return {"force": (1.0, "N m"), "velocity": (_TURN, "deg/s")}.get(name, (_TURN, "deg"))
+    scales = {"N*m": (1.0, "N m"), "rad/s": (_TURN, "deg/s"), "rad": (_TURN, "deg")}
+    return scales.get(unit, (1.0, unit))
 
 
 def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
@@ -197,12 +198,12 @@ def _largest(values: Array) -> Array:
 
 
 def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
-    factor, unit = scale_of(output.name, lever_arm)
+    factor, unit = scale_of(output.name, output.unit, lever_arm)
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
     return Panel(
         f"{output.name.capitalize()} [{unit}]",
         factor * output_values(case.system, output, run.states),
         None if limit is None else factor * limit,
         None if bound is None else np.full(len(run.time), factor * bound),
-        one_sided=case.system.contact is not None and output.name != "velocity",
+        one_sided=case.system.contact is not None and output.name in ("force", DEFLECTION),
     )

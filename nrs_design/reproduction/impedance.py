@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
-from nrs_design.design.impedance import ImpedanceLoop, ImpedanceProblem, optimize_impedance
+from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.impedance_optimum import ImpedanceProblem, optimize_impedance
 from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic

@@ -92,6 +92,29 @@ def build_scenario(
     )
 
 
+def check_recordings(spec: InteractionDesignSpec, folder: Path) -> None:
+    """Read every file of commands that a spec names.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With its scenarios.
+    folder : Path
+        Of the spec.
+
+    Raises
+    ------
+    DataError
+        If one cannot be read, is no profile, or commands more than the limit of the spec.
+    """
+    for scenario in spec.scenarios.values():
+        commands = [scenario.command]
+        if scenario.axes is not None:
+            commands = [scenario.of_axis(axis).command for axis in AXES]
+        for command in commands:
+            _profile(command, folder, spec.limits.velocity.si)
+
+
 def build_runs(
     spec: InteractionDesignSpec, plant: Plant, name: str, folder: Path
 ) -> tuple[Scenario, ...]:

@@ -36,7 +36,7 @@ TOLERANCE = 1e-12
 POINTS = 2000
 # Steps after which it is told how far the run is.
 _OFTEN = 20_000
-_STEPS = np.arange(CHUNK, dtype=float)
+_STEPS = np.arange(CHUNK + 1, dtype=float)
 # Events at one instant, one after the other, after which a run does not come on.
 _STILL = 100
 
@@ -144,6 +144,7 @@ class _Engine:
         self.inside = [False] * len(signs)
         self.pushing = [True] * len(signs)
         self.offset = self.loop.spec.offset
+        self.places = {signal.name: i for i, signal in enumerate(self.loop.states)}
         self.laws = {c.name: c.law for c in self.loop.design.controllers}
         self.damped = any(map(self.loop.is_damped, range(len(signs))))
         self.met: dict[tuple[int, int, int], bool] = {}
@@ -271,11 +272,14 @@ class _Engine:
             # The step after the last whole one is looked at too: it may be cut short.
             count = flow.first_doubtful(states, sides)
             done = min(count, whole)
+            full = done and count > whole and self.t + (done + 1) * flow.h <= limit
+            # Where a step that may be cut short follows, the state that it begins in is kept, too.
+            kept = done if full else done + 1
+            self._record(self.t + flow.h * _STEPS[:kept], states[:kept])
             if done:
-                self._record(self.t + flow.h * _STEPS[:done], states[:done])
                 self.t, self.z, self.steps = self.t + done * flow.h, states[done], self.steps + done
                 self._tell(done)
-            if done and count > whole and self.t + flow.h <= limit:
+            if full:
                 continue
             width = min(flow.h, limit - self.t)
             if width <= 0:
@@ -295,7 +299,6 @@ class _Engine:
             self.tell(f"{self.t:.3g} s")
 
     def _step(self, flow: Flow, width: float, end: float | None = None) -> None:
-        self._record(self.t, self.z)
         self.z = flow.after(self.z, width)
         self.t = self.t + width if end is None else end
         self.steps += 1
@@ -356,20 +359,17 @@ class _Engine:
         """Let another controller take over, and set what the spec says is set then."""
         if target == self.controller:
             return
-        loop, spec = self.loop, self.loop.spec
-        mode = self.way.mode
-        names = [signal.name for signal in loop.states]
-        laws = self.laws
+        mode, idle = self.way.mode, self.loop.spec.idle_states
+        places, laws = self.places, self.laws
         leaves = laws[self.controller].commands == "velocity"
         self.z = self.z.copy()
         if self.offset != "none":
             taken = mode.reference if self.offset == "reference" else mode.angle
-            self.z[names.index("commanded position")] = float(taken @ self.z)
-        idle = spec.idle_states
+            self.z[places["commanded position"]] = float(taken @ self.z)
         if leaves and laws[target].commands != "velocity" and idle is not None and idle.reset:
             for text in laws[self.controller].states:
-                self.z[names.index(text.split(" [")[0])] = 0.0
-            self.z[names.index("offset")] = 0.0
+                self.z[places[text.split(" [")[0]]] = 0.0
+            self.z[places["offset"]] = 0.0
         self.controller, self.since, self.met = target, self.t, {}
         self.switches.append((self.t, target))
         self.way = self._way()

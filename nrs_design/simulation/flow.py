@@ -39,7 +39,7 @@ def _bernstein(degree: int) -> Array:
 
 
 BERNSTEIN = _bernstein(DEGREE)
-_POWERS = np.arange(DEGREE + 1)
+_POWERS = np.arange(DEGREE + 1, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -144,9 +144,12 @@ class Flow:
         coefficients = (states @ self._bernstein_rows).reshape(len(states), e, DEGREE + 1)
         coefficients *= sides[:, None]
         # How far the signals stay on their sides, at least.
-        safe = coefficients.min(axis=2) - np.abs(states) @ self._remainder.T + self.tolerances
-        nearest = safe.min(axis=1)
-        return int((nearest <= 0).argmax()) if nearest.min() <= 0 else len(states)
+        lowest = np.minimum.reduce(coefficients, axis=2) + self.tolerances
+        doubtful = lowest <= np.abs(states) @ self._remainder.T
+        if e > 1:
+            doubtful = np.logical_or.reduce(doubtful, axis=1)
+        first = int(doubtful.argmax())
+        return first if doubtful.flat[first] else len(states)
 
     def first_crossing(self, z: Array, width: float, sides: Array) -> float | None:
         """Return the first time at which a signal has changed its side, or None.

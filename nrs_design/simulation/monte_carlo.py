@@ -9,9 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.build_scenario import drawn_laws
+from nrs_design.simulation.build_scenario import Pick, drawn_laws
 from nrs_design.simulation.peaks import PEAKS
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
@@ -31,12 +34,15 @@ class Drawn:
         With laws of tissue and a seed of its own.
     plant : Plant
         With a motor of its own.
+    design : ControllerDesign
+        With gains of its own.
     parameters : mapping of str to float
         What was drawn, in SI.
     """
 
     scenario: Scenario
     plant: Plant
+    design: ControllerDesign
     parameters: Mapping[str, float]
 
 
@@ -143,12 +149,17 @@ class Share:
 
 
 def draw(
-    spec: InteractionDesignSpec, plant: Plant, scenarios: Sequence[Scenario], seed: int, index: int
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    scenarios: Sequence[Scenario],
+    seed: int,
+    index: int,
 ) -> Drawn:
     """Draw a run; it depends on seed and index alone, not on the runs before it.
 
-    Scenarios take turns. Every parameter of what is touched, and of the motor, is drawn uniformly
-    from its range, each for itself; a parameter without a range stays as it is.
+    Scenarios take turns. Every parameter of what is touched and of the motor, and every gain, is
+    drawn uniformly from its range, each for itself; what has no range stays as it is.
 
     Parameters
     ----------
@@ -156,6 +167,8 @@ def draw(
         With the ranges.
     plant : Plant
         Of that spec.
+    design : ControllerDesign
+        The gains that ship.
     scenarios : sequence of Scenario
         At least one.
     seed : int
@@ -183,7 +196,21 @@ def draw(
         plant = replace(plant, actuator=motor)
     surfaces = tuple(surface.with_laws(laws) for surface in scenario.surfaces)
     own = int(rng.integers(0, LARGEST_SEED + 1))
-    return Drawn(replace(scenario, surfaces=surfaces, seed=own), plant, parameters)
+    controllers = tuple(_retuned(spec, one, pick, parameters) for one in design.controllers)
+    drawn = replace(scenario, surfaces=surfaces, seed=own)
+    return Drawn(drawn, plant, replace(design, controllers=controllers), parameters)
+
+
+def _retuned(
+    spec: InteractionDesignSpec, controller: Controller, pick: Pick, parameters: dict[str, float]
+) -> Controller:
+    """Draw the gains that have a range, in single precision, as they would ship."""
+    law, gains = controller.law, dict(controller.law.gains)
+    for gain, declared in spec.controllers[controller.name].gains().items():
+        if declared.ranged:
+            gains[gain] = to_float32(Fraction(pick(gain_interval(declared, gains[gain]))))
+            parameters[f"{controller.name} {gain}"] = float(gains[gain])
+    return replace(controller, law=law.of(gains))
 
 
 def _numbers(law: object) -> Iterable[tuple[str, float]]:

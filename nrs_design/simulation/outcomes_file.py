@@ -68,10 +68,26 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
         raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)
     for key, value in _header(head).items():
         if first.get(key) != value:
-            was, what = f"{first.get(key)!s:.80}", _NAMES.get(key, key)
-            message = f"was begun with other {what}: {was}, not {value!s:.80}"
+            message = f"was begun with {_difference(key, first.get(key), value)}"
             raise DataError(message, path=path, remedy=_ELSE)
     return outcomes
+
+
+def _difference(key: str, was: object, now: object) -> str:
+    """Say how a study differs from the one that is asked for, in the words of the command."""
+    if not isinstance(was, dict) or not isinstance(now, dict):
+        return f"other {_NAMES.get(key, key)}: {was!s:.80}, not {now!s:.80}"
+    odd = (name for name in now if was.get(name) != now[name])
+    each = (f"{_option(name, was.get(name))}, not {_option(name, now[name])}" for name in odd)
+    return "; ".join(each) or f"other {key}"
+
+
+def _option(name: str, value: object) -> str:
+    """Return an option as it is typed."""
+    option = "--scenario" if name == "names" else f"--{name.replace('_', '-')}"
+    if value is None or value == []:
+        return f"no {option}"
+    return f"{option} {' '.join(map(str, value)) if isinstance(value, list) else value}"[:80]
 
 
 @contextmanager

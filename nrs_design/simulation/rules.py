@@ -10,7 +10,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Stay, SwitchedSystem, Time
+from nrs_design.proof.system import Clock, Stay, SwitchedSystem, Time
 from nrs_design.simulation.norms import Array
 
 Indices = NDArray[np.int64]
@@ -49,12 +49,14 @@ class Rules:
         Parameters
         ----------
         system : SwitchedSystem
-            Modes of one size, with its rules of switching and no clock.
+            Modes of one size, with its rules of switching; where modes take turns, without any.
         step : float
             Time of a step, as `fitting_step` gives it.
         """
         count = len(system.modes)
         identity = np.eye(system.order)[None]
+        if system.clock is not None:
+            return _turns(system, system.clock, identity)
         if system.switching.is_arbitrary:
             modes = np.arange(count)
             nothing = np.zeros(count, dtype=np.int64)
@@ -98,6 +100,20 @@ def _counts(stay: Stay, step: Fraction) -> tuple[int, int | None] | None:
         return fewest, None
     most = math.floor(stay.longest / step + Fraction(1, 10**9))
     return (fewest, most) if most >= fewest else None
+
+
+def _turns(system: SwitchedSystem, clock: Clock, identity: Array) -> Rules:
+    """Return a node for each step of a round, the first of which any run may begin with.
+
+    A run from rest may rest in the first steps, so it may as well begin with the others.
+    """
+    actions: dict[tuple[int, int, int], int] = {}
+    after: dict[int, list[int]] = {}
+    for node in range(clock.length):
+        target = (node + 1) % clock.length
+        own = [k for k, m in enumerate(system.modes) if (m.name in clock.first) == (node == 0)]
+        after[node] = [actions.setdefault((k, 0, target), len(actions)) for k in own]
+    return _packed(actions, [identity[0]], after)
 
 
 class _Graph:

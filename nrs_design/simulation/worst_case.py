@@ -33,7 +33,7 @@ from nrs_design.simulation.rules import Indices, fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 
 # Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
-STARTS, SWEEPS, ROUNDS = 24, 15, 24
+STARTS, SWEEPS, ROUNDS = 24, 15, 8
 _KEPT, _COPIES = 4, 3
 # How often the best runs are made twice as long, and by what factor that must make them worse.
 _DOUBLED, _WORTH = 3, 1.01
@@ -42,6 +42,10 @@ _FINER = 4
 # A run is as long as a motion of the slowest mode needs to fade to a thousandth, and has so many
 # steps; in continuous time they are longer where there would be more.
 _FADED, _FEWEST, _MOST = 8.0, 100, 300
+# How many times the rounds where contact may be lost: there, what is found depends on the starts.
+_BOUNCING = 3
+# How much closer the next grid is, where one does not resolve the fastest motion.
+_CLOSER = 16
 # Against a bound, a run is as long as its set needs to fill up to a thousandth, if steps are few.
 _FILLED, _LONGEST, _DRAWN, _TURNS = 7.0, 800, 8, 6
 DEFLECTION = "deflection"
@@ -86,7 +90,7 @@ def worst_runs(
     *,
     seed: int = 0,
     starts: int = STARTS,
-    rounds: int = ROUNDS,
+    rounds: int | None = None,
 ) -> tuple[WorstRun, ...]:
     """Let an adversary choose modes and disturbances from rest, for each of some outputs.
 
@@ -103,30 +107,50 @@ def worst_runs(
         Which rows of an output apply in which mode, where switching is ruled.
     seed : int
         Of the starts.
-    starts, rounds : int
-        For each output; rounds change the best runs, and improve them again.
+    starts : int
+        For each output.
+    rounds : int, optional
+        How often the best runs are changed, and improved again; by default more often where contact
+        may be lost.
 
     Raises
     ------
     ValueError
-        If modes take turns, are of different sizes or are ends of a constant parameter, if nothing
-        disturbs, or if the rules are too fine for a grid.
+        If modes are of different sizes or are ends of a constant parameter, if nothing disturbs, or
+        if the rules are too fine for a grid.
     """
     _check(system)
-    wanted, steps = _grid(system)
+    if rounds is None:
+        rounds = ROUNDS if system.contact is None else ROUNDS * _BOUNCING
+    found = [
+        _on_grid(system, outputs, allowed, step, steps, (seed, starts, rounds))
+        for step, steps in _grids(system)
+    ]
+    return tuple(max(runs, key=lambda run: run.value) for runs in zip(*found, strict=True))
+
+
+def _on_grid(
+    system: SwitchedSystem,
+    outputs: Sequence[Output],
+    allowed: Mapping[str, NDArray[np.bool_]],
+    wanted: float,
+    steps: int,
+    effort: tuple[int, int, int],
+) -> tuple[WorstRun, ...]:
+    """Search among runs of so many steps of about this time; effort: seed, starts, rounds."""
+    seed, starts, rounds = effort
     step = fitting_step(system, wanted)
     game = Game.of(system, system.channels, step)
     own = [_aim(system, output, allowed) for output in outputs]
-    rng = np.random.default_rng(seed)
-    search = _Search(game, own, rng)
+    search = _Search(game, own, np.random.default_rng(seed))
     signals, values = search.begin(steps, starts)
     first = values
     for _ in range(rounds):
         signals, values = search.again(signals, values)
     signals, values = search.best(signals, values, 1)
-    if system.switching.is_arbitrary:
+    if _is_free(system):
         signals, values = _lengthened(game, _joined(own), signals, values)
-    if system.time is Time.CONTINUOUS and system.switching.is_arbitrary:
+    if system.time is Time.CONTINUOUS and _is_free(system):
         step /= _FINER
         game = Game.of(system, system.channels, step)
         signals, values = improve(game, _joined(own), signals.finer(_FINER), SWEEPS)
@@ -258,7 +282,7 @@ def _beside(parts: Sequence[Signals]) -> Signals:
 
 
 def deflection_of(system: SwitchedSystem) -> Output | None:
-    """Return the deflection as an output; None where it is not the last state.
+    """Return the deflection as an output; None where it is no state.
 
     Parameters
     ----------
@@ -267,9 +291,9 @@ def deflection_of(system: SwitchedSystem) -> Output | None:
     """
     from nrs_design.proof.matrix import RationalMatrix
 
-    if system.states[-1] != "delta [rad]":
+    if "delta [rad]" not in system.states:
         return None
-    row = [0] * (system.order - 1) + [1]
+    row = [int(state == "delta [rad]") for state in system.states]
     return Output(DEFLECTION, "rad", (RationalMatrix.from_rows([row]),))
 
 
@@ -326,33 +350,48 @@ def bounds_of(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) ->
     return found
 
 
+def _is_free(system: SwitchedSystem) -> bool:
+    """Tell whether any mode may follow any mode at any time."""
+    return system.switching.is_arbitrary and system.clock is None
+
+
 def _check(system: SwitchedSystem) -> None:
-    if system.clock is not None or not system.is_uniform or system.switching.fixed_ends:
-        raise ValueError("modes take turns, differ in size or are ends of a constant parameter")
+    if not system.is_uniform or system.switching.fixed_ends:
+        raise ValueError("modes differ in size, or are ends of a constant parameter")
+    if system.clock is not None and not system.switching.is_arbitrary:
+        raise ValueError("modes take turns, and are ruled besides")
     if not system.channels:
         raise ValueError("nothing disturbs the loop, so from rest it stays at rest")
     if not any(any(map(any, column.numerators)) for c in system.channels for column in c.columns):
         raise ValueError("what disturbs the loop acts on none of its modes")
 
 
-def _grid(system: SwitchedSystem) -> tuple[float, int]:
-    """Return a step that resolves the fastest motion, and steps in which the slowest one fades."""
-    step = fine_step(system)
+def _grids(system: SwitchedSystem) -> list[tuple[float, int]]:
+    """Return steps in time, each with a number: the slowest motion fades in the longest ones.
+
+    Where the fastest motion is much faster, a grid that resolves one says nothing of the other.
+    """
+    fine = fine_step(system)
     values = [v[np.abs(v) > 0] for v in mode_eigenvalues(system)]
     discrete = system.time is Time.DISCRETE
     rates = [-float((np.log(np.abs(v)) if discrete else v.real).max()) for v in values if len(v)]
-    slowest = min((rate for rate in rates if rate > 0), default=_FADED / (step * _MOST))
+    slowest = min((rate for rate in rates if rate > 0), default=_FADED / (fine * _MOST))
     length = _FADED / slowest
-    if not discrete:
-        step = max(step, length / _MOST)
-    return step, int(np.clip(length / step, _FEWEST, _MOST))
+    if discrete:
+        return [(fine, int(np.clip(length / fine, _FEWEST, _MOST)))]
+    step = max(fine, length / _MOST)
+    found = [(step, int(np.clip(length / step, _FEWEST, _MOST)))]
+    while step > 2 * _FINER * fine:
+        step = max(step / _CLOSER, fine)
+        found.append((step, _MOST))
+    return found
 
 
 def _aim(system: SwitchedSystem, output: Output, allowed: Mapping[str, NDArray[np.bool_]]) -> Aim:
     rows = np.array([row.floats()[0] for row in output.rows])
     every = np.ones((len(system.modes), len(rows)), dtype=np.bool_)
     # Under free switching, any mode may take over at the very end.
-    given = None if system.switching.is_arbitrary else allowed.get(output.name)
+    given = None if _is_free(system) else allowed.get(output.name)
     # Tissue that can be lost pushes and never pulls.
     pushes = system.contact is not None and output.name in _PUSHED
     return Aim(rows[None], (every if given is None else given)[None], np.array([pushes]))
@@ -380,7 +419,7 @@ def _run(
     starts: Array,
 ) -> WorstRun:
     order = np.sort(starts)[::-1]
-    if system.switching.is_arbitrary:
+    if _is_free(system):
         signals = signals.after_rest()
     states = play(game, signals)[:, 0]
     mode = game.rules.mode[signals.actions[:, 0]]

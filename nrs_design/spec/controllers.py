@@ -214,7 +214,8 @@ class ForceControllerSpec(AbstractControllerSpec):
         default="none",
         description="offset X_i that is added to the command (thesis 6.41), taken at every switch "
         "of controllers and held until the next: the reference of the motion loop at the switch, "
-        "or the measured position; none: u = Kp (Fd - F) alone",
+        "or the measured position; none: tune and the proof take u = Kp (Fd - F) alone, and a "
+        "simulated run adds the position that was commanded so far",
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 

@@ -18,12 +18,13 @@ from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.model import SpecModel
-from nrs_design.spec.motion import LimitsSpec
+from nrs_design.spec.motion import ActuatorSpec, LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS, IdentifiedSpec
 from nrs_design.spec.quantity import Quantity, QuantityKind
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
+from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
 from nrs_design.spec.units import BASE_UNITS
@@ -110,32 +111,9 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
-    if spec.actuator.command != "rpm":
-        yield Line("actuator.command", spec.actuator.command, "", "")
-    for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
-        written = getattr(spec.actuator, name)
-        unit = kind.unit_in(written.nominal.dimension)
-        yield _quantity(f"actuator.{name}", written.nominal, unit)
-        if not written.fixed:
-            low, high = written.range
-            yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
-    if spec.actuator.range_covers is not None:
-        covered = MOTOR_COVERS[spec.actuator.range_covers]
-        yield Line("actuator.range_covers", spec.actuator.range_covers, covered, "")
-    if spec.actuator.load_inertia is not None:
-        yield _row("actuator.load_inertia", spec.actuator.load_inertia, kinds.INERTIA)
-    if spec.actuator.intervals is not None:
-        for name in ("gain", "time_constant"):
-            low, high = getattr(spec.actuator.intervals, name)
-            yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
-    yield from _provenance("actuator", spec.actuator)
+    yield from _actuator(spec.actuator)
     yield from _motion_loop(spec)
-    yield _row("limits.velocity", spec.limits.velocity, kinds.ANGULAR_VELOCITY)
-    yield _row("limits.torque", spec.limits.torque, kinds.TORQUE)
-    yield _row("limits.bandwidth", spec.limits.bandwidth, kinds.BANDWIDTH)
-    if spec.limits.command is not None:
-        unit = kinds.COMMAND.unit_in(spec.limits.command.dimension)
-        yield _quantity("limits.command", spec.limits.command, unit)
+    yield from _limits(spec.limits)
     for name, environment in spec.environments.items():
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
@@ -145,14 +123,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield from _goals("goals", spec.goals)
     yield Line("design.significant_digits", str(spec.design.significant_digits), "", "")
     if spec.sampling is not None:
-        yield _row("sampling.period", spec.sampling.period, kinds.DURATION)
-        if spec.sampling.outer_period is not None:
-            yield _row("sampling.outer_period", spec.sampling.outer_period, kinds.DURATION)
-        least, most = spec.sampling.delay
-        delay = str(least) if least == most else f"[{least}, {most}]"
-        yield Line("sampling.delay", delay, "", "samples")
-        yield Line("sampling.admittance", spec.sampling.admittance, "", "")
-        yield from _provenance("sampling", spec.sampling)
+        yield from _sampling(spec.sampling)
     if spec.disturbances is not None:
         yield from describe_model(spec.disturbances, "disturbances")
     yield from describe_model(spec.coupling, "coupling")
@@ -164,6 +135,48 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield Line("contact", spec.contact or "not said: the claim tells", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
+
+
+def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
+    if actuator.command != "rpm":
+        yield Line("actuator.command", actuator.command, "", "")
+    for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
+        written = getattr(actuator, name)
+        unit = kind.unit_in(written.nominal.dimension)
+        yield _quantity(f"actuator.{name}", written.nominal, unit)
+        if not written.fixed:
+            low, high = written.range
+            yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
+    if actuator.range_covers is not None:
+        covered = MOTOR_COVERS[actuator.range_covers]
+        yield Line("actuator.range_covers", actuator.range_covers, covered, "")
+    if actuator.load_inertia is not None:
+        yield _row("actuator.load_inertia", actuator.load_inertia, kinds.INERTIA)
+    if actuator.intervals is not None:
+        for name in ("gain", "time_constant"):
+            low, high = getattr(actuator.intervals, name)
+            yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
+    yield from _provenance("actuator", actuator)
+
+
+def _limits(limits: LimitsSpec) -> Iterator[Line]:
+    yield _row("limits.velocity", limits.velocity, kinds.ANGULAR_VELOCITY)
+    yield _row("limits.torque", limits.torque, kinds.TORQUE)
+    yield _row("limits.bandwidth", limits.bandwidth, kinds.BANDWIDTH)
+    if limits.command is not None:
+        unit = kinds.COMMAND.unit_in(limits.command.dimension)
+        yield _quantity("limits.command", limits.command, unit)
+
+
+def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
+    yield _row("sampling.period", sampling.period, kinds.DURATION)
+    if sampling.outer_period is not None:
+        yield _row("sampling.outer_period", sampling.outer_period, kinds.DURATION)
+    least, most = sampling.delay
+    delay = str(least) if least == most else f"[{least}, {most}]"
+    yield Line("sampling.delay", delay, "", "samples")
+    yield Line("sampling.admittance", sampling.admittance, "", "")
+    yield from _provenance("sampling", sampling)
 
 
 def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Line]:

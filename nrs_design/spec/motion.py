@@ -177,6 +177,10 @@ class MotionLoopSpec(SpecModel):
     )
 
 
+# How the name of an output begins that is held against `limits: {command: ...}`.
+MOTOR_COMMAND = "motor command"
+
+
 class LimitsSpec(SpecModel):
     """What the interaction must respect (thesis 6.3.1)."""
 
@@ -186,5 +190,5 @@ class LimitsSpec(SpecModel):
     command: LargestCommand | None = Field(
         default=None,
         description="largest command that the motor's driver takes, such as rpm: exported code "
-        "saturates there, which no proof covers",
+        "saturates there; a bound on the command of a sampled design is held against it",
     )

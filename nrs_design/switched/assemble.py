@@ -135,7 +135,7 @@ def assemble(
         rules of switching make too many switches.
     """
     from nrs_design.switched.close_loop import close_loop
-    from nrs_design.switched.commanded import with_command
+    from nrs_design.switched.commanded import check_memory, with_command
     from nrs_design.switched.coupled import couple_axes
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
@@ -167,6 +167,7 @@ def assemble(
                     "bounds on what disturbs do not apply to force coordinates",
                     remedy="use coordinates: deflection",
                 )
+            check_memory(touched)
             joint = Joint.of(plant, design.motion)
             system = with_command(system, spec, spec.disturbances, loop, joint, touched)
         if (coupling := _coupling_of(spec, plant, scale)) is not None:

@@ -57,11 +57,10 @@ def with_command(
         If it is not modelled for these controllers, environments or coordinates.
     """
     plain = all(controller.type == "impedance" for controller in spec.controllers.values())
-    remember = any(environment.law.remembers for environment in touched)
-    if not plain or remember or spec.coordinates != "deflection" or not touched:
+    if not plain or spec.coordinates != "deflection" or not touched:
         raise AssemblyError(
-            "a velocity command is modelled for impedance controllers on elastic and damped "
-            "environments in deflection coordinates",
+            "a velocity command is modelled for impedance controllers that touch something, in "
+            "deflection coordinates",
             remedy="leave disturbances out",
             at=("disturbances",),
         )
@@ -80,22 +79,43 @@ def with_command(
         system,
         assumptions=(*system.assumptions, _ASSUMED),
         channels=(Channel(name, unit, bound, columns),),
-        outputs=outputs_of(system.order, motion, spec, touched),
+        outputs=outputs_of(system.states, motion, spec, touched),
     )
 
 
+def check_memory(touched: Sequence[Environment]) -> None:
+    """Refuse tissue that creeps, for which no bound under a command is stated.
+
+    Parameters
+    ----------
+    touched : sequence of Environment
+        All contacts.
+
+    Raises
+    ------
+    AssemblyError
+        If one of them remembers.
+    """
+    if any(environment.law.remembers for environment in touched):
+        raise AssemblyError(
+            "a bound under a velocity command is stated on elastic and damped environments",
+            remedy="leave disturbances out",
+            at=("disturbances",),
+        )
+
+
 def outputs_of(
-    n: int,
+    states: Sequence[str],
     motion: Realization | JointMotion,
     spec: InteractionDesignSpec,
     touched: Sequence[Environment],
 ) -> tuple[Output, Output]:
-    """Return force and velocity of a loop whose last state is the deflection.
+    """Return force and velocity of a loop in contact.
 
     Parameters
     ----------
-    n : int
-        Number of states.
+    states : sequence of str
+        Names of the states.
     motion : Realization or JointMotion
         The motion loop, whose states come first.
     spec : InteractionDesignSpec
@@ -104,8 +124,10 @@ def outputs_of(
         All contacts: the force has a row for each of their corners.
     """
     return (
-        Output("force", "N*m", tuple(_forces(motion, n, touched)), spec.limits.torque.exact),
-        Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(n)]),)),
+        Output(
+            "force", "N*m", tuple(force_rows(motion, states, touched)), spec.limits.torque.exact
+        ),
+        Output("velocity", "rad/s", (RationalMatrix.from_rows([motion.output(len(states))]),)),
     )
 
 
@@ -121,11 +143,25 @@ def _column(mode: Mode, motion: Realization | JointMotion) -> RationalMatrix:
     return RationalMatrix.from_rows([*column, *([Fraction(0)] for _ in range(n - motion.order))])
 
 
-def _forces(
-    motion: Realization | JointMotion, n: int, touched: Sequence[Environment]
+def force_rows(
+    motion: Realization | JointMotion, states: Sequence[str], touched: Sequence[Environment]
 ) -> Iterator[RationalMatrix]:
-    deflection = coordinates(n)[-1:]
+    """Yield the force, as a row over the states, of each corner of each contact.
+
+    Parameters
+    ----------
+    motion : Realization or JointMotion
+        The motion loop, whose states come first.
+    states : sequence of str
+        Names of the states.
+    touched : sequence of Environment
+        All contacts.
+    """
+    unit = coordinates(len(states))
     for environment in touched:
+        shared, *memories = environment.law.states
+        names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
+        own = [unit[states.index(name)] for name in names]
         for law in environment.corners:
-            force, _ = law.react(motion.output(n), deflection)
+            force, _ = law.react(motion.output(len(states)), own)
             yield RationalMatrix.from_rows([force])

@@ -252,6 +252,24 @@ class Frame:
             slip,
         ]
 
+    def command(self, law: SampledLaw) -> tuple[LinearForm, Sequence[LinearForm]]:
+        """Return the command of the motion loop, and how large each rounding in it is at most.
+
+        Both are forms of the states, the `INPUTS` and the `roundings`, for an admittance: it
+        changes the reference after the command.
+
+        Parameters
+        ----------
+        law : SampledAdmittance or SampledForce
+            Of the controller in force.
+        """
+        shares = self.roundings
+        at = _Signals.of(self, tuple(shares))
+        nothing = zero(len(at.delta))
+        step = self._step(law, at, nothing, shares)
+        sizes = step.motion_sizes()
+        return step.command(nothing), [sizes.get(name, nothing) for name in shares]
+
     def _step(
         self, law: SampledLaw, at: _Signals, force: LinearForm, shares: Mapping[str, Fraction]
     ) -> SampledStep:

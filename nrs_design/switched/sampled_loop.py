@@ -30,6 +30,7 @@ from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
@@ -120,9 +121,14 @@ def close_sampled_loop(
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
+    outputs = outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else ()
+    driven = None
+    if coupling is None:
+        driven = motor_command(spec, frame, [item.law for item in laws.values()], channels)
     texts: tuple[str, ...] = (
         *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
         *at_once_texts(touched),
+        *(() if driven is None else (driven.text,)),
     )
     couplings: tuple[Coupling, ...] = ()
     if coupling is not None:
@@ -140,7 +146,7 @@ def close_sampled_loop(
         losable,
         frame.period,
         channels,
-        outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else (),
+        (*outputs, *(() if driven is None else (driven.output,))),
         tuple(roundings_of(frame, channels, every)),
         couplings,
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,

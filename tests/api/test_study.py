@@ -3,7 +3,7 @@
 import pytest
 
 import nrs_design as nrs
-from nrs_design.errors import DesignError
+from nrs_design.errors import CertificateError, DesignError
 from tests.api.pairs import pair
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 
@@ -37,3 +37,26 @@ def test_scenarios_are_simulated():
         study.simulate(engine="fast")
     with pytest.raises(DesignError, match="describes no interaction"):
         nrs.load(ROOT / "specs/examples/commuting.nrs.yaml").simulate()
+
+
+def test_the_worst_case_stands_beside_limits(tmp_path):
+    study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
+    case = study.worst_case(rounds=0)
+    assert {run.output.name for run in case.runs} == {"force", "velocity", "deflection"}
+    assert case.limits["force"] == pytest.approx(0.3)
+    assert not case.bounds
+    with pytest.raises(CertificateError):
+        study.worst_case(tmp_path / "none.cert.json")
+
+
+def test_runs_are_drawn():
+    study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
+    found = study.monte_carlo(3, "shaken", seed=2)
+    again = study.monte_carlo(3, "shaken", seed=2, jobs=2)
+    assert found.outcomes == again.outcomes
+    assert found.shares["torque"].runs == 3
+    assert {one.scenario for one in found.outcomes} == {"shaken"}
+    with pytest.raises(DesignError, match="runs is 0"):
+        study.monte_carlo(0)
+    with pytest.raises(DesignError, match="no scenario"):
+        study.monte_carlo(1, "stirred")

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.certificates.bounds import bound_on, bounds_summary
+from nrs_design.certificates.bounds import bound_on, bounds_summary, keeps_command
 from nrs_design.proof.evidence import CommonQuadratic
 from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
 from tests.proof.systems import bouncing, pushed
@@ -29,3 +29,16 @@ def test_the_bound_under_everything_at_once():
     wind = replace(system.channels[0], name="wind")
     both = replace(system, channels=(*system.channels, wind))
     assert bound_on(both, (BOUNCE,), "force") is None
+
+
+def test_a_command_is_kept_where_rounding_is_covered_and_the_limit_is_not_passed():
+    system = pushed(bouncing())
+    (force, *others) = system.outputs
+    named = replace(force, name="motor command", limit=BOUNCE.level)
+    driven = replace(system, outputs=(named, *others))
+    bound = replace(BOUNCE, output="motor command")
+    rounded = replace(bound, roundings=(1,))
+    assert keeps_command(driven, (rounded,))
+    assert not keeps_command(driven, (bound,))
+    assert not keeps_command(driven, (replace(rounded, level=2 * BOUNCE.level),))
+    assert not keeps_command(system, (replace(BOUNCE, roundings=(1,)),))

@@ -11,6 +11,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import read_spec
+from tests.pipeline.test_subsets import HEAVY
 from tests.support import (
     COMMUTING,
     HARD,
@@ -645,3 +646,24 @@ def test_tissue_and_tool_touched_at_once(tmp_path):
     told = json.loads(run("certify-switching", more, "--json", cwd=tmp_path).stdout)
     assert (told["verdict"], told["relief"]) == ("proved", [])
     assert told["modes"] == ["withdrawal/soft+stiff/k-min", "withdrawal/soft+stiff/k-max"]
+
+
+def test_coupled_axes_that_are_not_proved_are_answered_by_a_list(tmp_path):
+    """Axes, samples and a disturbance: `check` takes them, and nobody has to ask for the list."""
+    path = tmp_path / "heavy.nrs.yaml"
+    path.write_text(HEAVY, encoding="utf-8")
+    assert run("check", path, cwd=tmp_path).returncode == 0
+    said = run("certify-switching", path, cwd=tmp_path)
+    assert said.returncode == 3
+    first, *lines = said.stdout.split("not proved together; with as little left out as possible:")
+    assert first.startswith("soft: INCONCLUSIVE")
+    assert "proved without what the axes do to each other: Every solution" in lines[0]
+    assert "The axes of the robot do not act on each other." in lines[0]
+    assert "proved without the sampling: For any number of axes" in lines[0]
+    assert "decided without disturbances: no bound under them was looked at" in lines[0]
+    told = json.loads(run("certify-switching", path, "--json", cwd=tmp_path).stdout)
+    assert [item["left_out"] for item in told["subsets"]] == [
+        ["what the axes do to each other"],
+        ["the sampling"],
+    ]
+    assert any("do not act on each other" in text for text in told["subsets"][0]["needs"])

@@ -1,10 +1,12 @@
 """`nrs-design optimize`, as a user types it."""
 
 import json
+import math
+from fractions import Fraction
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE, run
+from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, run
 
 
 def test_optimum_of_the_thesis(tmp_path):
@@ -27,6 +29,24 @@ def test_optimum_of_the_thesis(tmp_path):
         at_arm = controller["stiffness_limit_at_arm_N_m"] / 747.1461
         assert at_arm == pytest.approx(controller["stiffness_limit"] / 43.0356, rel=1e-6)
     assert document["motion_loop"]["source"] == "designed"
+
+
+def test_passivity_of_the_sampled_law(tmp_path):
+    """For every age of the force sample, with an exact witness beyond the band."""
+    spec = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
+    result = run("optimize", spec, "--json", cwd=tmp_path)
+    for controller in json.loads(result.stdout)["controllers"]:
+        fresh, late = controller["sampled_passivity"]
+        assert (fresh["delay"], late["delay"]) == (0, 1)
+        assert late["passive_up_to_rad_s"] < fresh["passive_up_to_rad_s"]
+        assert fresh["passive_up_to_rad_s"] < controller["passive_up_to_rad_s"]
+        for band in (fresh, late):
+            low, high = band["not_passive_between_rad_s"]
+            assert band["passive_up_to_rad_s"] < low <= high
+            omega = 2 * math.atan(Fraction(band["not_passive_at_tangent"])) / 0.002
+            assert omega == pytest.approx(low, abs=1e-8)
+    result = run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
+    assert json.loads(result.stdout)["controllers"][0]["sampled_passivity"] == []
 
 
 def test_table(tmp_path):

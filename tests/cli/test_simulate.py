@@ -153,6 +153,7 @@ def test_a_budget_is_inconclusive(spec, tmp_path):
         (["--scenario", "ran"], "no scenario 'ran'"),
         (["--engine", "exact", "--period", "0.002"], "has no samples"),
         (["--certificate", "none.json"], "cannot be read"),
+        (["--engine", "foo"], "Invalid value for '--engine': 'foo' is not one of"),
     ],
 )
 def test_wrong_usage(spec, tmp_path, arguments, message):
@@ -207,7 +208,19 @@ def test_a_profile_from_a_file(spec, tmp_path):
         result = run("simulate", path, "--out", "runs", cwd=tmp_path)
         assert result.returncode == 2
         assert message in result.stderr
+        checked = run("check", path, cwd=tmp_path)
+        assert (checked.returncode, checked.stdout) == (2, "")
+        assert message in checked.stderr
         assert not (tmp_path / "runs").exists()
+
+
+def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
+    own = "limits: {torque: 0.25 N*m, deflection: 0.5 deg, velocity: 10 deg/s}"
+    result = run("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
+    rows = [line.split() for line in result.stdout.splitlines() if "largest" in line]
+    assert [row[-1] for row in rows] == ["0.25", "0.5", "10"]
+    document = json.loads(run("simulate", spec(f"{RUN}, {own}"), "--json", cwd=tmp_path).stdout)
+    assert document["runs"][0]["limits"]["torque"] == 0.25
 
 
 def test_a_profile_behind_a_link(spec, tmp_path):
@@ -324,6 +337,15 @@ OWN = (
 )
 
 
+def test_a_run_of_three_axes_that_stops_is_said_of_each(three, tmp_path):
+    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path)
+    assert stopped.returncode == 3
+    assert stopped.stdout.count("STOPPED: 7 samples") == 3
+    for axis in ("theta1", "theta2", "theta3"):
+        assert f"run.{axis}" in stopped.stdout
+
+
+@pytest.mark.slow
 def test_three_axes(three, tmp_path):
     """Each has its own command, tissue and controller; files are named by scenario and axis."""
     result = run("simulate", three(SHORT + OWN), "--json", "--out", "runs", cwd=tmp_path)
@@ -346,9 +368,6 @@ def test_three_axes(three, tmp_path):
     assert tables[1]["angle_rad"][-1] > 0.005
     # Commanded to stand still, and moved by the links.
     assert 1e-6 < np.abs(tables[2]["angle_rad"]).max() < 1e-3
-    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path)
-    assert stopped.returncode == 3
-    assert stopped.stdout.count("STOPPED: 7 samples") == 3
 
 
 @pytest.mark.parametrize(

@@ -104,7 +104,7 @@ def test_what_no_adversary_plays_against_is_said(tmp_path):
     path.write_text(text_of({"position": "{type: position}"}, SOFT))
     result = run("simulate", path, "--worst-case", cwd=tmp_path)
     assert result.returncode == 2
-    assert "no worst case is searched" in result.stderr
+    assert "position is given a position" in result.stderr
     assert "--monte-carlo" in result.stderr
 
 
@@ -117,3 +117,6 @@ def test_other_commands_in_a_file_of_the_spec_are_another_study(tmp_path):
         result = run(*command, cwd=tmp_path)
         assert result.returncode == code, result.stderr
     assert (tmp_path / "runs.jsonl").read_bytes().count(b"\n") == 3
+    other = run(*command, "--engine", "sampled", cwd=tmp_path)
+    assert other.returncode == 2
+    assert "was begun with no --engine, not --engine sampled" in other.stderr

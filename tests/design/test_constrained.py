@@ -9,13 +9,11 @@ import pytest
 
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.goals import Requirement, corners_of
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
+from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance, stabilizes
+from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
-    displayed_impedance,
     impedance_cost,
     optimize_impedance,
-    stabilizes,
 )
 from nrs_design.design.margins import loop_margins
 from nrs_design.design.measures import (

@@ -1,124 +1,25 @@
-"""Impedance cost and its global optimum (thesis 6.3.1, 6.3.2 and 6.4)."""
+"""The loop of impedance control (thesis 6.3.1 and 2.5)."""
 
 import math
-from dataclasses import replace
 
 import control
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from nrs_design.design.impedance import (
     ImpedanceLoop,
-    ImpedanceProblem,
     characteristic_polynomial,
     displayed_impedance,
-    impedance_cost,
     open_loop,
-    optimize_impedance,
     sensitivity,
     stabilizes,
 )
 from nrs_design.design.transfer import TransferFunction, frequency_response
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
-
-# Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
-PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
-EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
-# Thesis 6.2: 0.3 N m over 8 deg/s; 2 Hz.
-DESIRED = 0.3 / math.radians(8)
-BANDWIDTH = 4 * math.pi
-SOFT, STIFF = 43.0356, 61.6608
-
-# Thesis 6.3.1 (free), 6.3.2 (soft and half) and 6.4 (stiff).
-PUBLISHED = {
-    "free": (SOFT, DESIRED, 0.0, 0.0, 2.1514),
-    "soft": (SOFT, DESIRED, 0.01, 0.01, 2.1496),
-    "half": (SOFT, DESIRED / 2, 0.01, 0.01, 1.0414),
-    "stiff": (STIFF, DESIRED, 0.01, 0.01, 2.1094),
-}
-
-
-def make_problem(stiffness=SOFT, desired=DESIRED, least=0.0, motion=PRINTED, **changes):
-    problem = ImpedanceProblem(
-        loop=ImpedanceLoop(motion, Elastic(stiffness)),
-        desired=desired,
-        bandwidth=BANDWIDTH,
-        mass_bounds=(least, 1.0),
-        damping_bounds=(0.1, 20.0),
-    )
-    return replace(problem, **changes)
-
-
-def reference_cost(problem, Mt, Bt, nodes):
-    """Thesis 6.4-6.7 term by term, with the midpoint rule."""
-    omega = (np.arange(nodes) + 0.5) * problem.bandwidth / nodes
-    displayed = np.abs(displayed_impedance(problem.loop, Mt, Bt, omega))
-    robust = np.abs(sensitivity(problem.loop, Mt, Bt, omega))
-    first = np.mean(np.abs(math.log10(problem.desired) - np.log10(displayed)))
-    return problem.weight_displayed * first + problem.weight_sensitivity * np.mean(robust)
-
-
-def test_desired_impedance_of_thesis_6_2():
-    assert pytest.approx(2.14859, rel=1e-5) == DESIRED
-
-
-@pytest.mark.parametrize("motion", [PRINTED, EXACT], ids=["printed", "exact"])
-@pytest.mark.parametrize("name", PUBLISHED)
-def test_published_optimum(name, motion):
-    stiffness, desired, least, Mt, Bt = PUBLISHED[name]
-    optimum = optimize_impedance(make_problem(stiffness, desired, least, motion))
-    assert optimum.Mt == Mt  # exactly the bound
-    assert optimum.Bt == pytest.approx(Bt, abs=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("name", "printed"), [("free", "2.15"), ("soft", "2.15"), ("half", "1.04"), ("stiff", "2.11")]
-)
-def test_published_optimum_to_the_printed_digit(name, printed):
-    stiffness, desired, least, _, _ = PUBLISHED[name]
-    optimum = optimize_impedance(make_problem(stiffness, desired, least))
-    assert f"{optimum.Bt:.2f}" == printed
-
-
-@pytest.mark.parametrize("name", PUBLISHED)
-def test_no_point_of_a_dense_scan_is_better(name):
-    stiffness, desired, least, _, _ = PUBLISHED[name]
-    problem = make_problem(stiffness, desired, least)
-    optimum = optimize_impedance(problem)
-    Mt = np.unique([least, *np.geomspace(max(least, 1e-4), 1, 90), *np.linspace(least, 1, 30)])
-    Bt = np.unique([*np.geomspace(0.1, 20, 150), *np.linspace(0.9, 1.1, 5) * optimum.Bt])
-    Mt, Bt = np.meshgrid(Mt, Bt)
-    stable = stabilizes(problem.loop, Mt, Bt)
-    assert 0 < stable.sum() < stable.size
-    assert impedance_cost(problem, Mt[stable], Bt[stable]).min() >= optimum.cost - 1e-7
-
-
-@pytest.mark.parametrize("name", PUBLISHED)
-def test_cost_does_not_depend_on_the_grid(name):
-    stiffness, desired, least, Mt, Bt = PUBLISHED[name]
-    problem = make_problem(stiffness, desired, least)
-    fine = reference_cost(problem, Mt, Bt, 65536)
-    errors = [abs(reference_cost(problem, Mt, Bt, n) - fine) for n in (16, 256)]
-    assert float(impedance_cost(problem, Mt, Bt)) == pytest.approx(fine, rel=1e-5)
-    assert errors[1] < errors[0] / 8
-
-
-@pytest.mark.parametrize("Bt", [0.5, 1.0414, 2.15, 15.0])
-def test_cost_is_the_formula_of_the_thesis(Bt):
-    problem = make_problem(weight_displayed=0.3, weight_sensitivity=1.7)
-    assert float(impedance_cost(problem, 0.02, Bt)) == pytest.approx(
-        reference_cost(problem, 0.02, Bt, 256), rel=1e-12
-    )
-
-
-def test_cost_broadcasts():
-    problem = make_problem()
-    costs = impedance_cost(problem, np.array([[0.0], [0.1]]), np.linspace(1, 3, 700))
-    assert costs.shape == (2, 700)
-    assert costs[1, 650] == pytest.approx(float(impedance_cost(problem, 0.1, 1 + 2 * 650 / 699)))
+from tests.design.motion_loops import EXACT, PRINTED, SOFT
 
 
 def test_displayed_impedance_and_sensitivity_close_the_loop():
@@ -172,113 +73,6 @@ def test_stability_agrees_with_computed_roots(Mt, Bt, stiffness, damping):
     assert bool(stabilizes(loop, Mt, Bt)) == (rightmost < 0)
 
 
-@given(factor=st.floats(0.1, 10), Mt=st.floats(0, 0.5), Bt=st.floats(0.1, 10))
-def test_cost_is_invariant_to_the_unit_of_torque(factor, Mt, Bt):
-    problem = make_problem()
-    scaled = replace(
-        problem,
-        loop=ImpedanceLoop(PRINTED, Elastic(SOFT * factor)),
-        desired=DESIRED * factor,
-    )
-    assert float(impedance_cost(scaled, Mt * factor, Bt * factor)) == pytest.approx(
-        float(impedance_cost(problem, Mt, Bt)), rel=1e-9
-    )
-
-
-@settings(max_examples=25, deadline=None)
-@given(
-    stiffness=st.floats(5, 300),
-    damping=st.sampled_from([0.0, 0.5]),
-    desired=st.floats(0.3, 8),
-    least=st.sampled_from([0.0, 0.01, 0.1]),
-    weight=st.floats(0, 1),
-)
-def test_optimum_is_stable_and_no_scanned_point_beats_it(
-    stiffness, damping, desired, least, weight
-):
-    problem = make_problem(
-        desired=desired,
-        least=least,
-        loop=ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping)),
-        weight_displayed=weight,
-        weight_sensitivity=1 - weight,
-    )
-    optimum = optimize_impedance(problem)
-    assert bool(stabilizes(problem.loop, optimum.Mt, optimum.Bt))
-    assert least <= optimum.Mt <= 1
-    assert 0.1 <= optimum.Bt <= 20
-    assert optimum.cost == pytest.approx(float(impedance_cost(problem, optimum.Mt, optimum.Bt)))
-    Mt, Bt = np.meshgrid(
-        least + (1 - least) * np.linspace(0, 1, 45) ** 3, np.geomspace(0.1, 20, 95)
-    )
-    stable = stabilizes(problem.loop, Mt, Bt)
-    assert impedance_cost(problem, Mt[stable], Bt[stable]).min() >= optimum.cost - 2e-6
-
-
-def test_fixed_parameters_are_returned_as_given():
-    problem = make_problem(mass_bounds=(0.02, 0.02))
-    optimum = optimize_impedance(problem)
-    assert optimum.Mt == 0.02
-    around = optimum.Bt * np.linspace(0.5, 2, 3001)
-    assert impedance_cost(problem, 0.02, around).min() >= optimum.cost - 1e-7
-
-    both = optimize_impedance(replace(problem, damping_bounds=(2.15, 2.15)))
-    assert (both.Mt, both.Bt) == (0.02, 2.15)
-    assert both.cost == float(impedance_cost(problem, 0.02, 2.15))
-
-
-def test_upper_bounds_are_returned_exactly():
-    # The desired impedance is far above what the bounds allow.
-    optimum = optimize_impedance(
-        make_problem(desired=30.0, stiffness=300.0, damping_bounds=(0.1, 0.7), weight_sensitivity=0)
-    )
-    assert optimum.Bt == 0.7
-
-
-def test_search_is_deterministic():
-    assert optimize_impedance(make_problem()) == optimize_impedance(make_problem())
-
-
-@pytest.mark.slow
-def test_search_is_as_good_as_differential_evolution():
-    from scipy.optimize import differential_evolution
-
-    problem = make_problem()
-
-    def cost(x):
-        stable = bool(stabilizes(problem.loop, x[0], x[1]))
-        return float(impedance_cost(problem, x[0], x[1])) if stable else 1e3
-
-    evolved = differential_evolution(cost, [(0, 1), (0.1, 20)], rng=1, tol=1e-6)
-    assert optimize_impedance(problem).cost <= evolved.fun + 1e-8
-
-
-def test_bounds_without_a_stable_point_are_an_error_with_a_remedy():
-    # Mt = 0.01, Bt <= 1.04 is unstable above 75.9 N m/rad.
-    problem = make_problem(stiffness=90.0, least=0.01, damping_bounds=(0.1, 1.04))
-    with pytest.raises(DesignError, match="stable at 90 N m/rad") as caught:
-        optimize_impedance(problem)
-    assert "Bt" in caught.value.remedy
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"desired": 0.0}, "desired impedance"),
-        ({"bandwidth": math.inf}, "bandwidth"),
-        ({"mass_bounds": (-0.1, 1.0)}, "Mt must not be negative"),
-        ({"mass_bounds": (1.0, 0.5)}, "ascending"),
-        ({"damping_bounds": (0.0, 1.0)}, "Bt must be positive"),
-        ({"damping_bounds": (0.1, math.nan)}, "finite"),
-        ({"weight_displayed": 0.0, "weight_sensitivity": 0.0}, "weights"),
-        ({"weight_displayed": -1.0}, "weights"),
-    ],
-)
-def test_problem_refuses_bad_input(changes, message):
-    with pytest.raises(DesignError, match=message):
-        make_problem(**changes)
-
-
 @pytest.mark.parametrize(("stiffness", "damping"), [(0.0, 0.0), (-1.0, 0.0), (1.0, -1.0)])
 def test_loop_refuses_bad_input(stiffness, damping):
     with pytest.raises(DesignError, match="must"):
@@ -291,8 +85,6 @@ def test_admittance_refuses_bad_input(Mt, Bt):
     for call in (characteristic_polynomial, open_loop):
         with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
             call(loop, Mt, Bt)
-    with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
-        impedance_cost(make_problem(), Mt, Bt)
 
 
 @pytest.mark.parametrize(
@@ -314,16 +106,6 @@ def test_loop_in_viscoelastic_contact(contact, Ze):
     assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + L), rel=1e-4)
     displayed = displayed_impedance(loop, 0.01, 2.15, omega)
     assert displayed == pytest.approx(L / Y / (1 + L), rel=1e-4)
-
-
-def test_cost_in_viscoelastic_contact_is_the_mean_of_its_parts():
-    contact = KelvinBoltzmann(0.233, 0.972, 23.631)
-    problem = replace(make_problem(), loop=ImpedanceLoop(EXACT, contact), desired=0.1)
-    omega = np.linspace(0, BANDWIDTH, 200_001)[1:]
-    shown = np.abs(displayed_impedance(problem.loop, 0.001, 0.09, omega))
-    robust = np.abs(sensitivity(problem.loop, 0.001, 0.09, omega))
-    expected = 0.5 * np.abs(np.log10(0.1 / shown)).mean() + 0.5 * robust.mean()
-    assert float(impedance_cost(problem, 0.001, 0.09)) == pytest.approx(expected, abs=2e-4)
 
 
 @pytest.mark.parametrize(
@@ -360,11 +142,6 @@ class TestSpring:
         wanted = np.sort_complex(control.feedback(G * Ze * Y, 1).poles())
         found = np.roots(characteristic_polynomial(self.loop, 0.01, 1.04))
         assert np.sort_complex([*found, 0]) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
-
-    def test_cost_is_the_mean_of_its_parts(self):
-        problem = replace(make_problem(), loop=self.loop)
-        cost = float(impedance_cost(problem, 0.01, 1.04))
-        assert cost == pytest.approx(reference_cost(problem, 0.01, 1.04, 256), rel=1e-9)
 
     def test_what_has_no_rest_position_has_no_spring(self):
         with pytest.raises(DesignError, match="no rest position"):

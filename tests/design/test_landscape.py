@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.design.impedance import impedance_cost, stabilizes
+from nrs_design.design.impedance import stabilizes
+from nrs_design.design.impedance_optimum import impedance_cost
 from nrs_design.design.landscape import alternatives, delay_borne, map_cost
 from nrs_design.design.margins import loop_margins
 from nrs_design.pipeline import run_analysis, run_design

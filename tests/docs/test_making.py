@@ -8,7 +8,7 @@ from making.floors import drawing, floors_of, imports_between
 from making.misprints import misprints_table
 from making.offline import loaded_from_elsewhere
 
-from nrs_design.design.impedance import impedance_cost, optimize_impedance
+from nrs_design.design.impedance_optimum import impedance_cost, optimize_impedance
 from nrs_design.reproduction.comparison import PrintVerdict
 from nrs_design.reproduction.table import reproduce
 from tests.support import ROOT, SOFT_TISSUE

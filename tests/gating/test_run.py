@@ -12,6 +12,7 @@ from nrs_design.gating.renew import write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.spec import read_spec
 from nrs_design.spec.templates import TEMPLATES
+from tests.pipeline.test_subsets import HEAVY
 from tests.simulation.interactions import text_of
 from tests.support import FORCE_LIMIT
 
@@ -377,3 +378,11 @@ def test_a_scenario_without_limits_is_not_simulated(examine):
     text = limited("torque: 1 N*m").replace(", limits: {torque: 1 N*m}", "")
     assert "limits: {torque" not in text
     assert "NRS109" not in {item.rule.id for item in examine(text).specs[0].obligations}
+
+
+def test_what_is_proved_of_axes_in_part_is_said_and_fails(examine):
+    (spec,) = examine(HEAVY).specs
+    (stable,) = (o for o in spec.obligations if o.rule.id == "NRS102")
+    assert stable.status is Status.INCONCLUSIVE
+    assert "proved without what the axes do to each other: " in stable.message
+    assert "proved without the sampling: " in stable.message

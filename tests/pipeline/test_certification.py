@@ -109,7 +109,7 @@ def test_functions_are_counted_wherever_they_are_used():
             {
                 "design/constrained",
                 "design/laws/impedance",
-                "design/impedance",
+                "design/impedance_optimum",
                 "design/landscape",
             },
         ),

@@ -2,12 +2,14 @@
 
 import pytest
 
-from nrs_design.pipeline import run_certification
+from nrs_design.certificates.certificate import dump
+from nrs_design.pipeline import run_certification, run_verification
 from nrs_design.pipeline.subsets import are_wanted, find_subsets, run_subsets, subset_lines
+from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.certify import Limits, Verdict
 from nrs_design.spec import read_spec
 from tests.search.support import TEXT
-from tests.support import SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE
 
 
 def test_what_is_proved_with_as_little_left_out_as_possible(tmp_path):
@@ -76,3 +78,21 @@ def test_axes_in_the_sampled_loop_are_proved_without_one_or_the_other(tmp_path):
 
 def test_no_list_is_made_where_nobody_asked():
     assert find_subsets(run_certification(read_spec(SOFT_TISSUE))) is None
+
+
+@pytest.mark.slow
+def test_everything_at_once_is_one_certificate(tmp_path):
+    """Sampling, late samples, tolerance, lost contact, rounding, a command, a hand, three axes."""
+    loaded = read_spec(ROOT / "docs/examples/everything-at-once.nrs.yaml")
+    result = run_certification(loaded, limits=Limits(optimize_rate=False, budget=600.0))
+    assert result.certification.verdict is Verdict.PROVED
+    assert find_subsets(result) is None
+    system = result.certification.system
+    stable, force, velocity = result.certification.statements
+    assert isinstance(stable, CoupledAxes)
+    assert all(item.covers_rounding and item.covers_lost_contact for item in (stable, force))
+    assert [item.bound(system).output.name for item in (force, velocity)] == ["force", "velocity"]
+    assert "on each of at most 3 axes that act on each other" in force.claim(system)
+    file = tmp_path / "all.cert.json"
+    file.write_text(dump(result.certificate), encoding="utf-8")
+    assert run_verification(file, result).fault is None

@@ -37,3 +37,10 @@ def test_hostile_text_is_escaped():
 
 def test_deviation_text():
     assert [format_deviation(d) for d in (None, 0.0, 0.000468)] == ["", "0", "4.7e-04"]
+
+
+def test_the_page_of_figures_is_linked_where_there_is_one():
+    assert "<a " not in render_page(rows())
+    page = render_page(rows(), "my%20figures/figures.html")
+    assert '<a href="my%20figures/figures.html">' in page
+    assert "default-src 'none'" in render_page(rows())

@@ -33,6 +33,10 @@ def study(runs, seed=0, scenario=PRESSED, more=""):
     return MonteCarlo(designed, Runs(), runs, seed)
 
 
+def drawn_from(designed, scenarios, seed, index):
+    return draw(designed.spec, designed.plant, designed.design, scenarios, seed, index)
+
+
 def test_the_share_is_that_of_a_dense_grid():
     """The peak falls with the stiffness, so the share above is where it crosses the limit."""
     asked = study(60)
@@ -70,13 +74,30 @@ def test_a_run_depends_on_seed_and_index_alone():
     scenarios = asked.scenarios
 
     def drawn(seed, index):
-        return draw(asked.designed.spec, asked.designed.plant, scenarios, seed, index)
+        return drawn_from(asked.designed, scenarios, seed, index)
 
     assert drawn(1, 2).parameters == drawn(1, 2).parameters
     assert drawn(1, 2).parameters != drawn(1, 3).parameters
     assert drawn(2, 2).parameters != drawn(1, 2).parameters
     assert [one.index for one in run_monte_carlo(asked, 2)] == [2, 3]
     assert list(run_monte_carlo(asked))[2:] == list(run_monte_carlo(asked, 2))
+
+
+def test_gains_are_drawn_from_their_ranges():
+    """In one stiffness, the force of a run grows with its Bt (thesis 6.2: at rest, F = Bt v)."""
+    ranged = "{nominal: 2.15 N*m*s/rad, range: [1.72 N*m*s/rad, 2.58 N*m*s/rad]}"
+    law = f"{{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: {ranged}}}"
+    tissue = {"soft": "{model: elastic, stiffness: 40 N*m/rad}"}
+    text = text_of({"insertion": law}, tissue, scenario=PRESSED)
+    designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
+    found = list(run_monte_carlo(MonteCarlo(designed, Runs(), 30, 0)))
+    gains = [one.parameters["insertion Bt"] for one in found]
+    assert 1.72 < min(gains) < 1.9
+    assert 2.4 < max(gains) < 2.58
+    assert [float(np.float32(gain)) for gain in gains] == gains
+    peaks = np.array([one.peaks["torque"] for one in found])[np.argsort(gains)]
+    assert (np.diff(peaks) > 0).all()
+    assert (peaks > np.deg2rad(8) * np.sort(gains) * 0.99).all()
 
 
 def test_the_motor_is_drawn_from_its_ranges():
@@ -87,7 +108,7 @@ def test_the_motor_is_drawn_from_its_ranges():
     )
     designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
     scenarios = replace(asked, designed=designed).scenarios
-    drawn = [draw(designed.spec, designed.plant, scenarios, 0, i) for i in range(20)]
+    drawn = [drawn_from(designed, scenarios, 0, i) for i in range(20)]
     gains = [float(one.plant.actuator.gain) for one in drawn]
     assert 4.7e-4 < min(gains) < 4.8e-4 < 4.9e-4 < max(gains) < 5e-4
     assert [one.parameters["motor gain"] for one in drawn] == gains

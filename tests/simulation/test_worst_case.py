@@ -15,6 +15,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.system import (
     ARBITRARY,
     Channel,
+    Clock,
     Mode,
     Output,
     Stay,
@@ -126,6 +127,43 @@ def test_rules_are_kept_and_cost_the_adversary():
     assert (stays[modes == 1] <= 0.75 + 1e-9).all()
 
 
+def test_two_times_that_are_far_apart():
+    """A push moves x within a millisecond and y within 100 s: neither grid resolves both."""
+    system = replace(
+        oscillator("4"),
+        states=("x", "y"),
+        modes=(Mode("one", matrix([["-1000", 0], [0, "-1/100"]])),),
+        channels=(Channel("push", "", Fraction(1), (matrix([[1000], ["1/100"]]),)),),
+        outputs=tuple(
+            Output(name, "", (matrix([row]),))
+            for name, row in {"x": [1, 0], "x - y": [1, -1], "y": [0, 1]}.items()
+        ),
+    )
+    values = [run.value for run in worst_runs(system, system.outputs, {}, starts=4, rounds=1)]
+    # Of x - y: the push is held for long, and then turned round.
+    assert values == pytest.approx([1, 2, 1], rel=0.01)
+    assert max(values) <= 2
+
+
+def test_modes_that_take_turns():
+    """Of a round of two steps, the push acts in the second one alone: 1 + 1/4 + 1/16 + ..."""
+    half = matrix([["1/2"]])
+    system = SwitchedSystem(
+        "turns",
+        Time.DISCRETE,
+        ("x",),
+        (Mode("first", half), Mode("low", matrix([["1/4"]])), Mode("high", half)),
+        (),
+        channels=(Channel("push", "", Fraction(1), tuple(matrix([[b]]) for b in (0, 1, 1))),),
+        outputs=(Output("x", "", (matrix([[1]]),)),),
+        clock=Clock(2, ("first",)),
+    )
+    run = found(system, starts=4, rounds=1)
+    assert run.value == pytest.approx(4 / 3)
+    assert set(run.mode[::2]) == {0}
+    assert 0 not in run.mode[1::2]
+
+
 def test_what_cannot_be_searched_is_refused():
     quiet = replace(oscillator("4"), channels=())
     with pytest.raises(ValueError, match="nothing disturbs"):
@@ -172,6 +210,20 @@ def test_nothing_that_is_found_is_beyond_a_bound():
         assert 0.3 * case.bounds[run.output.name] < run.value < case.bounds[run.output.name]
     again = run_worst_case(result.designed, result.certificate, rounds=1)
     assert [run.value for run in again.runs] == [run.value for run in case.runs]
+
+
+def test_tissue_that_creeps():
+    """A command that is held comes to Bt v, whatever the tissue remembers; thesis 6.2."""
+    model = "{model: kelvin-boltzmann, parallel_stiffness: 43 N*m/rad, "
+    model += "series_stiffness: 43 N*m/rad, damping: 20 N*m*s/rad}"
+    text = text_of(ONE, {"soft": model})
+    designed = run_design(LoadedSpec(Path("small"), "", text, parse_spec(text)))
+    case = run_worst_case(designed, rounds=0)
+    force, velocity, deflection = case.runs
+    assert force.value > 2.15 * math.radians(8) * 0.999
+    assert velocity.value > math.radians(8) * 0.5
+    # At rest the springs are in a row.
+    assert deflection.value > force.value / 43
 
 
 def test_without_disturbances_the_command_takes_its_limit():

@@ -57,10 +57,11 @@ def _nominal(k: float, b: float = 0.0) -> dict[str, Fraction]:
     return {"Km": KM, "E": Fraction(float(E)), "k": Fraction(k), "b": Fraction(b)}
 
 
-def test_agrees_with_a_simulation_step_by_step():
-    """The law and the motor one after the other, as a program runs them, at 300 random states."""
+@pytest.mark.parametrize("cases", [300, pytest.param(1000, marks=pytest.mark.slow)])
+def test_agrees_with_a_simulation_step_by_step(cases):
+    """The law and the motor one after the other, as a program runs them, at random states."""
     rng = np.random.default_rng(13)
-    for _ in range(300):
+    for _ in range(cases):
         Kp, D = rng.uniform(1e3, 1e5), rng.uniform(0, 1e6)
         tau, Km, T = (
             rng.uniform(0.005, 0.1),

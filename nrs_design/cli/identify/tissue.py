@@ -113,16 +113,16 @@ def tissue(
         "identify-tissue",
         summary=lambda: _summary(found, arm, series),
         show=lambda: _print(found, arm, series or []),
-        page=lambda: _page(found, arm),
+        page=lambda: _page(found, arm, series or []),
         merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
         caveats=found.caveats,
     )
 
 
-def _page(found: TissueIdentification, arm: float | None) -> Report:
+def _page(found: TissueIdentification, arm: float | None, series: list[Series]) -> Report:
     from nrs_design.reporting.identification import tissue_report
 
-    return tissue_report(found, arm)
+    return tissue_report(found, arm, [item.text(rotational=found.rotational) for item in series])
 
 
 def _print(found: TissueIdentification, arm: float | None, series: list[Series]) -> None:
@@ -162,28 +162,13 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
         values = zip(law.parameters(), turned.values, units_of(law, True), strict=True)
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
     for item in series:
-        say(_series_text(item, found.rotational))
+        say(item.text(rotational=found.rotational))
 
 
 def _series(found: TissueIdentification) -> list[Series]:
     from nrs_design.identification.tissue.prony import fit_series
 
     return [fit_series(trial) for trial in found.trials]
-
-
-def _series_text(series: Series, rotational: bool) -> str:
-    unit = "N m/rad" if rotational else "N/m"
-    arms = ", ".join(
-        f"{arm:.4g} {unit} in {tau:.4g} s"
-        for arm, tau in zip(series.arms, series.times, strict=True)
-    )
-    text = f"{series.record}: Prony series of {len(series.arms)}: {series.rest:.4g} {unit} at rest"
-    text += f", relaxing {arms}; RMSE {series.rmse:.4g}"
-    if series.reduced is None:
-        return text
-    law = series.reduced
-    values = zip(law.parameters(), law.values, strict=True)
-    return f"{text}; as {law.name}: {', '.join(f'{name} = {value:.5g}' for name, value in values)}"
 
 
 def _series_summary(series: Series) -> dict[str, Any]:

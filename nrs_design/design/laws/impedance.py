@@ -16,8 +16,8 @@ from nrs_design.design.constrained import best_rounding, meets, optimize_with_go
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
 from nrs_design.design.goals import Requirement, achieve_impedance, corners_of
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
+from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,

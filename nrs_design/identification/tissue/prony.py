@@ -55,6 +55,21 @@ class Series:
     bic: tuple[float, ...]
     reduced: AbstractLinearLaw | None
 
+    def text(self, *, rotational: bool) -> str:
+        """Return it in words, with the law that it reduces to."""
+        unit = "N m/rad" if rotational else "N/m"
+        arms = ", ".join(
+            f"{arm:.4g} {unit} in {tau:.4g} s"
+            for arm, tau in zip(self.arms, self.times, strict=True)
+        )
+        text = f"{self.record}: Prony series of {len(self.arms)}: {self.rest:.4g} {unit} at rest"
+        text += f", relaxing {arms}; RMSE {self.rmse:.4g}"
+        if self.reduced is None:
+            return text
+        law = self.reduced
+        values = zip(law.parameters(), law.values, strict=True)
+        return f"{text}; as {law.name}: {', '.join(f'{name} = {v:.5g}' for name, v in values)}"
+
 
 def fit_series(trial: Trial) -> Series:
     """Fit series of one to three terms, and choose by BIC.

@@ -135,13 +135,18 @@ def _structure(trial: Trial, residuals: Array) -> Iterator[str]:
     ):
         size, p = structure(values, inside)
         if size > LARGEST_STRUCTURE * span and p < WHITE:
-            part = f"{100 * size / span:.2g} % of the range of the force, F-test p = {p:.1g}"
+            part = f"{100 * size / span:.2g} % of the range of the force, F-test {_p(p)}"
             yield f"the residuals follow {what} ({part})"
     size, _ = structure(motion.time[trial.used], residuals)
     p = ljung_box(residuals)
     if size > LARGEST_STRUCTURE * span and p < WHITE:
-        part = f"{100 * size / span:.2g} % of the range of the force, Ljung-Box p = {p:.1g}"
+        part = f"{100 * size / span:.2g} % of the range of the force, Ljung-Box {_p(p)}"
         yield f"the residuals are not white but wander with time ({part})"
+
+
+def _p(value: float) -> str:
+    """Return a p-value in words; one that leaves the floats is not 0."""
+    return f"p = {value:.1g}" if value > 1e-99 else "p < 1e-99"
 
 
 def _given_offsets(trial: Trial, residuals: Array, sensitivities: Array) -> Iterator[str]:

@@ -69,7 +69,7 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Stiffness limit at the lever arm [N/m]", _at_arm),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
     ("The same, sampled [Hz], exact", lambda item: _sampled(item.sampled)),
-    ("Sampled, not passive at [Hz], exact", lambda item: _broken(item.sampled)),
+    ("Sampled, not passive near [Hz]", lambda item: _broken(item.sampled)),
 )
 
 # Where a spec says what a row of the table shows, or what it follows from.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
@@ -24,8 +25,13 @@ _KEPT = "Loss of contact: no mode describes a compliant controller in free motio
 _ALONE = "Coupling between the axes of the robot."
 _UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
 _BOUNDED = "Sizes of velocities and torques other than those bounded above."
+_SATURATED = "Friction, backlash, and saturation of motor or driver."
+_UNSATURATED = (
+    "Friction, backlash, and saturation of motor or driver in motions that begin away from rest; "
+    "from rest under the disturbances at which the motor command keeps its limit, as bounded "
+    "above, the driver does not saturate."
+)
 _NOT_COVERED_BY_A_DESIGN: tuple[str, ...] = (
-    "Friction, backlash, and saturation of motor or driver.",
     "Tissue that does not follow the linear law of the spec, such as a creep of another kind or a "
     "stiffness that depends on depth.",
     "Parameter values outside the declared ranges, and motor constants other than those given.",
@@ -91,10 +97,12 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
     system, evidence = certification.system, certification.evidence
     covers = evidence is not None and evidence.covers_lost_contact
     exact = evidence is None or not evidence.covers_rounding
+    driven = keeps_command(system, certification.statements)
     return (
         *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_JITTER, *(_ROUNDED,) * exact)),
         *(() if covers else (_KEPT,)),
         *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
+        _UNSATURATED if driven else _SATURATED,
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
     )

@@ -14,7 +14,7 @@ _COLUMNS = ("statement", "print", "simulated", "outcome", "why")
 _MEANINGS = (
     f"{Outcome.REPRODUCED}: a statement in words holds in the run; or a number measured on the "
     f"robot is met within {100 * MEASURED:g} % (the thesis's own six displayed impedances miss "
-    "the desired one by up to 4.6 %), or within what rounding of the print leaves open.",
+    "the desired one by up to 4.62 %), or within what rounding of the print leaves open.",
     f"{Outcome.NOT_REPRODUCED}: it is not, and the reason stands beside it.",
     f"{Outcome.OMITTED}: what decides it is not in the thesis, such as the course of a command. "
     "The simulated number is that of inputs of ours, which are listed; if it agrees, that says "
@@ -128,7 +128,7 @@ def _section(one: Counterpart) -> Section:
     rows = tuple(
         (s.quantity, s.printed, s.simulated, str(s.outcome), s.why or "–") for s in one.statements
     )
-    blocks.append(Table("What the print says, and the run", _COLUMNS, rows))
+    blocks.append(Table(f"{one.name}: print and run", _COLUMNS, rows))
     blocks.append(Bullets("Inputs from the thesis", one.given))
     if one.chosen:
         blocks.append(Bullets("Inputs of ours, which the thesis omits", one.chosen))

@@ -124,9 +124,11 @@ def test_offsets_and_cuts_are_said(tmp_path):
     assert fit["offsets"]["tare"]["value"] == pytest.approx(-1.3, abs=0.02)
     assert fit["used"] < fit["samples"]
     assert any("at the edge of contact" in cut for cut in fit["cuts"])
-    text = run("identify", "tissue", path, "--prony", cwd=tmp_path).stdout
+    command = ("identify", "tissue", path, "--prony", "--report", "page.html")
+    text = run(*command, cwd=tmp_path).stdout
     assert "3 touches" in text
     assert "Prony series of" in text
+    assert "Prony series of" in (tmp_path / "page.html").read_text()
 
 
 def test_opposite_signs_stop_the_writing(tmp_path):

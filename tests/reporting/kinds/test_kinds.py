@@ -34,15 +34,15 @@ def test_a_page_is_in_a_file_that_is_named_like_that_of_its_evidence():
 
 
 def test_outside_proof_and_search_only_the_page_names_its_kind():
+    files = {path.relative_to(PACKAGE): path.read_text("utf-8") for path in PACKAGE.rglob("*.py")}
+    words = {
+        path.as_posix(): set(re.findall(r"\w+", text))
+        for path, text in files.items()
+        if path.parts[0] not in ("proof", "search")
+    }
     for kind in CLASSES:
         file = kind.kind.replace("-", "_")
-        named = {
-            path.relative_to(PACKAGE).as_posix()
-            for folder in PACKAGE.iterdir()
-            if folder.name not in ("proof", "search")
-            for path in ([folder] if folder.suffix == ".py" else folder.rglob("*.py"))
-            if re.search(rf"\b{kind.__name__}\b", path.read_text("utf-8"))
-        }
+        named = {path for path, said in words.items() if kind.__name__ in said}
         assert named == {"reporting/kinds/__init__.py", f"reporting/kinds/{file}.py"}
 
 
@@ -61,17 +61,20 @@ def test_every_page_speaks_in_sentences_and_draws_a_run(kind):
 
 def aliases(trees):
     """Names of kinds, and of all that is assigned from them: unions and tuples of kinds."""
+    assigned = [
+        node
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Assign | ast.AnnAssign)
+        and isinstance(node.value, ast.Tuple | ast.BinOp)
+    ]
     known, before = set(NAMES), 0
     while len(known) > before:
         before = len(known)
-        for tree in trees:
-            for node in ast.walk(tree):
-                if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-                    targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-                    if isinstance(node.value, ast.Tuple | ast.BinOp) and mentions(
-                        node.value, known
-                    ):
-                        known |= {t.id for t in targets if isinstance(t, ast.Name)}
+        for node in assigned:
+            if mentions(node.value, known):
+                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+                known |= {t.id for t in targets if isinstance(t, ast.Name)}
     return known
 
 

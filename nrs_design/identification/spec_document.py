@@ -1,0 +1,120 @@
+"""The text of a spec that is changed in few places, and keeps its comments."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import LoadedSpec, parse_spec
+
+# A longer text is a sentence, and no quantity.
+_SENTENCE = 40
+
+
+class SpecDocument:
+    """A YAML text that is changed in few places."""
+
+    def __init__(self, loaded: LoadedSpec) -> None:
+        from ruamel.yaml import YAML
+        from ruamel.yaml.util import load_yaml_guess_indent
+
+        self._loaded = loaded
+        _, indent, offset = load_yaml_guess_indent(loaded.text)
+        self._yaml = YAML(typ="rt")
+        self._yaml.preserve_quotes = True
+        # Lines are never folded anew.
+        self._yaml.width = 1 << 20
+        self._yaml.indent(mapping=2, sequence=indent or 4, offset=2 if offset is None else offset)
+        self.root: Any = self._yaml.load(loaded.text)
+
+    def put(self, node: Any, key: str, value: object) -> None:
+        """Set a key; a new one goes second to last, as the last one carries what comes after.
+
+        Parameters
+        ----------
+        node : mapping
+            Where it is.
+        key : str
+            In it.
+        value : object
+            Texts, and lists and dictionaries of them.
+        """
+        flow = _flow(value)
+        if key in node or not len(node):
+            node[key] = flow
+        else:
+            node.insert(max(len(node) - 1, 1), key, flow)
+
+    def child(self, node: Any, key: str, names: Iterable[str]) -> Any:
+        """Return the mapping at a key; where there is none, a new one in block style.
+
+        Parameters
+        ----------
+        node : mapping
+            The one above.
+        key : str
+            In it.
+        names : iterable of str
+            What is going to be put into a new one, in this order.
+        """
+        from ruamel.yaml.comments import CommentedMap
+
+        if node.get(key) is None:
+            self.put(node, key, "")
+            node[key] = CommentedMap.fromkeys(names)
+        return node[key]
+
+    def drop(self, node: Any, key: str) -> None:
+        """Remove a key, but not the comments that follow it."""
+        if key not in node:
+            return
+        comments = node.ca.items.pop(key, None)
+        del node[key]
+        if comments is not None and len(node):
+            node.ca.items.setdefault(list(node)[-1], comments)
+
+    def text(self) -> str:
+        """Return the new text, checked.
+
+        Raises
+        ------
+        SpecError
+            If the result is no valid spec, or a comment would be lost.
+        """
+        stream = io.StringIO()
+        self._yaml.dump(self.root, stream)
+        text = stream.getvalue()
+        if "\r\n" in self._loaded.text:
+            text = text.replace("\n", "\r\n")
+        lost = [line for line in _comments(self._loaded.text) if line not in set(_comments(text))]
+        if lost:
+            raise SpecError(
+                f"the comment {lost[0]!r} would be lost",
+                path=self._loaded.path,
+                remedy="move it out of the value that is replaced",
+            )
+        parse_spec(text, self._loaded.path)
+        return text
+
+
+def _flow(value: object) -> object:
+    """Return a value in flow style, except for a list of mappings or of sentences."""
+    from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+    if isinstance(value, dict):
+        mapping = CommentedMap({key: _flow(item) for key, item in value.items()})
+        mapping.fa.set_flow_style()
+        return mapping
+    if isinstance(value, list):
+        sequence = CommentedSeq(_flow(item) for item in value)
+        if not any(isinstance(item, dict) or len(str(item)) > _SENTENCE for item in value):
+            sequence.fa.set_flow_style()
+        return sequence
+    return value
+
+
+def _comments(text: str) -> Sequence[str]:
+    lines: Iterable[str] = (line.strip() for line in text.splitlines())
+    return [line for line in lines if line.startswith("#")]

@@ -1,0 +1,140 @@
+"""The command of the motor under disturbances: what its rows hold, and runs against the bound."""
+
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from nrs_design.certificates.bounds import bound_on
+from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.verify import verify_document
+from nrs_design.pipeline import limits_of, run_certification, run_design
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.reporting.sections.proof import proof_section
+from nrs_design.spec import read_spec
+from tests.support import SOFT_TISSUE
+
+TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
+Kp, D = Fraction(np.float32(117359.436).item()), Fraction(1_030_000)
+SAMPLING = "sampling: {period: 2 ms, delay: 1}\ncontact: kept\n"
+COMMANDED = "disturbances: {command: 8 deg/s}\n"
+ERRORS = "disturbances: {command: 8 deg/s, encoder_step: 0.00878906 deg, largest_angle: 20 deg}\n"
+
+
+def spec_of(path, disturbances, limit="10000 rpm", sampling=SAMPLING):
+    head, _, _ = TEXT.partition("controllers:")
+    limits = "bandwidth: 2 Hz\n" + (f"  command: {limit}\n" if limit else "")
+    text = (
+        f"{head.replace('bandwidth: 2 Hz', limits)}controllers:\n  insertion: {{type: impedance, "
+        "environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}\nswitching: arbitrary\n"
+    )
+    file = path / "driven.nrs.yaml"
+    file.write_text(text + sampling + disturbances, encoding="utf-8")
+    return read_spec(file)
+
+
+def system_of(loaded):
+    return assemble_spec(loaded, run_design(loaded), "deflection")
+
+
+def command_of(system):
+    return next(o for o in system.outputs if o.name.startswith("motor command"))
+
+
+def test_rows_hold_every_rounding(tmp_path):
+    """``Kp e + D (e - e before)`` with each term off by any share that its roundings allow."""
+    system = system_of(spec_of(tmp_path, COMMANDED))
+    output = command_of(system)
+    assert (output.name, output.unit, output.limit) == ("motor command", "rpm", 10000)
+    rows = [row.fractions()[0] for row in output.rows]
+    e, before = system.states.index("e [rad]"), system.states.index("e before [rad]")
+    assert all(not any(v for i, v in enumerate(row) if i not in (e, before)) for row in rows)
+    middle = [sum(column) / len(rows) for column in zip(*rows, strict=True)]
+    assert (middle[e], middle[before]) == (Kp + D, -D)
+    rng = np.random.default_rng(3)
+    for errors in rng.uniform(-1e-3, 1e-3, (50, 2)):
+        now, last = map(np.float32, errors)
+        change = np.float32(now - last)
+        drive = np.float32(np.float32(Kp) * now) + np.float32(np.float32(D) * change)
+        values = [float(row[e]) * float(now) + float(row[before]) * float(last) for row in rows]
+        assert min(values) <= float(drive) <= max(values)
+        assert max(values) - min(values) < 1e-5 * (abs(float(Kp + D) * now) + abs(float(D) * last))
+
+
+def test_errors_of_the_sample_are_taken_off_the_limit(tmp_path):
+    """An encoder that is half a step off changes the command of the sample by ``Kp + D`` times."""
+    system = system_of(spec_of(tmp_path, ERRORS))
+    output = command_of(system)
+    assert output.name == "motor command before errors of its sample"
+    half = np.radians(0.00878906) / 2
+    taken = float(10000 - output.limit)
+    assert taken == pytest.approx(float(Kp + D) * half, rel=2e-2)
+    assert taken > float(Kp + D) * half
+    (text,) = (t for t in system.assumptions if "it does not saturate" in t)
+    assert f"less {taken:.5g}"[:8] in text
+    # So large an error leaves nothing of the limit, and none is shown.
+    small = command_of(system_of(spec_of(tmp_path, ERRORS, limit="50 rpm")))
+    assert small.limit is None
+
+
+def test_where_it_is_not_asked_for(tmp_path):
+    """Without a limit or disturbances, nothing is said of it."""
+    for loaded in (spec_of(tmp_path, COMMANDED, limit=None), spec_of(tmp_path, "")):
+        system = system_of(loaded)
+        assert all("motor command" not in o.name for o in system.outputs)
+        assert "does not saturate" not in " ".join(system.assumptions)
+
+
+def test_runs_stay_below_the_bound_and_come_near(tmp_path):
+    """In single precision: the command that moves the motor most, and 500 at random."""
+    loaded = spec_of(tmp_path, COMMANDED)
+    result = run_certification(loaded, limits=limits_of(loaded.spec, optimize_rate=False))
+    system = result.certification.system
+    bound = bound_on(system, result.certification.statements, "motor command")
+    claim = next(s for s in result.certificate.statements if "motor" in s.claim(system))
+    assert "The limit of 10000 rpm is kept." in claim.claim(system)
+    assert claim.covers_rounding
+    row = command_of(system).rows[0].floats()[0]
+    B = np.array(system.channels[0].columns[0].floats())[:, 0]
+    moved, signs = B, []
+    for _ in range(300):
+        signs.append(np.sign(row @ moved))
+        moved = np.array(system.modes[0].A.floats()) @ moved
+    rng = np.random.default_rng(5)
+    random = np.repeat(rng.choice([-1.0, 1.0], (500, 60)), 5, axis=1)
+    pushes = np.radians(8) * np.vstack([signs[::-1], random])
+    pushes = np.hstack([pushes, np.zeros((501, 1))])
+    reached = np.abs(_commands(pushes, bound_law(result))).max()
+    assert reached <= bound.level
+    said = str(proof_section(result))
+    assert "the driver does not saturate." in said
+    assert "saturation of motor or driver." not in said
+    # An ellipsoid reaches further than what a jump of the command does at once.
+    assert reached > 0.5 * float(bound.level)
+    assert verify_document(json.loads(dump(result.certificate)), loaded).fault is None
+
+
+def bound_law(result):
+    (controller,) = result.designed.design.controllers
+    return controller.law.sampled(Fraction(1, 500), "exact")
+
+
+def _commands(pushes, law, k=43.0):
+    """Run the law in single precision, contact kept and the force a sample old."""
+    single, T, Km, tau = np.float32, 0.002, 4.8417e-4, 0.0351
+    n = len(pushes)
+    theta, omega, late = np.zeros(n), np.zeros(n), np.zeros(n, single)
+    reference, before, velocity = (np.zeros(n, single) for _ in range(3))
+    E, found = np.exp(-T / tau), []
+    for push in pushes.T:
+        error = reference - theta.astype(single)
+        drive = single(Kp) * error + single(D) * (error - before)
+        reference = reference + single(law.T) * (push.astype(single) - velocity)
+        velocity = single(law.a) * velocity + single(law.b) * late
+        before, late = error, (k * theta).astype(single)
+        held = Km * drive.astype(float)
+        theta = theta + tau * (1 - E) * omega + (T - tau * (1 - E)) * held
+        omega = E * omega + (1 - E) * held
+        found.append(drive.astype(float))
+    return np.array(found)

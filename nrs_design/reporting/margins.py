@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from fractions import Fraction
 from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING
@@ -14,7 +15,6 @@ from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.search.loop_margin import Bracket
     from nrs_design.spec import LoadedSpec
 
 # Makes a text lead to a place of the spec.
@@ -81,10 +81,10 @@ def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
         return
     more = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
-        said = _said(loop.delay, "samples", at, "delay")
+        said = _said((loop.delay.proved, loop.delay.refuted), "samples", at, "delay")
         yield Sentence("longest delay of the force sample: ", *said, more)
     if loop.period is not None:
-        said = _said(loop.period, "s", at, "period")
+        said = _said((loop.period.proved, loop.period.refuted), "s", at, "period")
         rest = f" (each for itself, nothing is said of those in between{more})"
         yield Sentence("period: ", *said, rest)
     if loop.command is not None:
@@ -109,11 +109,11 @@ def _listed(items: Iterator[tuple[str, ...]]) -> list[str]:
     return list(chain.from_iterable((", ", *item) for item in items))[1:]
 
 
-def _said(found: Bracket, unit: str, at: _At, key: str) -> tuple[str, ...]:
-    where = ("sampling", key)
+def _said(
+    ends: tuple[Fraction | None, Fraction | None], unit: str, at: _At, key: str
+) -> tuple[str, ...]:
     proved, refuted = (
-        None if end is None else at(nearly(end, unit), *where)
-        for end in (found.proved, found.refuted)
+        None if end is None else at(nearly(end, unit), "sampling", key) for end in ends
     )
     said = ("none is proved",) if proved is None else (proved, " is proved")
     none = ("no refutation was found",)

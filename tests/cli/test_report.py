@@ -149,7 +149,7 @@ def test_a_certificate_at_hand_is_shown(tmp_path):
     assert run(COMMUTING, *given).exit_code == 0
     text = page.read_text(encoding="utf-8")
     assert json.loads(certificate.read_text(encoding="utf-8"))["id"] in text
-    assert "each checked again exactly" in text
+    assert "each of its statements was checked again exactly" in text
 
 
 def test_a_certificate_of_another_spec_is_refused(tmp_path):

@@ -148,7 +148,8 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
     for check in found.checks:
         if check.status == "not modelled":
             who = found.bounds.source
-            say(f"not covered: {who} takes for granted that there is no {check.name}")
+            comma = "," if "," in who else ""
+            say(f"not covered: {who}{comma} takes for granted that there is no {check.name}")
         if check.status == "not judged":
             say(f"not judged: {check.name}: {check.measured}")
 

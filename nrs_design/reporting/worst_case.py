@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found")
 MEANING = (
     "An adversary chose controllers, contact, delay and disturbances within what the spec allows. "
-    "What he found may happen in the model; the worst that may happen lies between it and the "
-    "certified bound."
+    "What he found may happen in the model, and is a lower bound of the worst that may; the "
+    "certified bound is an upper one."
 )
 NO_BOUND = "No bound is certified beside it: the worst that may happen may be any larger."
 UNDECLARED = (
@@ -115,7 +115,15 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
-    """Return by what SI numbers of a quantity are multiplied for people, and their unit."""
+    """Return by what SI numbers of a quantity are multiplied for people, and their unit.
+
+    Parameters
+    ----------
+    name, unit : str
+        Of the quantity, in SI.
+    lever_arm : float or None
+        In m; with it, a deflection is in mm.
+    """
     if name == DEFLECTION and lever_arm is not None:
         return 1e3 * lever_arm, "mm"
     scales = {"N*m": (1.0, "N m"), "rad/s": (_TURN, "deg/s"), "rad": (_TURN, "deg")}

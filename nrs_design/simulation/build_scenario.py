@@ -222,10 +222,11 @@ def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
 
     table = read_table(path, (("time", "velocity"),), {}, lambda done: None, ())
     columns = table.groups[""]
-    times = columns["time"] - columns["time"][0]
+    times = columns["time"] - columns["time"][:1]
     if len(times) < 2 or not (np.diff(times) >= 0).all() or not 0 < times[-1] <= LONGEST:
         raise DataError(
-            "is no profile of commands: its times fall, or last no time or more than an hour",
+            "is no profile of commands: it has fewer than two rows, its times fall, or last no "
+            "time or more than an hour",
             path=path,
             remedy="give at least two rows, with times that rise",
         )

@@ -132,6 +132,7 @@ class _Engine:
     switches: list[tuple[float, str]] = field(default_factory=list)
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)
     steps: int = 0
+    crossings: int = 0
     stopped: str | None = None
 
     def __post_init__(self) -> None:
@@ -171,7 +172,9 @@ class _Engine:
             limit = min(end, agenda[0][0]) if agenda else end
             timer = self.since + stays.get(self.controller, 0.0)
             held = timer > self.t
-            if self._advance(min(limit, timer) if held else limit) or held:
+            crossed = self._advance(min(limit, timer) if held else limit)
+            self.crossings += crossed
+            if crossed or held:
                 self._settle()
             still = still + 1 if self.t == before else 0
             self._check(still)
@@ -195,6 +198,8 @@ class _Engine:
             self.stopped = (
                 f"{events} switches and contacts by {self.t:.6g} s: contact or mode logic chatters"
             )
+        elif self.stopped is None and self.crossings > MAX_EVENTS:
+            self.stopped = f"{MAX_EVENTS} events by {self.t:.6g} s: the budget is used up"
 
     def _agenda(self) -> Iterator[tuple[float, int, str | int]]:
         """Yield what happens at given times: breakpoints of the command and scheduled switches."""

@@ -56,6 +56,9 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
     if not content.startswith(_BEGINNING) or len(content) > _MOST:
         raise DataError("keeps no runs of a study", path=path, remedy="name another file")
     lines = content.split(b"\n")[:-1]
+    if not lines:
+        message = "is cut off within its first line, so it keeps no runs"
+        raise DataError(message, path=path, remedy="delete it, or name another file")
     try:
         first, *rest = [json.loads(line) for line in lines]
         outcomes = [Outcome(**line) for line in rest]
@@ -63,7 +66,8 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
         known &= all(isinstance(o.uncovered, list) for o in outcomes)
         known &= [one.index for one in outcomes] == list(range(len(outcomes)))
     except (ValueError, TypeError, AttributeError, RecursionError) as error:
-        raise DataError(f"keeps no runs of a study: {error}", path=path, remedy=_ELSE) from None
+        message = f"keeps no runs of a study that can be read ({error})"
+        raise DataError(message, path=path, remedy=_ELSE) from None
     if not known:
         raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)
     for key, value in _header(head).items():

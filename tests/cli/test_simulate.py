@@ -201,6 +201,7 @@ def test_a_profile_from_a_file(spec, tmp_path):
     for rows, message in (
         ("0,0\n1,9\n", "beyond the spec's limit"),
         ("0,0\n1,nan\n", "nan"),
+        ("", "fewer than two rows"),
         ("0,0\n", "no profile"),
         ("0,0\n2,1\n1,1\n", "no profile"),
     ):

@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 
 # Largest delay that is looked for, as a part of the record.
 _LONGEST = 0.1
+# So near to a whole number, only the arithmetic of a fit without noise keeps a delay from it.
+_SAME = Fraction(1, 10**6)
 _PARTS = 10
 _PART_STEPS = 6
 # A model with more parameters must lower BIC by so much (very strong evidence: Kass and Raftery
@@ -87,8 +89,7 @@ class DelayIdentification:
     @property
     def whole_samples(self) -> tuple[int, int]:
         """What is held, in whole samples of the record."""
-        low, high = self.held
-        return math.floor(low), math.ceil(high)
+        return self._outward(Fraction(1))
 
     @property
     def is_lag(self) -> bool:
@@ -110,8 +111,12 @@ class DelayIdentification:
 
     def in_periods(self, period: Fraction) -> tuple[int, int]:
         """Return what is held, in whole periods of another length in s, rounded outward."""
-        low, high = (Fraction(end) * Fraction(self.record.step) / period for end in self.held)
-        return math.floor(low), math.ceil(high)
+        return self._outward(Fraction(self.record.step) / period)
+
+    def _outward(self, sample: Fraction) -> tuple[int, int]:
+        """Return what is held, where a sample is so many of what is counted."""
+        low, high = (Fraction(end) * sample for end in self.held)
+        return math.floor(low + _SAME), math.ceil(high - _SAME)
 
 
 def identify_delay(record: SignalRecord) -> DelayIdentification:

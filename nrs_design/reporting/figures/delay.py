@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 _MEASURED = "#7d8894"
 # Samples that are drawn, about where the command changes most.
 _DRAWN = 400
+# In samples: delays that spread less differ by the arithmetic of the fit only.
+_LEAST_SHOWN = 0.01
 
 
 @styled
@@ -59,6 +61,9 @@ def draw_delay(found: DelayIdentification) -> Figure:
     for time, part in found.parts:
         axes.plot([time, time], [part.low, part.high], color=VERMILLION, linewidth=2.0)
         axes.plot(time, part.value, "o", color=VERMILLION, markersize=4.5)
+    low, high = axes.get_ylim()
+    if high - low < _LEAST_SHOWN:
+        axes.set_ylim(whole.value - _LEAST_SHOWN / 2, whole.value + _LEAST_SHOWN / 2)
     axes.set_xlabel("Time [s]")
     axes.set_ylabel("Delay [samples]")
     legend(figure, axes)

@@ -182,7 +182,8 @@ def _scheme(run: Run) -> Counterpart:
             stated(
                 "s1 is closed in contact; Y1 acts into tissue, Y2 out of it",
                 "so drawn",
-                "so in the run",
+                "in the run: "
+                + ", ".join(f"{name} at {time:.3f} s" for time, name in run.switches),
                 [name for _, name in run.switches][:1] == ["withdrawal"] and len(run.contacts) == 2,
             ),
         ),
@@ -241,7 +242,12 @@ def _withdrawal(
         section="6.3.2.3",
         title=f"out of tissue at {one.printed_speed} rad/s, {one.axis}",
         statements=(
-            stated("out of tissue with switching", "sooner", "sooner", switched < without),
+            stated(
+                "out of tissue with switching",
+                "sooner",
+                f"after {switched:.4f} s, without after {without:.4f} s",
+                switched < without,
+            ),
             measured("time without switching, s", f"{printed[0]:.2f}", without, why),
             measured("time with switching, s", f"{printed[1]:.2f}", switched, why),
             _gain(gain, printed, 100 * gain_in_time(without, switched)),

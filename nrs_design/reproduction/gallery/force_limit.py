@@ -197,7 +197,7 @@ def _schemes(run: Run) -> Counterpart:
             stated(
                 "S is 1 in position control, 0 from 0.3 N m on (6.30)",
                 "so drawn",
-                "so in the run",
+                "in the run: " + ", ".join(f"{name} at {time:g} s" for time, name in run.switches),
                 [name for _, name in run.switches] == ["force", "position"] * 2,
             ),
             Statement(

@@ -67,13 +67,13 @@ def _signs(pushed: Sequence[HandRun], led: Sequence[HandRun]) -> tuple[Statement
         stated(
             "more Mt or more Bt: mean speed",
             "less in every pair",
-            f"pushed: less in every pair; led: in {_count(led_speeds, -1)} of 7",
+            f"pushed: less in {_count(speeds, -1)} of 7; led: in {_count(led_speeds, -1)}",
             all(change < 0 for change in speeds),
         ),
         stated(
             "more Mt or more Bt: total torque",
             "more in every pair but 5 to 6, approximately the same",
-            f"pushed: more in every pair; led: in {_count(led_totals, 1)} of 7",
+            f"pushed: more in {_count(totals, 1)} of 7; led: in {_count(led_totals, 1)}",
             all(change > 0 for change in totals),
         ),
     )

@@ -163,11 +163,15 @@ class Contact:
     required : bool
         Stability must be shown through any loss of contact; otherwise a proof may take for granted
         that contact is kept, and its claim says so.
+    pushed : bool
+        A constant force may push into contact: the deflection at which its force is that one is
+        the same in all modes that follow each other, and a statement may be about it.
     """
 
     free: tuple[Mode, ...]
     pulls: tuple[RationalMatrix, ...] = ()
     required: bool = False
+    pushed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

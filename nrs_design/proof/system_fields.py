@@ -198,6 +198,7 @@ def _contact_fields(contact: Contact) -> Fields:
         "free": _mode_fields(contact.free),
         "pulls": [_matrix_fields(row) for row in contact.pulls],
         "required": contact.required,
+        **({"pushed": True} if contact.pushed else {}),
     }
 
 
@@ -206,7 +207,10 @@ def _read_contact(fields: Mapping[str, Any]) -> Contact:
     required = fields["required"]
     if not isinstance(required, bool):
         raise TypeError("whether the loss of contact must be covered is not true or false")
-    return Contact(_read_modes(fields["free"]), pulls, required)
+    pushed = fields.get("pushed", False)
+    if not isinstance(pushed, bool):
+        raise TypeError("whether a constant force pushes in is not true or false")
+    return Contact(_read_modes(fields["free"]), pulls, required, pushed)
 
 
 def _clock_fields(clock: Clock) -> Fields:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.conewise_mode_quadratic import ConewiseModeQuadratic
     from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
     from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
+    from nrs_design.proof.evidence.constant_force import ConstantForce
     from nrs_design.proof.evidence.coupled_axes import CoupledAxes
     from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
     from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
@@ -41,6 +42,7 @@ __all__ = [
     "ConewiseModeQuadratic",
     "ConewisePolynomial",
     "ConewiseQuadratic",
+    "ConstantForce",
     "CoupledAxes",
     "InvariantEllipsoid",
     "ModePolynomial",
@@ -65,6 +67,7 @@ KINDS: Mapping[str, str] = {
     "conewise-mode-quadratic": "ConewiseModeQuadratic",
     "conewise-polynomial": "ConewisePolynomial",
     "conewise-quadratic": "ConewiseQuadratic",
+    "constant-force": "ConstantForce",
     "coupled-axes": "CoupledAxes",
     "invariant-ellipsoid": "InvariantEllipsoid",
     "mode-polynomial": "ModePolynomial",

@@ -38,17 +38,20 @@ class Shows(StrEnum):
     INSTABILITY = "instability"
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
+    CONVERGENCE = "convergence under a constant force"
 
 
 # That no common quadratic function exists is said of matrices, whatever happens to contact.
 _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (WHILE_KEPT,),
     Shows.BOUND: (WHILE_KEPT,),
+    Shows.CONVERGENCE: (WHILE_KEPT,),
     Shows.INSTABILITY: (GROWN_IN_CONTACT,),
 }
 _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (NOT_ROUNDED,),
     Shows.BOUND: (NOT_ROUNDED,),
+    Shows.CONVERGENCE: (NOT_ROUNDED,),
     Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
 
@@ -229,7 +232,7 @@ class AbstractEvidence(ABC):
         return self._is_good() and not self.covers_lost_contact
 
     def _is_good(self) -> bool:
-        return self.shows in (Shows.STABILITY, Shows.BOUND)
+        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:

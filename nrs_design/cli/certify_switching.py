@@ -235,8 +235,9 @@ def _print(result: Result, *, verbose: bool) -> None:
         say("  Neither a proof nor a refutation was found; this is not a statement of stability.")
     everything = verbose or certification.evidence is None
     for attempt in certification.attempts:
-        # A bound that was looked for and is missing must not look like one that nobody wanted.
-        missing = attempt.step.startswith("bound on ") and attempt.outcome != "found"
+        # What was looked for and is missing must not look like something that nobody wanted.
+        sought = attempt.step.startswith(("bound on ", "constant force"))
+        missing = sought and attempt.outcome != "found"
         if everything or missing:
             say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
     say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))

@@ -201,7 +201,7 @@ class Examiner:
                 yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
-        """Yield NRS108 for torque, rate and delay that the spec wants to be proved."""
+        """Yield NRS108 for torque, rate, delay and rest that the spec wants to be proved."""
         spec = self.loaded.spec
         if spec.kind != "interaction-design" or spec.goals is None:
             return
@@ -234,6 +234,12 @@ class Examiner:
                 said = f"the loop is proved for force samples {ages}"
             met = proved and oldest >= goals.delay.exact
             yield self._certified("delay", f"{said}; {goals.delay.text} is wanted", met=met)
+        if goals.constant_force is not None:
+            statements = () if certificate is None else certificate.statements
+            met = any(item.shows is Shows.CONVERGENCE for item in statements)
+            said = "the force is proved to settle at" if met else "not proved: the force settles at"
+            message = f"{said} every constant Fd that pushes in, at every constant stiffness"
+            yield self._certified("constant_force", message, met=met)
 
     def _certified(self, key: str, message: str, *, met: bool) -> Obligation:
         status = Status.PROVED if met else Status.INCONCLUSIVE

@@ -34,6 +34,7 @@ Progress = Callable[[str], None]
 
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
+CONSTANT_FORCE = "constant force"
 
 
 def certify(
@@ -97,8 +98,9 @@ def certify(
     statements = _spread(result.statements, merged, system)
     if result.verdict is Verdict.PROVED:
         bounds, attempts = _bounds(system, allowance, progress)
-        statements += bounds
-        result = replace(result, attempts=(*result.attempts, *attempts))
+        settled, more = _settling(system, allowance, progress)
+        statements += bounds + settled
+        result = replace(result, attempts=(*result.attempts, *attempts, *more))
     if merged is not system or len(blocks) > 1:
         _check_again(statements, system)
     for statement in statements:
@@ -134,6 +136,21 @@ def _bounds(
         if evidence is not None:
             found.append(evidence)
     return tuple(found), tuple(attempts)
+
+
+def _settling(
+    system: SwitchedSystem, allowance: Allowance, progress: Progress
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Show that contact settles under a constant force, where one may push in."""
+    if system.contact is None or not system.contact.pushed:
+        return (), ()
+    from nrs_design.search.constant_force import search_constant_force
+
+    progress(CONSTANT_FORCE)
+    start = perf_counter()
+    evidence, outcome = _take(partial(search_constant_force, system, allowance), system)
+    attempt = Attempt(CONSTANT_FORCE, outcome, perf_counter() - start)
+    return () if evidence is None else (evidence,), (attempt,)
 
 
 def _check_again(statements: tuple[AbstractEvidence, ...], system: SwitchedSystem) -> None:

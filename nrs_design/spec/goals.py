@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -32,7 +32,7 @@ ONLY_FOR = {
     "max_force_error": "force",
 }
 # What a certificate must show, for all controllers together.
-OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate", "delay"})
+OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate", "delay", "constant_force"})
 
 
 def _below_half_turn(angle: Quantity) -> Quantity:
@@ -104,6 +104,12 @@ class GoalsSpec(SpecModel):
         description="age of a force sample up to which the sampled loop must be proved, such as "
         "4 ms; for the whole spec, and with sampling",
     )
+    constant_force: Literal["settles"] | None = Field(
+        default=None,
+        description="settles: it must be proved that the force settles at any constant Fd > 0 that "
+        "pushes in, through loss of contact, at any constant stiffness; for the whole spec, with "
+        "`contact: losable` and one elastic environment, in continuous time",
+    )
 
     @model_validator(mode="after")
     def _check_any(self) -> GoalsSpec:
@@ -116,7 +122,7 @@ class GoalsSpec(SpecModel):
         """Whether there is a goal that errors of the force signal decide."""
         return self.max_creep is not None or self.max_creep_angle is not None
 
-    def given(self) -> Iterator[tuple[str, Quantity | Fraction]]:
+    def given(self) -> Iterator[tuple[str, Quantity | Fraction | str]]:
         """Yield the goals that are set, by key."""
         return ((key, value) for key, value in self if value is not None)
 

@@ -10,6 +10,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.constant_force import check_constant_force
 from nrs_design.spec.controllers import (
     ControllerSpec,
     IdleStatesSpec,
@@ -194,6 +195,7 @@ class InteractionDesignSpec(SpecModel):
                 ],
             ),
             partial(check_sampled, self),
+            partial(check_constant_force, self),
             lambda: check_coupling(
                 self.coupling,
                 loaded=self.actuator.load_inertia is not None,

@@ -136,6 +136,7 @@ def assemble(
     """
     from nrs_design.switched.close_loop import close_loop
     from nrs_design.switched.commanded import check_memory, with_command
+    from nrs_design.switched.constant_force import with_constant_force
     from nrs_design.switched.coupled import couple_axes
     from nrs_design.switched.gain_box import gain_boxes
     from nrs_design.switched.joint import Joint
@@ -172,6 +173,8 @@ def assemble(
             system = with_command(system, spec, spec.disturbances, loop, joint, touched)
         if (coupling := _coupling_of(spec, plant, scale)) is not None:
             system = couple_axes(system, coupling)
+        if spec.goals is not None and spec.goals.constant_force is not None:
+            system = with_constant_force(system)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     period = None if spec.sampling is None else spec.sampling.outer

@@ -139,7 +139,8 @@ def goals_of(
     """
     given: dict[str, Quantity | Fraction] = {}
     for goals in (spec.goals, controller.goals):
-        given |= dict(goals.given()) if goals is not None else {}
+        found = goals.given() if goals is not None else ()
+        given |= {key: value for key, value in found if not isinstance(value, str)}
     return tuple(
         (measure, _number(given[measure.goal])) for measure in measures if measure.goal in given
     )

@@ -13,6 +13,7 @@ from nrs_design.proof.evidence import (
     ConewiseModeQuadratic,
     ConewisePolynomial,
     ConewiseQuadratic,
+    ConstantForce,
     CoupledAxes,
     InvariantEllipsoid,
     ModePolynomial,
@@ -33,6 +34,7 @@ from nrs_design.reporting.kinds.common_quadratic import CommonQuadraticPage
 from nrs_design.reporting.kinds.conewise_mode_quadratic import ConewiseModeQuadraticPage
 from nrs_design.reporting.kinds.conewise_polynomial import ConewisePolynomialPage
 from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
+from nrs_design.reporting.kinds.constant_force import ConstantForcePage
 from nrs_design.reporting.kinds.coupled_axes import CoupledAxesPage
 from nrs_design.reporting.kinds.invariant_ellipsoid import InvariantEllipsoidPage
 from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
@@ -52,6 +54,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     ConewiseModeQuadratic: ConewiseModeQuadraticPage,
     ConewisePolynomial: ConewisePolynomialPage,
     ConewiseQuadratic: ConewiseQuadraticPage,
+    ConstantForce: ConstantForcePage,
     CoupledAxes: CoupledAxesPage,
     InvariantEllipsoid: InvariantEllipsoidPage,
     ModePolynomial: ModePolynomialPage,

@@ -68,6 +68,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
             "rounded display; where a range of a gain is declared, all values in it."
         )
     proved += _bounds(result.certification)
+    proved += _settling(result.certification)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(proved)),
@@ -88,6 +89,17 @@ def _bounds(certification: Certification) -> list[str]:
         item.claim(certification.system)
         for item in certification.statements
         if item.shows is Shows.BOUND
+    ]
+
+
+def _settling(certification: Certification) -> list[str]:
+    """State what is shown about a constant force, beside the claim that decides."""
+    return [
+        text
+        for item in certification.statements
+        if item.shows is Shows.CONVERGENCE
+        for page in (page_of(certification.system, item),)
+        for text in (item.claim(certification.system), *page.between_corners())
     ]
 
 

@@ -76,6 +76,7 @@ NUMBERS = {
     "common-quadratic": {"Q"},
     "common-polynomial": {"Q", "vanishing"},
     "conewise-quadratic": {"Q", "multipliers"},
+    "constant-force": {"Q", "slope"},
     "mode-quadratic": {"functions"},
     "parameter-quadratic": {"Q_low", "Q_high"},
     "no-common-quadratic": {"factors"},

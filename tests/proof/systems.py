@@ -215,6 +215,14 @@ def bouncing(damping: Entry = 0) -> SwitchedSystem:
     return replace(family(*contact), contact=Contact((free,), pulls))
 
 
+def settling() -> SwitchedSystem:
+    """The same without damping, pushed in by a constant force."""
+    system = bouncing()
+    contact = system.contact
+    assert contact is not None
+    return replace(system, contact=replace(contact, pushed=True))
+
+
 def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
     """The same in steps of a tenth of a second by Euler's method."""
     b = Fraction(damping)
@@ -303,6 +311,7 @@ SYSTEMS = {
     "conewise-quadratic, pulling": lambda: bouncing(1),
     "conewise-quadratic, discrete": bouncing_in_steps,
     "conewise-quadratic, pulling in steps": lambda: bouncing_in_steps(1),
+    "constant-force": settling,
     "coupled-axes": lambda: leaning(bouncing(), "1/8"),
     "coupled-axes, kept": lambda: leaning(replace(bouncing(), contact=None), "1/8", "1/8"),
     "coupled-axes, pulling": lambda: leaning(bouncing(1), "1/8"),

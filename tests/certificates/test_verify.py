@@ -67,6 +67,7 @@ SPECS = {
     "constant": EXAMPLES / "unknown-constant.nrs.yaml",
     "value": ROOT / "docs" / "examples" / "flutter.nrs.yaml",
     "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
+    "pushed": ROOT / "docs" / "examples" / "pushed-in.nrs.yaml",
 }
 # Every change to the others, which are larger, is left to the slow tests.
 SMALL = ("given", "force", "unstable", "discrete")

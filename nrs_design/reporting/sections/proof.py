@@ -68,7 +68,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
             "rounded display; where a range of a gain is declared, all values in it."
         )
     proved += _bounds(result.certification)
-    proved += _settling(result.certification)
+    proved += _settling(result)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(proved)),
@@ -92,15 +92,15 @@ def _bounds(certification: Certification) -> list[str]:
     ]
 
 
-def _settling(certification: Certification) -> list[str]:
+def _settling(result: Result) -> list[str]:
     """State what is shown about a constant force, beside the claim that decides."""
-    return [
-        text
-        for item in certification.statements
-        if item.shows is Shows.CONVERGENCE
-        for page in (page_of(certification.system, item),)
-        for text in (item.claim(certification.system), *page.between_corners())
-    ]
+    system, said = result.certification.system, list[str]()
+    for item in result.certification.statements:
+        if item.shows is Shows.CONVERGENCE:
+            said.append(item.claim(system))
+            if result.loaded.spec.has_ranges:
+                said += page_of(system, item).between_corners()
+    return said
 
 
 def _not_covered_by_design(result: Result) -> tuple[str, ...]:

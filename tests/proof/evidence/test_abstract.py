@@ -102,6 +102,7 @@ GROWN = " This growth is that in kept contact, the environment pulling as it pus
     [
         (Shows.STABILITY, KEPT),
         (Shows.BOUND, KEPT),
+        (Shows.CONVERGENCE, KEPT),
         (Shows.INSTABILITY, GROWN),
         (Shows.NO_COMMON_QUADRATIC, ""),
     ],
@@ -126,6 +127,7 @@ NOT_ROUNDED = " This holds for the law computed without rounding."
     [
         (Shows.STABILITY, NOT_ROUNDED),
         (Shows.BOUND, NOT_ROUNDED),
+        (Shows.CONVERGENCE, NOT_ROUNDED),
         (Shows.INSTABILITY, " This growth is that of the law computed without rounding."),
         (Shows.NO_COMMON_QUADRATIC, ""),
     ],
@@ -156,6 +158,7 @@ def test_a_rate_by_the_step_is_said_in_seconds_too():
     [
         (Shows.STABILITY, True),
         (Shows.BOUND, True),
+        (Shows.CONVERGENCE, True),
         (Shows.INSTABILITY, False),
         (Shows.NO_COMMON_QUADRATIC, False),
     ],
@@ -182,7 +185,7 @@ ALONE = (
 def test_what_is_good_must_cover_other_axes_and_what_grows_says_that_it_is_one(what):
     system = leaning(replace(bouncing(), contact=None), "1/8")
     fault, claim = Said(what=what).find_fault(system), Said(what=what).claim(system)
-    if what in (Shows.STABILITY, Shows.BOUND):
+    if what in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE):
         assert "does not cover what axes do to each other" in fault
     else:
         assert fault is None
@@ -316,8 +319,11 @@ FACTS = {
     "bounds_at_once": FREE,
     "covers_clock": {"periodic-quadratic", "unstable-period"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
-    "covers_lost_contact": BOUNCING | {"invariant-ellipsoid", "no-common-quadratic"},
-    "covers_mixtures": SETS | BOUNCING | {"common-polynomial", "block-triangular"},
+    "covers_lost_contact": BOUNCING
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic"},
+    "covers_mixtures": SETS
+    | BOUNCING
+    | {"common-polynomial", "constant-force", "block-triangular"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,

@@ -19,7 +19,7 @@ from nrs_design.proof.system import ARBITRARY, Stay, Switching, Time
 from nrs_design.search.certify import certify
 from nrs_design.spec import read_spec
 from tests.proof.systems import genuine
-from tests.support import SOFT_TISSUE, family
+from tests.support import ROOT, SOFT_TISSUE, family
 
 from .conftest import STABLE
 

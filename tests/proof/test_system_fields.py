@@ -17,6 +17,7 @@ from tests.proof.systems import (
     family,
     genuine,
     matrix,
+    settling,
 )
 
 RESET = Reset("m0", "m1", RationalMatrix(((1, -2), (0, 3)), 4))
@@ -176,3 +177,14 @@ def test_the_longest_and_the_shortest_round():
     for length in (2, 100):
         system = doubled_in_turns(length)
         assert read_system("family", system_fields(system)) == system
+
+
+def test_that_a_force_pushes_in_is_written_only_where_it_does():
+    fields = system_fields(settling())
+    assert fields["contact"]["pushed"] is True
+    assert "pushed" not in system_fields(bouncing())["contact"]
+    assert read_system("family", fields) == settling()
+    for wrong in (1, "true", None):
+        changed = {**fields, "contact": {**fields["contact"], "pushed": wrong}}
+        with pytest.raises(TypeError, match="constant force pushes in"):
+            read_system("family", changed)

@@ -14,9 +14,9 @@ from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.impedance import (
     CURVES,
-    NOMINAL,
     by_controller,
     impedance_section,
+    nominal_note,
 )
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
@@ -229,7 +229,7 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         ],
     )
     loci = (_force_locus(item) for item in analysis.force[:CURVES])
-    texts = [Paragraph(NOMINAL)]
+    texts = [nominal_note(designed)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     return Section("Force control", (*texts, *tables, *loci))

@@ -4,13 +4,13 @@ import base64
 import hashlib
 import html
 import re
+from dataclasses import replace
 
 import pytest
 
 from nrs_design.printable import visible
 from nrs_design.reporting import render_html
-from nrs_design.reporting.document import Table
-from nrs_design.reporting.render import _look
+from nrs_design.reporting.document import Section, Table
 from tests.reporting.conftest import KINDS, ROOT, report_of
 
 
@@ -150,8 +150,9 @@ def test_no_value_is_left_undefined(page, case):
     assert not re.search(r">(None|nan|inf)<", text)
 
 
-def test_only_a_short_last_column_stays_in_one_line():
+def test_only_a_short_last_column_stays_in_one_line(report):
     """A last column of sentences must wrap, or the edge of the page cuts it off."""
     long = "words that would not fit beside the others in one line of a page " * 2
-    assert _look(Table("", ("a", "b"), ((long, "not met"),))) == "wide prose brief"
-    assert _look(Table("", ("a", "b"), ((long, long),))) == "wide prose"
+    tables = tuple(Table("", ("a", "b"), ((long, last),)) for last in ("not met", long))
+    shown = render_html(replace(report("proved"), sections=(Section("Tables", tables),)))
+    assert re.findall(r'<table class="([a-z ]+)"', shown) == ["wide prose brief", "wide prose"]

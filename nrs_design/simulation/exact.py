@@ -19,6 +19,7 @@ from nrs_design.simulation.flow import CHUNK, Flow
 from nrs_design.simulation.loop import Loop, Mode
 from nrs_design.simulation.run import (
     ERRORS_LEFT_OUT,
+    EVENT_STEPS,
     LEFT_OUT,
     LEFT_OUT_EXACTLY,
     MAX_EVENTS,
@@ -76,7 +77,7 @@ def simulate_exactly(
     scenario : Scenario
         What happens.
     max_steps : int
-        A run that takes more ends there.
+        A run that takes more ends there, and one with an event in less than `EVENT_STEPS` of them.
     tell : callable
         Told how far the run is.
 
@@ -150,7 +151,7 @@ class _Engine:
         self.met: dict[tuple[int, int, int], bool] = {}
         self.sides: dict[tuple[bool, ...], Array] = {}
         self.way = self._way()
-        # States so far, with the time of the first, the step between them, and the index of the way.
+        # States so far, with the time of the first, the step between them, and index of the way.
         self.kept: list[tuple[float, float, int, Array]] = []
 
     def _touched(self) -> tuple[int, ...]:
@@ -197,8 +198,11 @@ class _Engine:
             self.stopped = (
                 f"{events} switches and contacts by {self.t:.6g} s: contact or mode logic chatters"
             )
-        elif self.stopped is None and self.crossings > MAX_EVENTS:
-            self.stopped = f"{MAX_EVENTS} events by {self.t:.6g} s: the budget is used up"
+        elif self.stopped is None and self.crossings > self.max_steps // EVENT_STEPS:
+            self.stopped = (
+                f"{self.crossings} events by {self.t:.6g} s: the budget is used up, "
+                f"one event in {EVENT_STEPS} of --max-steps"
+            )
 
     def _agenda(self) -> Iterator[tuple[float, int, str | int]]:
         """Yield what happens at given times: breakpoints of the command and scheduled switches."""
@@ -391,13 +395,14 @@ class _Engine:
         number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
         times = np.repeat(starts, counts) + np.repeat(steps, counts) * number
         which, states = np.repeat(ways, counts), np.concatenate(parts)
-        rows, mode = np.empty((4, len(times))), np.empty(len(times), np.int64)
+        rows, mode = np.empty((len(times), 4)), np.empty(len(times), np.int64)
         names = [c.name for c in loop.design.controllers]
         for way in self.ways.values():
-            own, m = which == way.index, way.mode
-            rows[:, own] = np.array([m.angle, m.velocity, m.torque, m.reference]) @ states[own].T
+            own, m = np.flatnonzero(which == way.index), way.mode
+            outputs = np.stack([m.angle, m.velocity, m.torque, m.reference], axis=1)
+            rows[own] = states[own] @ outputs
             mode[own] = names.index(way.controller)
-        angle, velocity, torque, reference = rows
+        angle, velocity, torque, reference = rows.T
         states = states.T.copy()
         surfaces = loop.scenario.surfaces
         # What tissue seems to pull before its loss is noticed: see TOLERANCE.

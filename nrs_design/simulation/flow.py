@@ -122,7 +122,7 @@ class Flow:
         return {}
 
     def _bernstein_ahead(self, sides: Array) -> Array:
-        """The Bernstein coefficients over each of the next steps; ((CHUNK + 1) e (K + 1), n)."""
+        """Return rows of Bernstein coefficients of the next steps; ((CHUNK + 1) e (K + 1), n)."""
         key = sides.tobytes()
         if key not in self._ahead:
             rows = self._bernstein_rows.T * np.repeat(sides, DEGREE + 1)[:, None]
@@ -154,7 +154,7 @@ class Flow:
     def chunk(self, z: Array, count: int) -> Array:
         """Return the states after 0 ... count steps of h; shape (count + 1, n)."""
         n = len(z)
-        return self._stacked_powers[: (count + 1) * n].dot(z).reshape(-1, n)
+        return np.asarray(self._stacked_powers[: (count + 1) * n].dot(z).reshape(-1, n))
 
     def stays(self, z: Array, count: int, sides: Array) -> bool:
         """Tell whether no signal changes its side within count + 1 steps of h, for certain.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
 
-from nrs_design.controllers.float32 import float32_not_above, to_float32
+from nrs_design.controllers.float32 import float32_not_above, float32_not_below, to_float32
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.identification.running import bounds_of_spec, rules_of
@@ -117,7 +117,9 @@ def _ranges(spec: InteractionDesignSpec, name: str) -> tuple[Pair, ...] | None:
         return ()
     if found.foreign:
         return None
-    return tuple((to_float32(Fraction(a)), to_float32(Fraction(b))) for a, b in found.ranges)
+    # Inward: what the monitor accepts lies within what was proved.
+    ends = ((Fraction(a), Fraction(b)) for a, b in found.ranges)
+    return tuple((float32_not_below(a), float32_not_above(b)) for a, b in ends)
 
 
 def _stay(spec: InteractionDesignSpec, name: str, period: Fraction) -> tuple[int, int]:

@@ -161,8 +161,8 @@ def test_a_text_alone_has_no_robot():
 @pytest.mark.parametrize(
     ("said", "message"),
     [
-        ("robot: a.nrs.yaml, inertia: [0 kg*m^2, 1 kg*m^2]", "inertia is computed from the robot"),
-        ("robot: a.nrs.yaml, gravity_gradient: 7 N*m/rad", "gravity_gradient is computed"),
+        ("robot: a.nrs.yaml, inertia: [0 kg*m^2, 1 kg*m^2]", "inertia is that of the robot"),
+        ("robot: a.nrs.yaml, gravity_gradient: 7 N*m/rad", "gravity_gradient is that of the robot"),
         ("gravity_compensated: at-rest", "is for the bounds of a robot"),
         ("speed: 1 rad/s", "neither robot nor inertia"),
     ],

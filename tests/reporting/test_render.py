@@ -9,6 +9,8 @@ import pytest
 
 from nrs_design.printable import visible
 from nrs_design.reporting import render_html
+from nrs_design.reporting.document import Table
+from nrs_design.reporting.render import _look
 from tests.reporting.conftest import KINDS, ROOT, report_of
 
 
@@ -146,3 +148,10 @@ def test_hostile_title_is_escaped(page):
 def test_no_value_is_left_undefined(page, case):
     text = re.sub(r"<(style|svg|script).*?</\1>", "", page(case), flags=re.DOTALL)
     assert not re.search(r">(None|nan|inf)<", text)
+
+
+def test_only_a_short_last_column_stays_in_one_line():
+    """A last column of sentences must wrap, or the edge of the page cuts it off."""
+    long = "words that would not fit beside the others in one line of a page " * 2
+    assert _look(Table("", ("a", "b"), ((long, "not met"),))) == "wide prose brief"
+    assert _look(Table("", ("a", "b"), ((long, long),))) == "wide prose"

@@ -14,9 +14,9 @@ from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.impedance import (
     CURVES,
-    NOMINAL,
     by_controller,
     impedance_section,
+    nominal_note,
 )
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
@@ -233,7 +233,7 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         ],
     )
     loci = (_force_locus(item) for item in analysis.force[:CURVES])
-    texts = [Paragraph(NOMINAL)]
+    texts = [nominal_note(designed)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     if any(item.approach.offset == "none" for item in analysis.force):

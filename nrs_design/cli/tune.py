@@ -42,6 +42,10 @@ PARALLEL_COLUMNS = (
     "unstable for k\nN m/rad",
 )
 
+_NO_OFFSET = (
+    "{}: the steady-state error is that of a commanded position where contact begins. A simulated "
+    "run keeps the position that was commanded at the switch, and leaves another error."
+)
 OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
 
 
@@ -141,6 +145,8 @@ def _print(spec: InteractionDesignSpec, design: ControllerDesign, analysis: Desi
         for item in analysis.force:
             if item.peak is not None:
                 say(_offset_text(item))
+            elif item.approach.offset == "none":
+                say(_NO_OFFSET.format(item.name))
     if analysis.parallel:
         print_table(f"{name}: parallel control", PARALLEL_COLUMNS, _parallel_rows(analysis))
 

@@ -32,6 +32,10 @@ _OFFSET = (
     "Steady error and peak torque with an offset: for an axis that arrives at the largest velocity "
     "of the spec, and a switch to force control exactly at its torque limit, which is Fd."
 )
+_NO_OFFSET = (
+    "Steady error without an offset: for a commanded position X where contact begins. A simulated "
+    "run keeps X as it was at the switch, and leaves another error."
+)
 
 
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
@@ -232,6 +236,8 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     texts = [nominal_note(designed)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
+    if any(item.approach.offset == "none" for item in analysis.force):
+        texts.append(Paragraph(_NO_OFFSET))
     return Section("Force control", (*texts, *tables, *loci))
 
 

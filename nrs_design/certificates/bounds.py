@@ -29,7 +29,7 @@ def bounds_summary(
             "unit": bound.output.unit,
             # Not below what is proved, and disturbances not above.
             "level": upper_float(bound.level),
-            "limit": None if bound.output.limit is None else float(bound.output.limit),
+            "limit": None if bound.output.limit is None else lower_float(bound.output.limit),
             "under": [
                 {"name": c.name, "unit": c.unit, "bound": lower_float(c.bound)}
                 for c in bound.channels

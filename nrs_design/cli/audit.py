@@ -128,6 +128,13 @@ def _proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
     return "", asked or covered
 
 
+# What a check that is not modelled takes for granted.
+_GRANTED = {
+    "delay": "the motion follows its command without dead time",
+    "jitter": "the steps of time are even",
+}
+
+
 def _print(found: RunJudgement, name: str, reason: str) -> None:
     if found.log.source.synthetic:
         say(SYNTHETIC)
@@ -149,7 +156,7 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
         if check.status == "not modelled":
             who = found.bounds.source
             comma = "," if "," in who else ""
-            say(f"not covered: {who}{comma} takes for granted that there is no {check.name}")
+            say(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
         if check.status == "not judged":
             say(f"not judged: {check.name}: {check.measured}")
 

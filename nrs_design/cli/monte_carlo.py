@@ -76,6 +76,9 @@ def monte_carlo(
 
     for path, beginning in _places(asked, out):
         check_place(path, beginning)
+    if resume is not None:
+        # What a file there holds is looked at as it is read.
+        check_place(resume)
     written = {} if proof is None else _bounds(asked, proof)
     outcomes: list[Outcome] = []
     try:

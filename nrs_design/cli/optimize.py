@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from nrs_design.cli.goals import (
-    NOMINAL,
     exit_code,
     goals_summary,
     print_goals,
     print_warnings,
+    say_nominal,
     warnings_of,
 )
 from nrs_design.cli.options import Json, Quiet, SpecFile
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
     from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.pipeline import Designed
+    from nrs_design.spec import InteractionDesignSpec
 
 
 def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
@@ -63,7 +64,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
     elif not quiet:
         if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
-        _print(loaded.spec.name, analysis)
+        _print(designed.spec, analysis)
         print_goals(loaded.spec.name, analysis.impedance)
         print_warnings(warnings, quiet=quiet)
     raise typer.Exit(exit_code(analysis.impedance))
@@ -160,12 +161,13 @@ def finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _print(name: str, analysis: DesignAnalysis) -> None:
+def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     G = analysis.motion
     source = (
         "designed by root locus" if analysis.motion_source == "designed" else "given in the spec"
     )
-    say(f"{name}: G(s) = ({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)}), {source}")
+    motion = f"({_polynomial(G.numerator)}) / ({_polynomial(G.denominator)})"
+    say(f"{spec.name}: G(s) = {motion}, {source}")
     columns = [
         "controller",
         "Zdes\nN m s/rad",
@@ -199,7 +201,7 @@ def _print(name: str, analysis: DesignAnalysis) -> None:
     ]
     if rows:
         print_table("at nominal values", columns, rows)
-        say(NOMINAL)
+        say_nominal(spec)
     limits = [
         f"{item.name} {item.limit_at_arm:.4g} N/m at {item.lever_arm:g} m"
         for item in analysis.impedance

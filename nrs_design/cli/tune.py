@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from nrs_design.cli.goals import (
-    NOMINAL,
     exit_code,
     goals_summary,
     print_goals,
     print_warnings,
+    say_nominal,
     warnings_of,
 )
 from nrs_design.cli.optimize import motion_summary
@@ -23,6 +23,7 @@ from nrs_design.cli.tables import print_table
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
+    from nrs_design.spec import InteractionDesignSpec
 
 FORCE_COLUMNS = (
     "controller",
@@ -41,6 +42,10 @@ PARALLEL_COLUMNS = (
     "unstable for k\nN m/rad",
 )
 
+_NO_OFFSET = (
+    "{}: the steady-state error is that of a commanded position where contact begins. A simulated "
+    "run keeps the position that was commanded at the switch, and leaves another error."
+)
 OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
 
 
@@ -69,7 +74,7 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
         content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("tune", content | _summary(designed.design, analysis) | {"warnings": warnings})
     elif not quiet:
-        _print(loaded.spec.name, designed.design, analysis)
+        _print(designed.spec, designed.design, analysis)
         print_goals(loaded.spec.name, analysis.tuned)
         print_warnings(warnings, quiet=quiet)
     raise typer.Exit(exit_code(analysis.tuned))
@@ -128,17 +133,20 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
     }
 
 
-def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
+def _print(spec: InteractionDesignSpec, design: ControllerDesign, analysis: DesignAnalysis) -> None:
+    name = spec.name
     columns = _motion_columns(design.command)
     print_table(f"{name}: motion loop", columns, _motion_rows(design, analysis))
     if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
         print_table(f"{name}: force loop, nominal", FORCE_COLUMNS, _force_rows(analysis))
-        say(NOMINAL)
+        say_nominal(spec)
         for item in analysis.force:
             if item.peak is not None:
                 say(_offset_text(item))
+            elif item.approach.offset == "none":
+                say(_NO_OFFSET.format(item.name))
     if analysis.parallel:
         print_table(f"{name}: parallel control", PARALLEL_COLUMNS, _parallel_rows(analysis))
 

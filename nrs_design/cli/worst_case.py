@@ -59,10 +59,10 @@ def _show(
 ) -> int:
     from nrs_design.reporting.worst_case import (
         COLUMNS,
-        LEFT_OUT,
         MEANING,
         NO_BOUND,
         UNDECLARED,
+        left_out,
         worst_rows,
     )
 
@@ -76,7 +76,7 @@ def _show(
         say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
         if not case.declared:
             say(UNDECLARED)
-        say(f"not in it: {LEFT_OUT}")
+        say(f"not in it: {left_out(case.system)}")
     return exit_codes.PROVED
 
 
@@ -121,7 +121,7 @@ def _write(designed: Designed, case: WorstCase, out: Path | None) -> list[Path]:
 
 
 def _document(designed: Designed, case: WorstCase, seed: int) -> dict[str, Any]:
-    from nrs_design.reporting.worst_case import LEFT_OUT, found_in
+    from nrs_design.reporting.worst_case import found_in, left_out
 
     found = [
         {
@@ -148,6 +148,6 @@ def _document(designed: Designed, case: WorstCase, seed: int) -> dict[str, Any]:
             ],
             "disturbances_declared": case.declared,
             "found": found,
-            "not_modelled": [LEFT_OUT],
+            "not_modelled": [left_out(case.system)],
         },
     }

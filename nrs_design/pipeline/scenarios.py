@@ -227,7 +227,7 @@ def _names(spec: InteractionDesignSpec, wanted: Runs) -> Sequence[str]:
     known = tuple(spec.scenarios) or default_names(spec)
     for name in wanted.names:
         if name not in known:
-            remedy = did_you_mean(name, spec.scenarios) if spec.scenarios else "add scenarios"
+            remedy = did_you_mean(name, known)
             raise DesignError(f"the spec has no scenario {name!r}", remedy=remedy)
     if wanted.engine == "exact" and not wanted.names and not spec.scenarios:
         return known[:1]

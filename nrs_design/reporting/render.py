@@ -20,7 +20,9 @@ from nrs_design.reporting.document import (
 from nrs_design.reporting.images import to_svg
 
 # More letters in a row than these do not fit on a telephone, or in one line of a page.
-_NARROW, _LINE = 36, 112
+_NARROW, _LINE = 36, 106
+# A last column of words as short as these, such as "not met", stays in one line.
+_WORD = 16
 # Between two columns, in letters.
 _GAP = 2
 # Not only a colour tells how things stand.
@@ -95,7 +97,10 @@ def _block(block: Block) -> dict[str, Any]:
 def _look(table: Table) -> str:
     """Say which columns do not fit: on a telephone, or, as those of sentences, on any page."""
     letters = _letters(table)
-    return "wide prose" if letters > _LINE else "wide" if letters > _NARROW else ""
+    if letters <= _LINE:
+        return "wide" if letters > _NARROW else ""
+    last = max((len(row[-1]) for row in table.rows), default=0)
+    return "wide prose brief" if last <= _WORD else "wide prose"
 
 
 def _letters(table: Table) -> int:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from nrs_design.pipeline.worst_case import WorstCase
-    from nrs_design.proof.system import Output
+    from nrs_design.proof.system import Output, SwitchedSystem
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.worst_case import WorstRun
 
@@ -28,14 +28,16 @@ COLUMNS = ("", "worst found", "unit", "limit", "certified bound", "bound / found
 MEANING = (
     "An adversary chose controllers, contact, delay and disturbances within what the spec allows. "
     "What he found may happen in the model, and is a lower bound of the worst that may; the "
-    "certified bound is an upper one."
+    "certified bound is an upper one. The limit of the velocity is that of its command; the axis "
+    "itself may go beyond."
 )
 NO_BOUND = "No bound is certified beside it: the worst that may happen may be any larger."
 UNDECLARED = (
     "The spec names no disturbances, so the velocity command took any course up to its limit; "
     "with `disturbances` a bound can be certified."
 )
-LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
+_LEFT_OUT = "roundings of the law, jitter, noise without a bound, and the limit of the command"
+_LINKS = ", and what other axes do through the links"
 _COMMAND = "velocity command"
 _TURN = 180 / math.pi
 
@@ -112,6 +114,17 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
             found += " (above)"
         rows.append([item.name, found, unit, limit, bound, ratio])
     return rows
+
+
+def left_out(system: SwitchedSystem) -> str:
+    """Say what an adversary has not at hand.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        In which he plays: one axis, also where others act on it.
+    """
+    return _LEFT_OUT + (_LINKS if system.couplings else "")
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:

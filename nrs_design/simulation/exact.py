@@ -19,6 +19,7 @@ from nrs_design.simulation.flow import CHUNK, Flow
 from nrs_design.simulation.loop import Loop, Mode
 from nrs_design.simulation.run import (
     ERRORS_LEFT_OUT,
+    EVENT_STEPS,
     LEFT_OUT,
     LEFT_OUT_EXACTLY,
     MAX_EVENTS,
@@ -36,7 +37,6 @@ TOLERANCE = 1e-12
 POINTS = 2000
 # Steps after which it is told how far the run is.
 _OFTEN = 20_000
-_STEPS = np.arange(CHUNK + 1, dtype=float)
 # Events at one instant, one after the other, after which a run does not come on.
 _STILL = 100
 
@@ -77,7 +77,7 @@ def simulate_exactly(
     scenario : Scenario
         What happens.
     max_steps : int
-        A run that takes more ends there.
+        A run that takes more ends there, and one with an event in less than `EVENT_STEPS` of them.
     tell : callable
         Told how far the run is.
 
@@ -151,8 +151,8 @@ class _Engine:
         self.met: dict[tuple[int, int, int], bool] = {}
         self.sides: dict[tuple[bool, ...], Array] = {}
         self.way = self._way()
-        # Kept so far: how many instants, with time and index of the way in front of the state.
-        self.count, self.kept = 0, np.empty((2 * POINTS, 2 + len(self.z)))
+        # States so far, with the time of the first, the step between them, and index of the way.
+        self.kept: list[tuple[float, float, int, Array]] = []
 
     def _touched(self) -> tuple[int, ...]:
         """Return the indices of the surfaces that push."""
@@ -178,7 +178,7 @@ class _Engine:
                 self._settle()
             still = still + 1 if self.t == before else 0
             self._check(still)
-        self._record(self.t, self.z)
+        self._record(self.z[None])
         errors = [ERRORS_LEFT_OUT] if self.loop.scenario.errors != Errors() else []
         return Run(
             self.loop.scenario.name,
@@ -198,8 +198,11 @@ class _Engine:
             self.stopped = (
                 f"{events} switches and contacts by {self.t:.6g} s: contact or mode logic chatters"
             )
-        elif self.stopped is None and self.crossings > MAX_EVENTS:
-            self.stopped = f"{MAX_EVENTS} events by {self.t:.6g} s: the budget is used up"
+        elif self.stopped is None and self.crossings > self.max_steps // EVENT_STEPS:
+            self.stopped = (
+                f"{self.crossings} events by {self.t:.6g} s: the budget is used up, "
+                f"one event in {EVENT_STEPS} of --max-steps"
+            )
 
     def _agenda(self) -> Iterator[tuple[float, int, str | int]]:
         """Yield what happens at given times: breakpoints of the command and scheduled switches."""
@@ -211,7 +214,7 @@ class _Engine:
 
     def _happen(self, kind: int, what: str | int) -> None:
         if kind == 1:
-            self._record(self.t, self.z)
+            self._record(self.z[None])
             self._switch(str(what))
             if not self.loop.scenario.control.switches and not self.damped:
                 # What is touched depends on the angle alone, which does not jump.
@@ -219,7 +222,7 @@ class _Engine:
         else:
             piece = self.loop.scenario.profile.pieces[int(what)]
             if self.z[-3] != piece.value:
-                self._record(self.t, self.z)
+                self._record(self.z[None])
             self.z = self.z.copy()
             self.z[-3:-1] = piece.value, piece.slope
         self._settle()
@@ -275,12 +278,13 @@ class _Engine:
             whole = min(CHUNK, int((limit - self.t) / flow.h))
             states = flow.chunk(self.z, whole)
             # The step after the last whole one is looked at too: it may be cut short.
-            count = flow.first_doubtful(states, sides)
+            quiet = flow.stays(self.z, whole, sides)
+            count = whole + 1 if quiet else flow.first_doubtful(states, sides)
             done = min(count, whole)
             full = done and count > whole and self.t + (done + 1) * flow.h <= limit
             # Where a step that may be cut short follows, the state that it begins in is kept, too.
             kept = done if full else done + 1
-            self._record(self.t + flow.h * _STEPS[:kept], states[:kept])
+            self._record(states[:kept], flow.h)
             if done:
                 self.t, self.z, self.steps = self.t + done * flow.h, states[done], self.steps + done
                 self._tell(done)
@@ -355,7 +359,7 @@ class _Engine:
         unmet = {i for i, k, end in way.bounds if not self.met[i, k, end]}
         for i, switch in enumerate(control.switches):
             if switch.source == self.controller and i not in unmet:
-                self._record(self.t, self.z)
+                self._record(self.z[None])
                 self._switch(switch.target)
                 return True
         return False
@@ -366,12 +370,13 @@ class _Engine:
             return
         mode, idle = self.way.mode, self.loop.spec.idle_states
         places, laws = self.places, self.laws
-        leaves = laws[self.controller].commands == "velocity"
-        self.z = self.z.copy()
         if self.offset != "none":
             taken = mode.reference if self.offset == "reference" else mode.angle
+            self.z = self.z.copy()
             self.z[places["commanded position"]] = float(taken @ self.z)
-        if leaves and laws[target].commands != "velocity" and idle is not None and idle.reset:
+        leaves = laws[self.controller].commands == "velocity" != laws[target].commands
+        if leaves and idle is not None and idle.reset:
+            self.z = self.z.copy()
             for text in laws[self.controller].states:
                 self.z[places[text.split(" [")[0]]] = 0.0
             self.z[places["offset"]] = 0.0
@@ -379,26 +384,25 @@ class _Engine:
         self.switches.append((self.t, target))
         self.way = self._way()
 
-    def _record(self, times: float | Array, states: Array) -> None:
-        """Keep states, and the way that gives their outputs."""
-        first, self.count = self.count, self.count + (1 if states.ndim == 1 else len(states))
-        if self.count > len(self.kept):
-            more = np.empty((len(self.kept) + 2 * (self.count - first), self.kept.shape[1]))
-            self.kept = np.concatenate([self.kept[:first], more])
-        part = self.kept[first : self.count]
-        part[:, 0], part[:, 1], part[:, 2:] = times, self.way.index, states
+    def _record(self, states: Array, step: float = 0.0) -> None:
+        """Keep states from now on, a step apart, and the way that gives their outputs."""
+        self.kept.append((self.t, step, self.way.index, states))
 
     def _response(self) -> TimeResponse:
         loop = self.loop
-        kept = self.kept[: self.count]
-        times, which, states = kept[:, 0].copy(), kept[:, 1], kept[:, 2:]
-        rows, mode = np.empty((4, len(times))), np.empty(len(times), np.int64)
+        starts, steps, ways, parts = zip(*self.kept, strict=True)
+        counts = np.array([len(part) for part in parts])
+        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        times = np.repeat(starts, counts) + np.repeat(steps, counts) * number
+        which, states = np.repeat(ways, counts), np.concatenate(parts)
+        rows, mode = np.empty((len(times), 4)), np.empty(len(times), np.int64)
         names = [c.name for c in loop.design.controllers]
         for way in self.ways.values():
-            own, m = which == way.index, way.mode
-            rows[:, own] = np.array([m.angle, m.velocity, m.torque, m.reference]) @ states[own].T
+            own, m = np.flatnonzero(which == way.index), way.mode
+            outputs = np.stack([m.angle, m.velocity, m.torque, m.reference], axis=1)
+            rows[own] = states[own] @ outputs
             mode[own] = names.index(way.controller)
-        angle, velocity, torque, reference = rows
+        angle, velocity, torque, reference = rows.T
         states = states.T.copy()
         surfaces = loop.scenario.surfaces
         # What tissue seems to pull before its loss is noticed: see TOLERANCE.

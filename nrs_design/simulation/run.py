@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 CHATTER = 0.01
 # Steps of an engine, and events, after which a run is stopped.
 MAX_STEPS, MAX_EVENTS = 5_000_000, 200_000
+# An event of the exact engine takes as long as so many of its steps, or longer.
+EVENT_STEPS = 250
 
 # What no run has in it, and what the exact engine leaves out besides.
 LEFT_OUT = (

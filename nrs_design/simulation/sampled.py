@@ -77,8 +77,8 @@ def simulate_sampled(
     Raises
     ------
     DesignError
-        If the spec has no sampling or periods that never meet, states the motion loop itself, or
-        there is no program of a controller.
+        If the spec has no sampling or periods that never meet, states the motion loop itself, if
+        the command swings faster than samples can show, or there is no program of a controller.
     """
     axis = sampled_axis(spec, plant, design, scenario)
     (run,) = run_axes((axis,), Motors(), "sampled", max_steps, tell)
@@ -118,6 +118,13 @@ def sampled_axis(
             f"the two loops do not meet at common samples: {odd}",
             remedy="let the longer period be a whole number of the shorter one",
             at=("sampling",),
+        )
+    if scenario.profile.omega * float(sampling.step) >= math.pi:
+        raise DesignError(
+            f"a command of {scenario.profile.omega / math.tau:.6g} Hz swings faster than samples "
+            f"of {float(sampling.step):.6g} s can show: the law would see a slower one",
+            remedy="command less than half a swing a sample, or use --engine exact",
+            at=("scenarios", scenario.name, "command", "sinusoid", "frequency"),
         )
     period, outer = sampling.period.exact, sampling.outer
     others = [c.name for c in design.controllers if c.law.commands != "velocity"]

@@ -199,7 +199,7 @@ class ForceControllerSpec(AbstractControllerSpec):
     commands: ClassVar[Command] = "position"
     holds_force: ClassVar[bool] = True
 
-    type: Literal["force"] = Field(description="force: u = Kp (Fd - F) + X_i, see offset")
+    type: Literal["force"] = Field(description="force: u = X_i + Kp (Fd - F), see offset")
     environment: Label = Field(description=_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
     proportional_gain: ForceGain | None = Field(
@@ -214,8 +214,8 @@ class ForceControllerSpec(AbstractControllerSpec):
         default="none",
         description="offset X_i that is added to the command (thesis 6.41), taken at every switch "
         "of controllers and held until the next: the reference of the motion loop at the switch, "
-        "or the measured position; none: tune and the proof take u = Kp (Fd - F) alone, and a "
-        "simulated run adds the position that was commanded so far",
+        "or the measured position; none: no switch takes anything, and u = X + Kp (Fd - F) with "
+        "the position X that is commanded from outside, constant while force is controlled",
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 

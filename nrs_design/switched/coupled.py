@@ -219,13 +219,17 @@ def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSyste
             for channel in system.channels
         ),
         couplings=tuple(couplings),
-        assumptions=among_axes(system.assumptions, coupling),
+        assumptions=among_axes(system.assumptions, coupling, disturbed=bool(system.channels)),
         axes=coupling.count if system.channels else None,
     )
 
 
 def among_axes(
-    assumptions: Iterable[str], coupling: AxesCoupling, *, sampled: bool = False
+    assumptions: Iterable[str],
+    coupling: AxesCoupling,
+    *,
+    sampled: bool = False,
+    disturbed: bool = False,
 ) -> tuple[str, ...]:
     """Return assumptions with what is known of the axes in the place of their not being coupled.
 
@@ -237,12 +241,14 @@ def among_axes(
         What is declared.
     sampled : bool
         Whether a processor runs the law.
+    disturbed : bool
+        Whether there are disturbances, which may take the speed beyond what is declared.
     """
     return tuple(
         text
         for known in assumptions
         for text in (
-            (*_texts(coupling), *((AT_ONCE,) if sampled else ()))
+            (*_texts(coupling, disturbed=disturbed), *((AT_ONCE,) if sampled else ()))
             if known == UNCOUPLED
             else (known,)
         )
@@ -300,7 +306,7 @@ def check_gravity(*, losable: bool) -> None:
         )
 
 
-def _texts(coupling: AxesCoupling) -> Iterator[Assumption]:
+def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
     """Say what is taken for granted about the axes, and where it comes from."""
     low, high = (exact_text(m) for m in (coupling.lightest, coupling.heaviest))
     yield kinds.LINKS.says(
@@ -321,11 +327,17 @@ def _texts(coupling: AxesCoupling) -> Iterator[Assumption]:
     if coupling.coriolis is None:
         yield kinds.LINKS.says("Coriolis and centrifugal torques are left out.", "speeds near zero")
     else:
+        also = ""
+        if disturbed:
+            also = (
+                ", nor that the disturbances leave it there: a bound, also that on the velocity, "
+                "holds as long as they do"
+            )
         yield kinds.LINKS.says(
             "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
             f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
             f"({_shortly(coupling)}), and the speed stays below {coupling.speed}, which is not "
-            "shown.",
+            f"shown{also}.",
             f"speed below {coupling.speed}",
         )
     if coupling.gravity_gradient is None:

@@ -132,7 +132,7 @@ def close_sampled_loop(
     )
     couplings: tuple[Coupling, ...] = ()
     if coupling is not None:
-        texts = among_axes(texts, coupling, sampled=True)
+        texts = among_axes(texts, coupling, sampled=True, disturbed=bool(channels))
         couplings = tuple(
             couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
         )

@@ -20,6 +20,10 @@ def test_numbers_are_rounded_to_the_safe_side():
     assert under["name"] == "push"
     assert (found["output"], found["unit"], found["limit"]) == ("force", "N", 1.0)
     assert found["rounding_included"] is False
+    (force, *others) = system.outputs
+    # The float that is nearest to 11/10 is above it.
+    odd = replace(system, outputs=(replace(force, limit=Fraction(11, 10)), *others))
+    assert Fraction(bounds_summary(odd, (level,))[0]["limit"]) < Fraction(11, 10) < Fraction(1.1)
 
 
 def test_the_bound_under_everything_at_once():

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, run
+from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, ROOT, SOFT_TISSUE, run
 
 
 def test_optimum_of_the_thesis(tmp_path):
@@ -132,3 +132,11 @@ def test_without_goals_a_doubtful_design_is_warned_of_and_the_exit_code_stays(tm
     warnings = json.loads(run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path).stdout)["warnings"]
     assert [f"warning: {text}" for text in warnings] == result.stderr.splitlines()
     assert run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path).stderr == ""
+
+
+def test_margins_of_a_sampled_spec_are_said_to_be_continuous(tmp_path):
+    """Its margins know neither period nor delay; a reader of the table is told."""
+    said = "Margins and limits of stiffness are those of the loop in continuous time"
+    sampled = run("optimize", ROBOT / "soft-tissue-sampled.nrs.yaml", cwd=tmp_path)
+    assert said in sampled.stdout
+    assert said not in run("optimize", SOFT_TISSUE, cwd=tmp_path).stdout

@@ -147,6 +147,12 @@ def test_a_budget_is_inconclusive(spec, tmp_path):
     assert "STOPPED" in result.stdout
 
 
+def test_the_scenario_of_a_spec_without_any_is_named(spec, tmp_path):
+    result = run("simulate", spec(scenario=None), "--scenario", "foo", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "write one of insertion-and-withdrawal" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

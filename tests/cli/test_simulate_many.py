@@ -92,6 +92,16 @@ def test_an_interrupted_study_goes_on_as_if_nothing_had_been(spec, tmp_path):
     assert file.read_bytes() == (tmp_path / "other.jsonl").read_bytes()
 
 
+def test_runs_are_kept_behind_no_link(spec, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "led").symlink_to("elsewhere")
+    command = ("simulate", spec, "--monte-carlo", "2", "--no-bound", "--resume")
+    result = run(*command, "led/runs.jsonl", cwd=tmp_path)
+    assert result.returncode == 2
+    assert "lies behind the symbolic link led" in result.stderr
+    assert not list((tmp_path / "elsewhere").iterdir())
+
+
 def test_options_that_nothing_would_heed_are_refused(spec, tmp_path):
     result = run("simulate", spec, "--worst-case", "--scenario", "run", cwd=tmp_path)
     assert result.returncode == 2

@@ -2,18 +2,25 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, InvariantEllipsoid
+from nrs_design.proof.evidence import (
+    CommonQuadratic,
+    ConewiseQuadratic,
+    CoupledAxes,
+    InvariantEllipsoid,
+)
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import (
     Channel,
     Contact,
+    Coupling,
     Mode,
     Output,
     Rounding,
@@ -360,3 +367,23 @@ def test_forms_of_what_lags_and_of_two_functions():
     wanted = in_steps(system, (Q, after), Fraction(6, 7), multipliers, (3,))
     for (_, form), true in zip(found, wanted, strict=True):
         assert is_in_other_units(form, true)
+
+
+def test_what_is_rounded_acts_on_other_axes():
+    """``x+ = x/2 + r + w`` with ``|r| <= |x|/8``, over all axes ``|w| <= q |r|``: 3/4 if q is 1."""
+
+    def among(q: int) -> SwitchedSystem:
+        coupling = Coupling("c", (matrix([[1]]),), (matrix([[0, q]]),))
+        return replace(rounded("1/2", "1/8"), couplings=(coupling,))
+
+    proof = CoupledAxes(((64,),), 6, Fraction("0.7501"), (6 * 64,), (), (12 * 64,))
+    assert proof.find_fault(among(1)) is None
+    assert agrees(among(1), proof)
+    # Where nobody sees what an axis rounds, its own 5/8 are left.
+    alone = CoupledAxes(((64,),), 6, Fraction("0.6251"), (1 << 20,), (), (5 * 64,))
+    assert alone.find_fault(among(0)) is None
+    for i, j in product(range(24), range(16)):
+        fast = replace(proof, rate=Fraction("0.7499"), taus=(1 << i,), roundings=(1 << j,))
+        assert fast.find_fault(among(1)) is not None
+    # The same two numbers are a proof at that rate where w is not there.
+    assert replace(alone, rate=Fraction("0.7499")).find_fault(among(0)) is None

@@ -4,11 +4,13 @@ import base64
 import hashlib
 import html
 import re
+from dataclasses import replace
 
 import pytest
 
 from nrs_design.printable import visible
 from nrs_design.reporting import render_html
+from nrs_design.reporting.document import Section, Table
 from tests.reporting.conftest import KINDS, ROOT, report_of
 
 
@@ -146,3 +148,11 @@ def test_hostile_title_is_escaped(page):
 def test_no_value_is_left_undefined(page, case):
     text = re.sub(r"<(style|svg|script).*?</\1>", "", page(case), flags=re.DOTALL)
     assert not re.search(r">(None|nan|inf)<", text)
+
+
+def test_only_a_short_last_column_stays_in_one_line(report):
+    """A last column of sentences must wrap, or the edge of the page cuts it off."""
+    long = "words that would not fit beside the others in one line of a page " * 2
+    tables = tuple(Table("", ("a", "b"), ((long, last),)) for last in ("not met", long))
+    shown = render_html(replace(report("proved"), sections=(Section("Tables", tables),)))
+    assert re.findall(r'<table class="([a-z ]+)"', shown) == ["wide prose brief", "wide prose"]

@@ -44,3 +44,11 @@ def test_the_page_of_figures_is_linked_where_there_is_one():
     page = render_page(rows(), "my%20figures/figures.html")
     assert '<a href="my%20figures/figures.html">' in page
     assert "default-src 'none'" in render_page(rows())
+
+
+def test_a_telephone_names_every_value():
+    """Below 48rem the head of the table is gone, and each cell says what it is."""
+    page = render_page(rows())
+    for column in ("Printed", "Recomputed", "Unit", "Deviation", "Tolerance"):
+        assert page.count(f'<td data-label="{column}"') == len(rows())
+    assert "attr(data-label)" in page

@@ -12,10 +12,12 @@ from scipy.integrate import solve_ivp
 from nrs_design.design.design import design_controllers
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import build_plant
-from nrs_design.simulation.build_scenario import build_scenario
+from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
+from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.scenario import Condition, Control, Switch
 from nrs_design.spec import parse_spec
+from nrs_design.switched.assemble import assemble
 from tests.simulation.interactions import FORCE, IMPEDANCE, PLACED, SOFT, simulated, text_of
 
 KM, TAU, KD = 4.8417e-4, 0.0351, 2060.0
@@ -145,6 +147,24 @@ def test_position_and_force_control_end_where_the_balance_is():
     assert run.response["torque"][-1] == pytest.approx(wanted, rel=1e-6)
 
 
+def test_what_runs_without_an_offset_is_what_is_proved():
+    """The motion under force control is that of the assembled mode, and X an input of it alone."""
+    spec = parse_spec(text_of(PLACED, scenario=FREE))
+    plant = build_plant(spec)
+    design = design_controllers(spec, plant)
+    scenario = build_scenario(spec, plant, "run", spec.scenarios["run"], Path())
+    touching = replace(scenario, surfaces=default_scenario(spec, plant).surfaces)
+    loop = Loop(spec, plant, design, touching)
+    proved = {mode.name: mode.A for mode in assemble(spec, plant, design, "deflection").modes}
+    for name, label in (("position", "position"), ("force", "force/soft")):
+        own = np.array(proved[label].floats())
+        A = loop.mode(name, (0,) if name == "force" else ()).A
+        assert np.poly(A[:2, :2]) == pytest.approx(np.poly(own), rel=1e-9)
+    place = [signal.name for signal in loop.states].index("commanded position")
+    assert A[0, place] or A[1, place]
+    assert not A[place].any()
+
+
 def test_a_pi_leaves_no_error_and_its_integral_bleeds():
     """No matter where X waits: ``F = Fd`` in the end. Out again, the integral is ``exp(-20 t)``."""
     force = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
@@ -227,6 +247,18 @@ def test_a_budget_ends_a_run():
     run = simulated(text_of(scenario=FREE), max_steps=10)
     assert "budget" in run.stopped
     assert run.response.t[-1] < 1
+
+
+def test_a_budget_of_steps_is_one_of_events():
+    """A command that changes its sign a thousand times in a run, and the logic with it."""
+    text = text_of(
+        scenario="command: {sinusoid: {amplitude: 1 deg/s, frequency: 500 Hz}}, duration: 1 s, "
+        "control: {sign: {insertion: insertion, withdrawal: withdrawal}}"
+    )
+    run = simulated(text, max_steps=25_000)
+    assert run.stopped is not None
+    assert "101 events by 0.1" in run.stopped
+    assert "one event in 250 of --max-steps" in run.stopped
 
 
 def test_a_logic_that_asks_for_two_at_one_instant_is_stopped():

@@ -114,6 +114,16 @@ def test_noise_makes_a_logic_without_bands_chatter():
     assert sampled(slow.partition(", errors")[0]).chatter == 0
 
 
+def test_a_command_that_samples_cannot_show_is_refused():
+    swing = "command: {sinusoid: {amplitude: 1 deg/s, frequency: HZ}}, duration: 0.1 s"
+    with pytest.raises(
+        DesignError, match=r"250 Hz swings faster than samples of 0\.002 s"
+    ) as found:
+        sampled(swing.replace("HZ", "250 Hz"))
+    assert found.value.at == ("scenarios", "run", "command", "sinusoid", "frequency")
+    assert sampled(swing.replace("HZ", "249 Hz")).stopped is None
+
+
 def test_without_a_period_or_a_motor_nothing_runs():
     text = text_of(scenario=RUN)
     with pytest.raises(DesignError, match="how often the law runs"):

@@ -142,6 +142,16 @@ def test_both_controllers_are_proved_with_rounding_and_loss_of_contact():
     assert "The axes do not act on each other" not in text
 
 
+def test_disturbances_may_take_the_speed_beyond_what_is_declared():
+    """A command of 8 deg/s that reverses on three axes is beyond 14 deg/s, and nothing bars it."""
+    quiet, pushed = (
+        " ".join(axes("2.15", contact="kept", **more).assumptions)
+        for more in ({}, {"disturbances": "{command: 8 deg/s}"})
+    )
+    assert "the speed stays below 14 deg/s, which is not shown." in quiet
+    assert "which is not shown, nor that the disturbances leave it there: a bound" in pushed
+
+
 def test_gravity_needs_contact_that_is_kept():
     with pytest.raises(AssemblyError, match="where contact is kept"):
         axes("2.15", coupling=GRAVE)

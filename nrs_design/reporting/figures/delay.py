@@ -56,7 +56,7 @@ def draw_delay(found: DelayIdentification) -> Figure:
     """Draw the delay in parts of the record, and that of the whole."""
     figure, axes = new_axes(3.2)
     whole = found.samples
-    axes.axhspan(whole.low, whole.high, color="#dcebf5", linewidth=0, label="whole record")
+    axes.axhspan(whole.low, whole.high, color=BLUE, alpha=0.14, linewidth=0, label="whole record")
     axes.axhline(whole.value, color=BLUE, linewidth=1.2)
     for time, part in found.parts:
         axes.plot([time, time], [part.low, part.high], color=VERMILLION, linewidth=2.0)

@@ -82,11 +82,16 @@ def _draw(axes: Axes, spread: Spread) -> None:
         if line not in far:
             axes.axvline(line[0], color=line[2], linestyle=line[3], lw=2.0)
     if far:
-        named = ", ".join(f"{name} {upper(Fraction(value), 4)}" for value, name, *_ in far)
+        named = ", ".join(f"{name} {_far_value(name, value)}" for value, name, *_ in far)
         axes.set_title(f"beyond this scale: {named}", fontsize=9, loc="right")
     axes.set_xlabel(spread.label)
     axes.set_ylabel("Runs")
     axes.locator_params(axis="y", integer=True)
+
+
+def _far_value(name: str, value: float) -> str:
+    """Write a bound rounded upward, but a limit as the spec has it: 3.6 is not 3.601."""
+    return f"{value:.6g}" if name == "limit" else upper(Fraction(value), 4)
 
 
 def _bound_name(*, holds: bool) -> str:

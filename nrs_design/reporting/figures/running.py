@@ -45,7 +45,7 @@ def draw_stiffness(found: RunJudgement) -> Figure:
     top = 1.8 * max((high for _, high in ranges), default=1.0)
     bottom = -0.2 * top
     for low, high in ranges:
-        axes.axhspan(low, high, color="#dcebf5", linewidth=0)
+        axes.axhspan(low, high, color=BLUE, alpha=0.14, linewidth=0)
     for w in found.windows:
         if not w.high < np.inf:
             continue

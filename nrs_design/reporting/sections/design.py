@@ -14,9 +14,9 @@ from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.impedance import (
     CURVES,
-    NOMINAL,
     by_controller,
     impedance_section,
+    nominal_note,
 )
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 _OFFSET = (
     "Steady error and peak torque with an offset: for an axis that arrives at the largest velocity "
     "of the spec, and a switch to force control exactly at its torque limit, which is Fd."
+)
+_NO_OFFSET = (
+    "Steady error without an offset: for a commanded position X where contact begins. A simulated "
+    "run keeps X as it was at the switch, and leaves another error."
 )
 
 
@@ -229,9 +233,11 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         ],
     )
     loci = (_force_locus(item) for item in analysis.force[:CURVES])
-    texts = [Paragraph(NOMINAL)]
+    texts = [nominal_note(designed)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
+    if any(item.approach.offset == "none" for item in analysis.force):
+        texts.append(Paragraph(_NO_OFFSET))
     return Section("Force control", (*texts, *tables, *loci))
 
 

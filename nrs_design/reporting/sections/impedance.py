@@ -27,6 +27,11 @@ NOMINAL = (
     "Design values in floating point, for contact at the nominal stiffness; no part of the proof. "
     "Design goals below has the worst values over all corners, which warnings are about."
 )
+_CONTINUOUS = (
+    " Margins and limits of stiffness are those of the loop in continuous time, with the force of "
+    "the moment: the sampling that the spec declares takes from them. The proof is about the "
+    "sampled loop."
+)
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
     "stiffness limit all parameters of the law grow in proportion to it."
@@ -94,6 +99,17 @@ def _home(item: ImpedanceAnalysis) -> tuple[str, str]:
     return "environments", item.given.environment
 
 
+def nominal_note(designed: Designed) -> Paragraph:
+    """Say what nominal values are about.
+
+    Parameters
+    ----------
+    designed : Designed
+        Whose values are shown.
+    """
+    return Paragraph(NOMINAL + (_CONTINUOUS if designed.spec.sampling is not None else ""))
+
+
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
     """Show cost, margins and curves of the impedance controllers.
 
@@ -132,7 +148,7 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
         [item.name for item in items],
         [list(column) for column in zip(*(values for _, values in rows), strict=True)],
     )
-    paragraphs = [Paragraph(NOMINAL)]
+    paragraphs = [nominal_note(designed)]
     if any(item.problem.loop.contact.remembers for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
     if any(item.sampled for item in items):

@@ -265,3 +265,15 @@ def test_wrong_logs(tmp_path, text, message):
     with pytest.raises(DataError, match=message) as caught:
         log(tmp_path, text=text)
     assert caught.value.remedy
+
+
+def test_a_delay_that_the_record_does_not_tell(tmp_path):
+    """One slow swing fits any delay: no number is shown."""
+    t = 0.001 * np.arange(8000)
+    angle = 0.05 * (1 - np.cos(2 * np.pi * 0.4 * t))
+    command = 50 * np.gradient(angle, t)
+    torque = 43.0356 * angle / 20
+    text = runs.text(t, angle, torque, command, np.full(len(t), "insertion"))
+    found = check(judged(log(tmp_path, text=text)), "delay")
+    assert "[" not in found.measured
+    assert found.measured.startswith("not told by this record")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, CoupledAxes, Shows
+from nrs_design.proof.evidence.abstract import ROUNDED
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import (
     Contact,
@@ -446,3 +447,12 @@ def test_what_is_rounded_pushes_the_other_axes():
     exact = CoupledAxes(((8,),), 3, Fraction("0.63"), (40,))
     assert exact.find_fault(system) is None
     assert "computed without rounding" in exact.claim(system)
+    assert not exact.covers_rounding
+    covered = CoupledAxes(((8,),), 3, Fraction("0.8"), (40,), (), (63,))
+    assert covered.find_fault(system) is None
+    assert covered.covers_rounding
+    assert covered.claim(system).endswith(ROUNDED)
+    twice = replace(covered, roundings=(63, 63))
+    assert twice.find_fault(system) == "there is not one multiplier for each rounding"
+    less = replace(covered, roundings=(-63,))
+    assert less.find_fault(system) == "the multiplier of a rounding is negative"

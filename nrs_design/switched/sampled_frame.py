@@ -211,44 +211,23 @@ class Frame:
         """
         shares, at = _beginning(self)
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
-        step = self._step(law, at, ages[delay], shares)
-        following, nothing = self.listed.following, zero(len(at.delta))
-        lags, velocity = [*at.lags], [at.velocity] if self.has_inertia else []
-        integral = [at.integral] if self.gathers else []
-        seen, drive, reference = at.before, at.drive, at.reference
-        sizes: dict[str, LinearForm] = {}
-        if turn is not Turn.ADMITTANCE:
-            seen = step.result(following["error_before"], nothing)
-            drive = step.command(nothing)
-            sizes |= step.motion_sizes()
-        if turn is Turn.MOTION:
-            ages = [*at.samples]
-        else:
-            after = {name: step.result(made, nothing) for name, made in following.items()}
-            lags = [after[f"filtered_{i}"] for i in range(1, len(lags) + 1)]
-            velocity = [after["velocity"] for _ in velocity]
-            integral = [after["integral"] for _ in integral]
-            moves = isinstance(law, SampledAdmittance)
-            reference = after.get("reference", after.get("offset", nothing))
-            reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
-            sizes |= step.other_sizes(retuned="a" in values)
-        speed, moved, slip = self._move(drive, at, values)
-        delta = combine((ONE, at.delta), (ONE, moved))
-        first = [reference] if self.integrates else []
+        made = _sample(self, law, delay, k, b, turn, retuned="a" in values)
+        speed, moved, slip = self._move(made.drive, at, values)
+        delta, reference = combine((ONE, at.delta), (ONE, moved)), made.reference
         if self.integrates and self.idle is None:
-            first = [combine((ONE, reference), (-ONE, delta))]
+            reference = combine((ONE, reference), (-ONE, delta))
+        nothing = zero(len(at.delta))
         return [
-            *first,
+            *([reference] if self.integrates else []),
             speed,
-            seen,
-            *([drive] if self.holds else []),
-            *velocity,
-            *integral,
-            *lags,
-            *ages[: self.longest_delay],
+            made.seen,
+            *([made.drive] if self.holds else []),
+            *made.velocity,
+            *made.integral,
+            *made.lags,
+            *made.ages[: self.longest_delay],
             delta,
-            *(sizes.get(name, nothing) for name in shares),
+            *(made.sizes.get(name, nothing) for name in shares),
             slip,
         ]
 
@@ -304,6 +283,59 @@ class Frame:
         moved = combine((s, at.omega), (Km * (self.period - s), taken))
         speed = combine((E, at.omega), (Km * (1 - E), taken))
         return speed, moved, combine((ONE, at.omega), (-Km, taken))
+
+
+@dataclass(frozen=True, slots=True)
+class _Sample:
+    """What a sample makes of a state, before the motor moves; and how large roundings are."""
+
+    reference: LinearForm
+    seen: LinearForm
+    drive: LinearForm
+    velocity: Sequence[LinearForm]
+    integral: Sequence[LinearForm]
+    lags: Sequence[LinearForm]
+    ages: Sequence[LinearForm]
+    sizes: Mapping[str, LinearForm]
+
+
+# Corners of the motor's ranges share what the law makes of one stiffness.
+@lru_cache(maxsize=64)
+def _sample(
+    frame: Frame,
+    law: SampledLaw,
+    delay: int,
+    k: Fraction,
+    b: Fraction,
+    turn: Turn,
+    *,
+    retuned: bool,
+) -> _Sample:
+    """Return what `Frame.rows_and_slip` knows before the motor's parameters."""
+    shares, at = _beginning(frame)
+    ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
+    step = frame._step(law, at, ages[delay], shares)
+    following, nothing = frame.listed.following, zero(len(at.delta))
+    lags, velocity = [*at.lags], [at.velocity] if frame.has_inertia else []
+    integral = [at.integral] if frame.gathers else []
+    seen, drive, reference = at.before, at.drive, at.reference
+    sizes: dict[str, LinearForm] = {}
+    if turn is not Turn.ADMITTANCE:
+        seen = step.result(following["error_before"], nothing)
+        drive = step.command(nothing)
+        sizes |= step.motion_sizes()
+    if turn is Turn.MOTION:
+        ages = [*at.samples]
+    else:
+        after = {name: step.result(made, nothing) for name, made in following.items()}
+        lags = [after[f"filtered_{i}"] for i in range(1, len(lags) + 1)]
+        velocity = [after["velocity"] for _ in velocity]
+        integral = [after["integral"] for _ in integral]
+        moves = isinstance(law, SampledAdmittance)
+        reference = after.get("reference", after.get("offset", nothing))
+        reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
+        sizes |= step.other_sizes(retuned=retuned)
+    return _Sample(reference, seen, drive, velocity, integral, lags, ages, sizes)
 
 
 # The inputs, as their forms are called below.

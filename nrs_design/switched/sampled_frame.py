@@ -211,7 +211,7 @@ class Frame:
         """
         shares, at = _beginning(self)
         k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        made = _sample(self, law, delay, k, b, turn, retuned="a" in values)
+        made = _sample(self, self.listed, law, delay, k, b, turn, retuned="a" in values)
         speed, moved, slip = self._move(made.drive, at, values)
         delta, reference = combine((ONE, at.delta), (ONE, moved)), made.reference
         if self.integrates and self.idle is None:
@@ -303,6 +303,7 @@ class _Sample:
 @lru_cache(maxsize=64)
 def _sample(
     frame: Frame,
+    listed: ListedLaw,
     law: SampledLaw,
     delay: int,
     k: Fraction,
@@ -315,7 +316,7 @@ def _sample(
     shares, at = _beginning(frame)
     ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
     step = frame._step(law, at, ages[delay], shares)
-    following, nothing = frame.listed.following, zero(len(at.delta))
+    following, nothing = listed.following, zero(len(at.delta))
     lags, velocity = [*at.lags], [at.velocity] if frame.has_inertia else []
     integral = [at.integral] if frame.gathers else []
     seen, drive, reference = at.before, at.drive, at.reference

@@ -63,9 +63,9 @@ class Kinds:
     gathers: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ListedLaw:
-    """The list of operations of some kinds of laws.
+    """The list of operations of some kinds of laws; `list_law` makes each once.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
 from nrs_design.reporting import build_report
-from nrs_design.reporting.sections.summary import summary_of
+from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
 
@@ -74,6 +74,15 @@ def test_lights_of_a_design(report):
     assert lights(report("inconclusive"))["Proof"][0] == "doubtful"
 
 
+def test_a_goal_of_the_certificate_alone_is_a_goal(tmp_path):
+    path = tmp_path / "a.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(f"{text}goals: {{decay_rate: 3 1/s}}\n", encoding="utf-8")
+    result = run_certification(read_spec(path))
+    (light,) = (x for x in lights_of(result, run_analysis(result.designed)) if x.name == "Goals")
+    assert (str(light.state), light.text) == ("unknown", "decay_rate: nrs-design gate decides")
+
+
 @pytest.mark.parametrize(
     ("data", "more", "state"),
     [
@@ -95,8 +104,6 @@ def test_the_light_of_data(tmp_path, data, more, state):
 
 
 def lights_state(result):
-    from nrs_design.reporting.sections.summary import lights_of
-
     return next(str(light.state) for light in lights_of(result, None) if light.name == "Data")
 
 

@@ -133,7 +133,7 @@ def _goals(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Ligh
     goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
     if not goals:
-        return Light(name, State.UNKNOWN, f"no goals set{more}", GOALS)
+        return Light(name, State.UNKNOWN, more.removeprefix("; ") or "no goals set", GOALS)
     if missed:
         return Light(name, State.BAD, f"{missed} of {len(goals)} missed{more}", GOALS)
     return Light(name, State.GOOD, f"all {len(goals)} met (floating point){more}", GOALS)

@@ -90,33 +90,15 @@ def close_sampled_loop(
     ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
-    turns = _turns(sampling)
-    loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period), turns)
+    loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period), _turns(sampling))
     touched = plant.among(design.contacts)
-    parts = {
-        c.name: loop.in_contact(
-            c, laws[c.name], map(plant.environment, c.contacts) if c.contacts else touched
-        )
-        for c in design.controllers
-    }
     loss = _loss_of_contact(spec, touched, [item.law for item in laws.values()])
-    air: dict[str, tuple[Motion, ...]] = {}
-    if loss == "on the surface" or loss.startswith("anywhere"):
-        touching = (c.name for c in design.controllers if c.contacts)
-        air = {name: loop.in_the_air(name, laws[name]) for name in touching}
-    if loss.startswith("anywhere"):
-        parts = {name: (*part, *air.get(name, ())) for name, part in parts.items()}
-    free = tuple(chain.from_iterable(air.values())) if loss == "on the surface" else ()
-    if Turn.MOTION in turns:
-        law = next(iter(laws.values())).law
-        # No controller has a name with a slash.
-        parts[f"/{Turn.MOTION}"] = tuple(loop.between(law, str(Turn.MOTION)))
-        free = (*free, *loop.between(law, f"{Turn.MOTION}/{FREE}")) if free else ()
+    parts, free = _motions(loop, plant, design, laws, loss)
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
-    flying = tuple(item.mode for item in free)
     damped = (environment for environment in touched if "b" in environment.parameters)
     pulls = tuple(row for environment in damped for row in force_rows(frame.states, environment))
+    flying = tuple(item.mode for item in free)
     losable = Contact(flying, pulls, required=spec.contact == "losable") if free else None
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
@@ -152,6 +134,36 @@ def close_sampled_loop(
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
         axes=None if coupling is None or not channels else coupling.count,
     )
+
+
+def _motions(
+    loop: _Loop,
+    plant: Plant,
+    design: ControllerDesign,
+    laws: Mapping[str, SampledGains],
+    loss: Loss,
+) -> tuple[dict[str, tuple[Motion, ...]], tuple[Motion, ...]]:
+    """Return the motions of each controller, and those of free motion beside them.
+
+    Where contact is lost anywhere, a controller moves freely as it does in one more contact.
+    """
+    parts: dict[str, tuple[Motion, ...]] = {}
+    free: list[Motion] = []
+    for c in design.controllers:
+        own = tuple(map(plant.environment, c.contacts))
+        parts[c.name] = loop.in_contact(c, laws[c.name], own or plant.among(design.contacts))
+        if not c.contacts:
+            continue
+        if loss == "on the surface":
+            free += loop.in_the_air(c.name, laws[c.name])
+        elif loss.startswith("anywhere"):
+            parts[c.name] += loop.in_the_air(c.name, laws[c.name])
+    if Turn.MOTION in loop.turns:
+        law = next(iter(laws.values())).law
+        # No controller has a name with a slash.
+        parts[f"/{Turn.MOTION}"] = tuple(loop.between(law, str(Turn.MOTION)))
+        free += loop.between(law, f"{Turn.MOTION}/{FREE}") if free else ()
+    return parts, tuple(free)
 
 
 def _check_periods(sampling: SamplingSpec) -> None:

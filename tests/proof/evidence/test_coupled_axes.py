@@ -165,26 +165,31 @@ def rises(where: str, touching: int, flying: int | str) -> bool:
 def test_no_motion_of_three_axes_within_the_bounds_raises_the_function(example, seed):
     """At random states, each axis in a mode of its own, with all that the bounds allow."""
     system, item = genuine(example)
-    random = Random(seed)
     scale = Fraction(1, 2**item.denominator_log2)
     Q = [[scale * entry for entry in row] for row in item.Q]
+    value = rise = Fraction(0)
+    for x, moves, kept in pushed_axes(system, Random(seed)):
+        w, moved = x[:kept], moves[:kept]
+        forces = [dot(row[:kept], w) for row in Q[:kept]]
+        value += dot(forces, w)
+        rise += 2 * dot(forces, moved)
+    assert rise <= -2 * item.rate * value
+
+
+def pushed_axes(system: SwitchedSystem, random: Random):
+    """Yield of three axes the state, what becomes of it under random pushes, and what V sees."""
     axes = [situation(system, random) for _ in range(3)]
     sizes = [
         sum(dot(part.rows[k].fractions()[0], x) ** 2 for k, _, x, _ in axes)
         for part in system.couplings
     ]
     pushes = [share(size, random) for size in sizes]
-    value = rise = Fraction(0)
     for i, (k, A, x, kept) in enumerate(axes):
         moves = [dot(row, x) for row in A]
         for part, push in zip(system.couplings, pushes, strict=True):
             column = part.columns[k].fractions()
             moves = [a + push[i] * b for a, (b,) in zip(moves, column, strict=True)]
-        w, moved = x[:kept], moves[:kept]
-        forces = [dot(row[:kept], w) for row in Q[:kept]]
-        value += dot(forces, w)
-        rise += 2 * dot(forces, moved)
-    assert rise <= -2 * item.rate * value
+        yield x, moves, kept
 
 
 def situation(system: SwitchedSystem, random: Random):
@@ -402,20 +407,10 @@ def test_a_wild_push_in_any_motion_is_refused(motion, column):
 @pytest.mark.parametrize("seed", range(20))
 def test_no_step_of_three_axes_within_the_bounds_raises_the_function(example, seed):
     system, item = genuine(example)
-    random, scale = Random(seed), Fraction(1, 2**item.denominator_log2)
+    scale = Fraction(1, 2**item.denominator_log2)
     Q = [[scale * entry for entry in row] for row in item.Q]
-    axes = [situation(system, random) for _ in range(3)]
-    sizes = [
-        sum(dot(part.rows[k].fractions()[0], x) ** 2 for k, _, x, _ in axes)
-        for part in system.couplings
-    ]
-    pushes = [share(size, random) for size in sizes]
     before = after = Fraction(0)
-    for i, (k, A, x, _) in enumerate(axes):
-        moved = [dot(row, x) for row in A]
-        for part, push in zip(system.couplings, pushes, strict=True):
-            column = part.columns[k].fractions()
-            moved = [a + push[i] * b for a, (b,) in zip(moved, column, strict=True)]
+    for x, moved, _ in pushed_axes(system, Random(seed)):
         before, after = before + value(Q, x), after + value(Q, moved)
     assert after <= item.rate**2 * before
 

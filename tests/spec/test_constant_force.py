@@ -28,6 +28,11 @@ def test_the_example_asks_for_it():
             "remove sampling",
         ),
         (
+            "contact: losable",
+            "contact: losable\ncoupling: {inertia: [0 kg*m^2, 0.3 kg*m^2]}",
+            "remove coupling",
+        ),
+        (
             "time_constant:",
             "load_inertia: 1.213 kg*m^2\n  time_constant:",
             "remove actuator.load_inertia",

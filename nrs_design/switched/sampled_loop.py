@@ -14,7 +14,6 @@ from nrs_design.controllers.sampled import (
     SampledAdmittance,
     SampledForce,
     SampledLaw,
-    SampledMotion,
 )
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.actuator import ActuatorRanges
@@ -206,7 +205,7 @@ def _frame(
     idle = None if spec.idle_states is None else idle_share(spec.idle_states, outer)
     return Frame(
         sampling.step,
-        SampledMotion.of(design.motion, sampling.period.exact),
+        design.motion.sampled(sampling.period.exact),
         _have_inertia(admittances),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,

@@ -5,9 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design.proof.matrix import RationalMatrix, exact_fraction
 from nrs_design.proof.noun import dataclass
+
+if TYPE_CHECKING:
+    from nrs_design.proof.saturation import Saturation
 
 
 class Time(StrEnum):
@@ -309,6 +313,8 @@ class SwitchedSystem:
         How many of them there are at most, where a statement depends on it, as bounds do.
     clock : Clock or None
         Which modes take turns, in discrete time; None lets all of them be in force at every step.
+    saturation : Saturation or None
+        Signals that are cut off at limits; only statements that say so are about that.
     """
 
     name: str
@@ -325,6 +331,7 @@ class SwitchedSystem:
     couplings: tuple[Coupling, ...] = ()
     clock: Clock | None = None
     axes: int | None = None
+    saturation: Saturation | None = None
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
@@ -398,6 +405,7 @@ class SwitchedSystem:
             or self._find_odd_rounding()
             or self._find_odd_coupling()
             or self._find_odd_clock()
+            or self._find_odd_saturation()
         )
 
     def _find_odd_stay(self, names: set[str]) -> str | None:
@@ -505,6 +513,14 @@ class SwitchedSystem:
         if not all(first & group and group - first for group in groups):
             return "a step of a round has no mode, in contact or free"
         return None
+
+    def _find_odd_saturation(self) -> str | None:
+        if self.saturation is None:
+            return None
+        if not self.is_uniform:
+            return "signals saturate, but the modes are not of one size"
+        free = () if self.contact is None else self.contact.free
+        return self.saturation.find_oddity(self.order, len(self.modes), len(free))
 
     def _find_odd_parts(self, item: Rounding | Coupling, width: int) -> str | None:
         """Say why columns and rows are not those of every mode and free mode, or None."""

@@ -39,6 +39,7 @@ class Shows(StrEnum):
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
+    REGION = "decay from a region under saturation"
 
 
 # That no common quadratic function exists is said of matrices, whatever happens to contact.
@@ -46,12 +47,14 @@ _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (WHILE_KEPT,),
     Shows.BOUND: (WHILE_KEPT,),
     Shows.CONVERGENCE: (WHILE_KEPT,),
+    Shows.REGION: (WHILE_KEPT,),
     Shows.INSTABILITY: (GROWN_IN_CONTACT,),
 }
 _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (NOT_ROUNDED,),
     Shows.BOUND: (NOT_ROUNDED,),
     Shows.CONVERGENCE: (NOT_ROUNDED,),
+    Shows.REGION: (NOT_ROUNDED,),
     Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
 
@@ -232,7 +235,7 @@ class AbstractEvidence(ABC):
         return self._is_good() and not self.covers_lost_contact
 
     def _is_good(self) -> bool:
-        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE)
+        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:

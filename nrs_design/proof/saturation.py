@@ -50,11 +50,14 @@ class Start:
         What the size is of, such as ``contact force`` in ``N*m``.
     states : tuple of RationalMatrix, each of shape (n, 1)
         At the size one, at the corners of the ranges.
+    wanted : Fraction or None
+        The size that a statement is meant to reach; for words and searches only.
     """
 
     name: str
     unit: str
     states: tuple[RationalMatrix, ...]
+    wanted: Fraction | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,10 +130,10 @@ class Saturation:
         for replaced in product((False, True), repeat=len(self.signals)):
             moved = [list(row) for row in rows]
             taken = self._signals(k, rows, held, replaced)
-            for signal, s, l in zip(self.signals, taken, linear, strict=True):
+            for signal, new, old in zip(self.signals, taken, linear, strict=True):
                 for row, (c,) in zip(moved, signal.columns[k].fractions(), strict=True):
-                    for j, (new, old) in enumerate(zip(s, l, strict=True)):
-                        row[j] += c * (new - old)
+                    for j, (other, own) in enumerate(zip(new, old, strict=True)):
+                        row[j] += c * (other - own)
             yield RationalMatrix.from_rows(moved)
 
     def _signals(

@@ -216,6 +216,7 @@ def _saturation_fields(system: SwitchedSystem) -> Fields:
         "name": start.name,
         "unit": start.unit,
         "states": [_matrix_fields(state) for state in start.states],
+        "wanted": _text(start.wanted),
     }
     return {"saturation": {"signals": signals, "start": begun}}
 
@@ -234,8 +235,12 @@ def _read_saturation(fields: Mapping[str, Any]) -> Saturation:
         for item in _read_list(fields["signals"])
     )
     begun = fields["start"]
-    states = tuple(_read_matrix(state) for state in _read_list(begun["states"]))
-    start = Start(read_text(begun["name"]), read_text(begun["unit"]), states)
+    start = Start(
+        read_text(begun["name"]),
+        read_text(begun["unit"]),
+        tuple(_read_matrix(state) for state in _read_list(begun["states"])),
+        None if begun["wanted"] is None else read_ratio(begun["wanted"]),
+    )
     return Saturation(tuple(signals), start)
 
 

@@ -150,16 +150,16 @@ class Region:
 
 
 def search_saturated(
-    system: SwitchedSystem, wanted: Fraction | None, allowance: Allowance
+    system: SwitchedSystem, allowance: Allowance
 ) -> Candidates[SaturatedEllipsoid]:
     """Yield ellipsoids that hold a start, those with the fastest decay first.
+
+    The start is the wanted one; without one, or where it is out of reach, nearly the largest.
 
     Parameters
     ----------
     system : SwitchedSystem
         Stable, in continuous time, with what saturates.
-    wanted : Fraction or None
-        The size of the start; None for nearly the largest that is found.
     allowance : Allowance
         Time and memory.
 
@@ -186,10 +186,9 @@ def search_saturated(
     largest = _largest(own, slowest, start, allowance)
     if largest is None:
         return NO_MARGIN
-    level = Fraction(f"{BELOW * largest.size:.4e}") if wanted is None else wanted
-    if level > largest.size:
-        unit = system.saturation.start.unit
-        return f"the largest {system.saturation.start.name} found is {largest.size:.3g} {unit}"
+    level = Fraction(f"{BELOW * largest.size:.4e}")
+    if (wanted := system.saturation.start.wanted) is not None and wanted < level:
+        level = wanted
     region, rate = _fastest(own, largest, float(level), slowest, family.limit, allowance)
     yield from map(Candidate, _rounded(raw, system, T, region, rate, level, allowance))
     return None
@@ -292,7 +291,7 @@ def _rounded(
     assert system.saturation is not None
     limits = np.array([float(s.limit) for s in system.saturation.signals])
     H = limits[:, None] * (region.H @ np.linalg.inv(T))
-    T = T @ _triangular(np.linalg.inv(region.S))
+    T = np.asarray(T @ _triangular(np.linalg.inv(region.S)), dtype=np.float64)
     log2 = max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
     rows = tuple(tuple(round(float(v)) for v in row) for row in np.ldexp(H, log2))
     kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T
@@ -331,7 +330,7 @@ def _fitted(
     return np.asarray(Q.value)
 
 
-def _triangular(Q: Array) -> Array:
+def _triangular(Q: Any) -> Array:
     """Return an upper triangular T with ``T' Q T = I``."""
     return np.asarray(np.linalg.inv(np.linalg.cholesky(Q).T))
 

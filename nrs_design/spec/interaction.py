@@ -24,6 +24,7 @@ from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec, check_applicable
+from nrs_design.spec.initial_force import check_initial_force
 from nrs_design.spec.mixture import check_mixture, check_offsets
 from nrs_design.spec.mode_logic import ModeLogicSpec, check_kept, rules_of
 from nrs_design.spec.model import SpecModel
@@ -196,6 +197,7 @@ class InteractionDesignSpec(SpecModel):
             ),
             partial(check_sampled, self),
             partial(check_constant_force, self),
+            partial(check_initial_force, self),
             lambda: check_coupling(
                 self.coupling,
                 loaded=self.actuator.load_inertia is not None,

@@ -33,7 +33,8 @@ class SaturatedEllipsoid(AbstractEvidence):
     Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin).
     There s is a mixture of its argument a and of ``h w``, so the loop moves as a mixture of the
     matrices that have, for each signal, one or the other in its place: `Saturation.between`. With
-    w the state, or ``w = (y, max(delta, 0))`` where the system says how contact is lost, V decreases
+    w the state, or ``w = (y, max(delta, 0))`` where the system says how contact is lost, V
+    decreases
 
     - in contact: ``-(B'Q + QB + 2 alpha Q) > 0`` for each of these matrices of every mode;
     - free, where the system says how contact is lost: the same for the blocks of y of these

@@ -1,4 +1,4 @@
-"""Search for ellipsoids in which motions decay although signals saturate, by CVXPY (untrusted).
+"""Search for ellipsoids in which motions decay although signals saturate (untrusted).
 
 With ``S = Q^-1`` and ``Y = H S`` the conditions of `nrs_design.proof.evidence.saturated_ellipsoid`
 in contact are linear in S and Y (Hu and Lin), and the largest start is found at once. Free motion
@@ -10,7 +10,6 @@ gains little. At last H is rounded, and Q is found for it with as much to spare 
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -22,11 +21,11 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.system import SwitchedSystem, Time
-from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family, to_floats
-from nrs_design.search.raw import LOADING, PER_PROGRAM
 from nrs_design.search.rounding import round_rate, unscale
+from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
 
 Array = NDArray[np.float64]
 
@@ -37,7 +36,7 @@ H_DIGITS = 40
 SLOWEST, BELOW = 1e-3, 0.99
 # Improvements of a region in free motion, and the least gain that is worth another.
 STEPS, GAIN = 12, 1.003
-BISECTIONS = 6
+BISECTIONS = 8
 # A start just inside of a region leaves nothing for rounding.
 ENOUGH = 0.999
 # Shares of the largest rate that are claimed.
@@ -169,7 +168,6 @@ def search_saturated(
         If time or memory do not suffice.
     """
     assert system.saturation is not None  # who asks has looked
-    allowance.take(Cost(LOADING), "loading CVXPY")
     family, raw = Family.of(system), Problem.of(system)
     slowest = SLOWEST * family.limit
     T = np.diag(np.ldexp(1.0, family.exponents))
@@ -183,11 +181,13 @@ def search_saturated(
     if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):
         return OUT_OF_RANGE
     start = Region(np.eye(len(T)), own.linear[0], 0.0)
-    largest = _largest(own, slowest, start, allowance)
+    wanted = system.saturation.start.wanted
+    enough = np.inf if wanted is None else float(wanted) / BELOW**2
+    largest = _largest(own, slowest, start, allowance, enough)
     if largest is None:
         return NO_MARGIN
     level = Fraction(f"{BELOW * largest.size:.4e}")
-    if (wanted := system.saturation.start.wanted) is not None and wanted < level:
+    if wanted is not None and wanted < level:
         level = wanted
     region, rate = _fastest(own, largest, float(level), slowest, family.limit, allowance)
     yield from map(Candidate, _rounded(raw, system, T, region, rate, level, allowance))
@@ -196,17 +196,14 @@ def search_saturated(
 
 def _unsaturated(problem: Problem, rate: float, allowance: Allowance) -> Array | None:
     """Return a quadratic function of the loop in which nothing is cut off."""
-    cp, n = _cvxpy(), problem.A.shape[1]
-    Q, t = cp.Variable((n, n), symmetric=True), cp.Variable()
-    conditions = [Q << np.eye(n), Q >> t * np.eye(n)]
+    n = problem.A.shape[1]
+    Q, t = _unknowns(n, 0)[0], _last(n, 0)
+    blocks = [(np.eye(n), -Q), (np.zeros((n, n)), Q - t * np.eye(n))]
     for k, A in enumerate(problem.A):
         last = n - problem.is_free(k)
-        part, own = Q[:last, :last], A[:last, :last]
-        form = own.T @ part + part @ own + 2 * rate * part
-        conditions.append(form << -t * np.eye(last))
-    if not _solved(cp, cp.Problem(cp.Maximize(t), conditions), allowance) or not t.value > 0:
-        return None
-    return np.asarray(Q.value)
+        blocks.append(_decrease(A[:last, :last], Q[:, :last, :last], t, rate))
+    x = _solved(blocks, allowance)
+    return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
 
 
 def _largest(
@@ -226,27 +223,28 @@ def _largest(
 
 def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance) -> Region | None:
     """Return the largest region for the columns g that fit another."""
-    cp, n, s = _cvxpy(), problem.A.shape[1], len(problem.rows)
-    S, size = cp.Variable((n, n), symmetric=True), cp.Variable()
-    Y = [cp.Variable((1, n)) for _ in range(s)]
+    n, count = problem.A.shape[1], len(problem.rows)
+    (S, Y), size = _unknowns(n, count), _last(n, count)
     unit = np.linalg.norm(problem.starts, axis=1).max()
     # An ellipsoid may be long, but not without end.
-    conditions = [S << LARGEST * np.eye(n)]
-    conditions += [S >> size * np.outer(x, x) for x in problem.starts / unit]
-    conditions += [cp.bmat([[np.eye(1), y], [y.T, S]]) >> 0 for y in Y]
+    blocks = [(LARGEST * np.eye(n), -S)]
+    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in problem.starts / unit]
+    corner = np.zeros((n + 1, n + 1))
+    corner[n, n] = 1.0
+    for y in Y:
+        blocks.append((corner, _bordered(S, y)))
     before = dict(enumerate(problem.vertices(np.eye(n), [h[None] for h in near.H])))
-    for i, (k, B) in enumerate(problem.vertices(S, Y)):
-        form = B
+    for i, (k, form) in enumerate(problem.vertices(S, Y)):
         if problem.is_free(k):
-            g = _column(before[i][1], near.S, rate)
-            form = B + g[:, None] @ S[n - 1 : n, :]
-        conditions.append(form + form.T + 2 * rate * S << -SMALLEST * np.eye(n))
-    program = cp.Problem(cp.Maximize(size), conditions)
-    if not _solved(cp, program, allowance) or not size.value > 0:
+            form = form + _column(before[i][1], near.S, rate)[:, None] @ S[:, n - 1 : n, :]
+        images = -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
+        blocks.append((-SMALLEST * np.eye(n), images))
+    x = _solved(blocks, allowance)
+    if x is None:
         return None
-    found = np.asarray(S.value)
-    H = np.concatenate([np.asarray(y.value) for y in Y]) @ np.linalg.inv(found)
-    return Region(found, H, float(np.sqrt(size.value) / unit))
+    found = np.asarray(np.tensordot(x, S, axes=1))
+    rows = np.concatenate([np.tensordot(x, y, axes=1) for y in Y])
+    return Region(found, rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
 
 
 def _column(B: Array, S: Array, rate: float) -> Array:
@@ -316,18 +314,23 @@ def _fitted(
     problem: Problem, H: Array, level: float, rate: float, allowance: Allowance
 ) -> Array | None:
     """Return Q for a given H, where it is about the identity, with as much to spare as possible."""
-    cp, n = _cvxpy(), problem.A.shape[1]
-    Q, t, e = cp.Variable((n, n), symmetric=True), cp.Variable(), np.eye(n + 1)
-    conditions = [cp.bmat([[Q, h[:, None]], [h[None], np.eye(1)]]) >> t * e for h in H]
-    conditions += [1 - level**2 * cp.quad_form(x, Q) >= t for x in problem.starts]
+    n = problem.A.shape[1]
+    Q, t = _unknowns(n, 0)[0], _last(n, 0)
+    blocks = []
+    for h in H:
+        constant = np.zeros((n + 1, n + 1))
+        constant[n, :n] = constant[:n, n] = h
+        constant[n, n] = 1.0
+        border = _bordered(Q, np.zeros((len(Q), 1, n)))
+        blocks.append((constant, border - t * np.eye(n + 1)))
+    for x in problem.starts:
+        value = level**2 * (x @ Q @ x)[:, None, None]
+        blocks.append((np.ones((1, 1)), -value - t))
     for k, B in problem.vertices(np.eye(n), [h[None] for h in H]):
         last = n - problem.is_free(k)
-        part, own = Q[:last, :last], B[:last, :last]
-        form = own.T @ part + part @ own + 2 * rate * part
-        conditions.append(form << -t * np.eye(last))
-    if not _solved(cp, cp.Problem(cp.Maximize(t), conditions), allowance) or not t.value > 0:
-        return None
-    return np.asarray(Q.value)
+        blocks.append(_decrease(B[:last, :last], Q[:, :last, :last], t, rate))
+    x = _solved(blocks, allowance)
+    return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
 
 
 def _triangular(Q: Any) -> Array:
@@ -335,19 +338,65 @@ def _triangular(Q: Any) -> Array:
     return np.asarray(np.linalg.inv(np.linalg.cholesky(Q).T))
 
 
-def _cvxpy() -> Any:
-    import cvxpy
+def _unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
+    """Return what each unknown makes of a symmetric matrix, and of rows; the last one of neither.
 
-    return cvxpy
+    Parameters
+    ----------
+    n : int
+        Order of the matrix, and length of the rows.
+    rows : int
+        How many rows there are.
+    """
+    basis, total = symmetric_basis(n), n * (n + 1) // 2 + rows * n + 1
+    S, Y = np.zeros((total, n, n)), [np.zeros((total, 1, n)) for _ in range(rows)]
+    S[: len(basis)] = basis
+    for i, row in enumerate(Y):
+        first = len(basis) + i * n
+        row[first : first + n, 0] = np.eye(n)
+    return S, Y
 
 
-def _solved(cp: Any, program: Any, allowance: Allowance) -> bool:
-    """Solve a program; tell whether there are numbers, whatever the solver says of them."""
-    allowance.take(Cost(PER_PROGRAM), "a program for CVXPY")
-    try:
-        with warnings.catch_warnings(action="ignore"):
-            program.solve(solver=cp.CLARABEL, max_threads=1, time_limit=allowance.left)
-    except cp.SolverError:
-        return False
-    values = [variable.value for variable in program.variables()]
-    return all(value is not None and np.isfinite(value).all() for value in values)
+def _last(n: int, rows: int) -> Array:
+    """Return what each unknown makes of the number that is to be large."""
+    number = np.zeros((n * (n + 1) // 2 + rows * n + 1, 1, 1))
+    number[-1] = 1.0
+    return number
+
+
+def _bordered(S: Array, y: Array) -> Array:
+    """Return ``[[S, y'], [y, 0]]`` for every unknown."""
+    n = S.shape[-1]
+    whole = np.zeros((len(S), n + 1, n + 1))
+    whole[:, :n, :n] = S
+    whole[:, n:, :n], whole[:, :n, n:] = y, np.swapaxes(y, -1, -2)
+    return whole
+
+
+def _decrease(A: Array, Q: Array, t: Array, rate: float) -> tuple[Array, Array]:
+    """Return the block that wants a decrease of at least t."""
+    half = Q @ A
+    size = np.eye(len(A))
+    return 0.0 * size, -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q - t * size
+
+
+def _solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
+    """Make the last unknown large where all blocks are positive; None where it is not positive.
+
+    Parameters
+    ----------
+    blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
+        A constant, and what every unknown adds to it.
+    allowance : Allowance
+        Time and memory.
+    """
+    unknowns = len(blocks[0][1])
+    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
+    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
+    x = maximize_margin(
+        np.concatenate([-pack(images).T for _, images in blocks]),
+        np.concatenate([pack(constant) for constant, _ in blocks]),
+        [len(constant) for constant, _ in blocks],
+        time_limit=allowance.left,
+    )
+    return x if x is not None and x[-1] > 0 else None

@@ -129,6 +129,11 @@ class AbstractEvidence(ABC):
         """Whether it shows that some mode is not stable by itself."""
         return False
 
+    @property
+    def start_size(self) -> Fraction | None:
+        """Size of the start of a saturating system that motions decay from, if it shows one."""
+        return None
+
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
         return None

@@ -75,6 +75,11 @@ class SaturatedEllipsoid(AbstractEvidence):
         """Decay from a region."""
         return Shows.REGION
 
+    @property
+    def start_size(self) -> Fraction:
+        """The level."""
+        return self.level
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that something saturates, shapes, and the signs of rate and level."""
         if system.saturation is None:

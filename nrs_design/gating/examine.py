@@ -33,7 +33,8 @@ from nrs_design.proof.evidence.unstable_mode import (
     is_stable,
     worst_eigenvalue,
 )
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peaks import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position

@@ -7,7 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import compress
 
-from nrs_design.proof.system import Clock, SwitchedSystem
+from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 
 
 def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
@@ -44,6 +45,7 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
         roundings=tuple(roundings),
         channels=(),
         outputs=(),
+        saturation=None,
         clock=None,
     )
 

@@ -22,7 +22,8 @@ from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precis
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.evidence.flow import shifted
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.taylor import exponential_nearly
 
 if TYPE_CHECKING:

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
     read_integer,
@@ -14,22 +16,9 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.exact import bit_length
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import (
-    ARBITRARY,
-    Channel,
-    Clock,
-    Contact,
-    Coupling,
-    FixedParameter,
-    Mode,
-    Output,
-    Reset,
-    Rounding,
-    Stay,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Clock, FixedParameter, Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 
 if TYPE_CHECKING:

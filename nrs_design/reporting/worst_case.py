@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from nrs_design.pipeline.worst_case import WorstCase
-    from nrs_design.proof.system import Output, SwitchedSystem
+    from nrs_design.proof.channels import Output
+    from nrs_design.proof.system import SwitchedSystem
     from nrs_design.simulation.norms import Array
     from nrs_design.simulation.worst_case import WorstRun
 

@@ -14,8 +14,8 @@ from itertools import accumulate, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseModeQuadratic
-from nrs_design.proof.system import Contact
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_quadratic import (

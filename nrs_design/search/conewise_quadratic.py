@@ -14,8 +14,9 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
-from nrs_design.proof.system import Contact, Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates

@@ -11,8 +11,9 @@ from typing import Any
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.late import late_function
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits

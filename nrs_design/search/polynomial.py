@@ -24,7 +24,8 @@ from nrs_design.proof.evidence.common_polynomial import (
 )
 from nrs_design.proof.lift import derivative_lift, monomials, power_lift
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import scale
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates

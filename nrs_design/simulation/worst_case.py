@@ -16,9 +16,12 @@ from numpy.typing import NDArray
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
+from nrs_design.proof.channels import Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.abstract import Bound
-from nrs_design.proof.system import ARBITRARY, Output, SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import ARBITRARY
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.adversary import (
     changed_signals,
     held_signals,

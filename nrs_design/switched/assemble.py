@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,

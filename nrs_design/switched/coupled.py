@@ -12,8 +12,10 @@ from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.bounds import upper
+from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Coupling, Mode, SwitchedSystem
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec
 from nrs_design.spec.exact import parse_exact

@@ -21,8 +21,12 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
+from nrs_design.proof.channels import Coupling
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Clock, Contact, Coupling, SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.touched import FREE

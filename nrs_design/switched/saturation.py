@@ -19,8 +19,9 @@ from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, 
 from nrs_design.models.plant import Plant
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
-from nrs_design.proof.system import Mode, SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.assumption_kinds import LIMITED
 from nrs_design.switched.joint import Joint

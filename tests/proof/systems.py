@@ -8,23 +8,13 @@ from functools import cache
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import Realization
+from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import (
-    ARBITRARY,
-    Channel,
-    Clock,
-    Contact,
-    Coupling,
-    Mode,
-    Output,
-    Reset,
-    Rounding,
-    Stay,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Clock, Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from nrs_design.switched.modes import velocity_mode

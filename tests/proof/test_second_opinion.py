@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonQuadratic,
@@ -18,8 +19,9 @@ from nrs_design.proof.evidence import (
     UnstableValue,
 )
 from nrs_design.proof.exact import is_positive_definite
+from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees, has_positive_spectrum
-from nrs_design.proof.system import Rounding, Stay, Switching, Time
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.proof.taylor import exponential_nearly
 from nrs_design.search.certify import certify
 from tests.proof.systems import PAIR, SYSTEMS, family, genuine, matrix

@@ -12,6 +12,7 @@ from random import Random
 
 import numpy as np
 
+from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -34,7 +35,8 @@ from nrs_design.proof.evidence import (
     UnstableValue,
 )
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Mode, Rounding, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Rows = list[list[Fraction]]
 Polynomial = dict[tuple[int, ...], Fraction]

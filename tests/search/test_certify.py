@@ -16,7 +16,8 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search import certify as certify_module
 from nrs_design.search import common_quadratic, gradient, ladder, lmi, unstable_mode
 from nrs_design.search.candidates import Candidate

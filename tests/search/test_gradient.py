@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import impedance_rows
 from nrs_design.search.allowance import Allowance, NotAffordableError

@@ -11,7 +11,7 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline import run_certification
 from nrs_design.pipeline.margins import run_margin, run_shortest_dwell
-from nrs_design.proof.system import Stay, Switching
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.margin import (

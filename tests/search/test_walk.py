@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import UnstablePeriod
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.period import search_period
 from tests.proof.systems import ando_shih, family, golden, matrix, resets_between

@@ -11,18 +11,11 @@ from scipy.optimize import brentq
 
 from nrs_design.pipeline import run_certification, run_design
 from nrs_design.pipeline.worst_case import run_worst_case
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import (
-    ARBITRARY,
-    Channel,
-    Clock,
-    Mode,
-    Output,
-    Stay,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Clock, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.scenario import Control, Profile, Scenario, Surface

@@ -9,6 +9,8 @@ from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import at_least
+from nrs_design.proof.channels import Channel, Output
+from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence.fields import find_unreadable
 from nrs_design.proof.exact import (
     IntegerMatrix,
@@ -17,7 +19,8 @@ from nrs_design.proof.exact import (
     is_too_large,
 )
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Channel, Output, SwitchedSystem, Switching
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
@@ -221,7 +224,7 @@ class AbstractEvidence(ABC):
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
         if (unreadable := find_unreadable(self)) is not None:
             return unreadable
-        if (contradiction := system.find_contradiction()) is not None:
+        if (contradiction := find_contradiction(system)) is not None:
             return contradiction
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"

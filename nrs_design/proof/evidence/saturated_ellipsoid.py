@@ -18,9 +18,10 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.saturation import Saturation
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 NOTHING_SATURATES = "the system does not say what saturates"

@@ -7,8 +7,9 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import InvariantEllipsoid
-from nrs_design.proof.system import Channel, Output, Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.bound import draw_bound
 from nrs_design.reporting.formatting import number

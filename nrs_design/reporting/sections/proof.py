@@ -8,7 +8,8 @@ from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM

@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import (
     KINDS,
     AbstractEvidence,
@@ -13,7 +14,8 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Reset, Rounding, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset, Switching
 from tests.proof.systems import (
     SYSTEMS,
     bouncing,

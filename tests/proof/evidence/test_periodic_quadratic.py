@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseQuadratic, PeriodicQuadratic, Shows
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Clock, Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.evidence.test_conewise_quadratic import ESCAPES, LAGGING, growth, losable
 from tests.proof.systems import (
     bouncing_in_steps,

@@ -45,6 +45,7 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
         roundings=tuple(roundings),
         channels=(),
         outputs=(),
+        saturation=None,
         clock=None,
     )
 

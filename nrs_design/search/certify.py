@@ -35,6 +35,7 @@ Progress = Callable[[str], None]
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
+SATURATION = "decay under saturation"
 
 
 def certify(
@@ -99,8 +100,9 @@ def certify(
     if result.verdict is Verdict.PROVED:
         bounds, attempts = _bounds(system, allowance, progress)
         settled, more = _settling(system, allowance, progress)
-        statements += bounds + settled
-        result = replace(result, attempts=(*result.attempts, *attempts, *more))
+        held, last = _saturated(system, allowance, progress)
+        statements += bounds + settled + held
+        result = replace(result, attempts=(*result.attempts, *attempts, *more, *last))
     if merged is not system or len(blocks) > 1:
         _check_again(statements, system)
     for statement in statements:
@@ -170,6 +172,21 @@ def _settling(
     start = perf_counter()
     evidence, outcome = _take(partial(search_constant_force, system, allowance), system)
     attempt = Attempt(CONSTANT_FORCE, outcome, perf_counter() - start)
+    return () if evidence is None else (evidence,), (attempt,)
+
+
+def _saturated(
+    system: SwitchedSystem, allowance: Allowance, progress: Progress
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Show from where motions decay although signals saturate, where the system has some."""
+    if system.saturation is None:
+        return (), ()
+    from nrs_design.search.saturated_ellipsoid import search_saturated
+
+    progress(SATURATION)
+    start = perf_counter()
+    evidence, outcome = _take(partial(search_saturated, system, allowance), system)
+    attempt = Attempt(SATURATION, outcome, perf_counter() - start)
     return () if evidence is None else (evidence,), (attempt,)
 
 

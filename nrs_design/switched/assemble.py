@@ -176,6 +176,10 @@ def assemble(
             system = couple_axes(system, coupling)
         if spec.goals is not None and spec.goals.constant_force is not None:
             system = with_constant_force(system)
+        if spec.goals is not None and spec.goals.initial_force is not None:
+            from nrs_design.switched.saturation import with_saturation
+
+            system = with_saturation(system, spec, plant, loop, design)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     period = None if spec.sampling is None else spec.sampling.outer

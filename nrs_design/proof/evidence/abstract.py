@@ -42,6 +42,7 @@ class Shows(StrEnum):
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
+    REGION = "decay from a region under saturation"
 
 
 # That no common quadratic function exists is said of matrices, whatever happens to contact.
@@ -49,12 +50,14 @@ _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (WHILE_KEPT,),
     Shows.BOUND: (WHILE_KEPT,),
     Shows.CONVERGENCE: (WHILE_KEPT,),
+    Shows.REGION: (WHILE_KEPT,),
     Shows.INSTABILITY: (GROWN_IN_CONTACT,),
 }
 _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (NOT_ROUNDED,),
     Shows.BOUND: (NOT_ROUNDED,),
     Shows.CONVERGENCE: (NOT_ROUNDED,),
+    Shows.REGION: (NOT_ROUNDED,),
     Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
 
@@ -128,6 +131,11 @@ class AbstractEvidence(ABC):
     def names_unstable_mode(self) -> bool:
         """Whether it shows that some mode is not stable by itself."""
         return False
+
+    @property
+    def start_size(self) -> Fraction | None:
+        """Size of the start of a saturating system that motions decay from, if it shows one."""
+        return None
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
@@ -245,7 +253,7 @@ class AbstractEvidence(ABC):
         return self._is_good() and not self.covers_lost_contact
 
     def _is_good(self) -> bool:
-        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE)
+        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:

@@ -14,7 +14,7 @@ from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.release import Panel, draw_release
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
-from nrs_design.simulation.worst_case import DEFLECTION, output_values
+from nrs_design.simulation.worst_outputs import DEFLECTION, output_values
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

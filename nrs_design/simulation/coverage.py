@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.build_scenario import by_logic
+from nrs_design.simulation.build_control import by_logic
 from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, Run
 from nrs_design.simulation.scenario import Errors, Scenario
 from nrs_design.spec import InteractionDesignSpec

@@ -60,7 +60,7 @@ def _usual(spec: InteractionDesignSpec, first: str) -> Control:
     controllers = spec.controllers.items()
     if {"insertion", "withdrawal"} <= spec.controllers.keys():
         return by_sign("insertion", "withdrawal")
-    position = next((n for n, c in controllers if c.type == "position"), None)
+    position = next((n for n, c in controllers if c.holds_position), None)
     force = next((n for n, c in controllers if c.holds_force), None)
     if position and force:
         return by_threshold(position, force, spec.limits.torque.si)

@@ -111,6 +111,26 @@ def certify(
     return replace(result, system=system, statements=statements, rate_limit=limit)
 
 
+def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> bool:
+    """Tell whether a mode, or a round of two, grows: of those that floating point suspects.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes and their switching.
+    limits : Limits, optional
+        Time and memory for the exact tests.
+    """
+    from nrs_design.search.rounds import search_rounds
+    from nrs_design.search.unstable_mode import examine_suspicious_modes
+
+    limits = limits or Limits()
+    with floats_in_silence():
+        family = Family.of(system, Allowance(limits.budget, limits.memory))
+    search = examine_suspicious_modes if system.clock is None else search_rounds
+    return _take(partial(search, family), system)[0] is not None
+
+
 def _bounds(
     system: SwitchedSystem, allowance: Allowance, progress: Progress
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:

@@ -327,7 +327,9 @@ def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
         f"eigenvalues of M(q) in [{low}, {high}] kg*m^2",
     )
     if coupling.coriolis is None:
-        yield kinds.LINKS.says("Coriolis and centrifugal torques are left out.", "speeds near zero")
+        yield kinds.JOINT_SPEED.says(
+            "Coriolis and centrifugal torques are left out.", "speeds near zero"
+        )
     else:
         also = ""
         if disturbed:
@@ -335,7 +337,7 @@ def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
                 ", nor that the disturbances leave it there: a bound, also that on the velocity, "
                 "holds as long as they do"
             )
-        yield kinds.LINKS.says(
+        yield kinds.JOINT_SPEED.says(
             "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
             f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
             f"({_shortly(coupling)}), and the speed stays below {coupling.speed}, which is not "

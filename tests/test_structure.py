@@ -194,6 +194,7 @@ def test_a_report_assembles_and_searches_nothing():
     assert {name for name in read if floor(name) in ("switched", "search")} == {
         "nrs_design.search.certification",
         "nrs_design.search.gradient_settings",
+        "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
         "nrs_design.switched.assumption",
         "nrs_design.switched.assumption_kinds",

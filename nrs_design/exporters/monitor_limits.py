@@ -89,7 +89,8 @@ def limits_of(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
     window = min(max(round(WINDOW / period), FEWEST), MOST)
     stiffness = {name: _ranges(spec, name) for name in modes}
     allowed = bounds.transitions
-    command, speed = spec.limits.command, spec.coupling and spec.coupling.speed
+    command = spec.limits.command
+    speed = None if spec.coupling is None else spec.coupling.speed
     return MonitorLimits(
         period=to_float32(period),
         torque=float32_not_above(spec.limits.torque.not_above),

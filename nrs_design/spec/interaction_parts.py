@@ -170,8 +170,8 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def offset(self) -> Offset:
         """Where the offset of the force controllers is taken from; they have one in common."""
-        offsets = (c.offset for c in self.controllers.values() if c.type == "force")
-        return next(offsets, "none")
+        offsets = (controller.own_offset for controller in self.controllers.values())
+        return next((offset for offset in offsets if offset is not None), "none")
 
     @property
     def takes_motor_ranges(self) -> bool:

@@ -75,7 +75,7 @@ def _controllers(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
         if not controller.sampled:
             remedy = "use impedance, position and force controllers, or leave sampling out"
             yield (*at, "type"), f"{name} is a {controller.type} controller", remedy
-        if spec.offset != "none" and "offset" in type(controller).model_fields:
+        if spec.offset != "none" and controller.own_offset is not None:
             what = f"the offset of {name}, which leaves a mode at rest anywhere"
             yield (*at, "offset"), what, "use `offset: none`, or leave sampling out"
         if commanded and controller.commands == "position":

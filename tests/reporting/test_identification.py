@@ -9,7 +9,8 @@ from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.datasets import read_actuator, read_tissue
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.reporting import render_html, render_pdf, render_png
-from nrs_design.reporting.identification import actuator_report, tissue_report
+from nrs_design.reporting.actuator import actuator_report
+from nrs_design.reporting.tissue import tissue_report
 from tests.identification.support import MOTOR
 from tests.support import ROOT
 

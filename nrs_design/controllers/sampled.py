@@ -27,12 +27,12 @@ less. The position is taken at the sample, the force sample may be older.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.controllers.float32 import PRECISION, to_float32
 from nrs_design.errors import DesignError
+from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
     from nrs_design.controllers.laws.motion import ProportionalDerivative

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.sampled import rounding_share
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Channel, Mode, Output, Rounding
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import chain, product
@@ -22,6 +21,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import Clock, Contact, Coupling, SwitchedSystem, Time
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec

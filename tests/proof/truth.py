@@ -274,10 +274,8 @@ def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bo
                 before = [[share * v for v in s] for share, s in zip(q[n:], found, strict=True)]
                 argument = [sum(column) for column in zip(q[:n], *before, strict=True)]
                 found.append(H[i] if i in held else argument)
-            return [
-                times(s.columns[k].fractions(), [row])
-                for s, row in zip(signals, found, strict=True)
-            ]
+            acting = (signal.columns[k].fractions() for signal in signals)
+            return [times(c, [row]) for c, row in zip(acting, found, strict=True)]
 
         alone = combine((1, mode.A.fractions()), *((-1, part) for part in given(())))
         for mask in range(2 ** len(signals)):

@@ -72,8 +72,8 @@ def check_mixture(
     for contact, environment in environments.items():
         if environment.remembers:
             raise fault(
-                f"{contact!r}, which is {environment.model}, is not modelled for impedance "
-                "controllers beside others",
+                f"{contact!r}, which is {environment.model}, is not modelled beside idle_states: "
+                "where controllers have states that others do not",
                 "use elastic or kelvin-voigt environments, or one kind of controller",
                 "environments",
                 contact,

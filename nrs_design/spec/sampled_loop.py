@@ -47,7 +47,7 @@ def _not_modelled(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     rounds = spec.disturbances is not None and spec.disturbances.largest_angle is not None
     if rounds and spec.idle_states is not None:
         # The position is added to the reference at every sample, which rounds an angle once more.
-        what = "the rounding of angles under impedance controllers beside others"
+        what = "the rounding of angles beside idle_states"
         yield ("disturbances", "largest_angle"), what, "leave largest_angle out"
     # Rules about controllers in one contact each are refused as a whole elsewhere.
     times = () if spec.switching.names_contacts else spec.switching.dwell_times()

@@ -221,7 +221,7 @@ def check_hands(spec: AbstractInteractionSpec) -> None:
     for present, key, what in beside:
         if present:
             raise fault(
-                f"{hands[0]!r} is a hand with a mass, and {what} is not modelled with it",
+                f"{hands[0]!r} is a hand with a mass, which is not modelled beside {what}",
                 f"remove {key}, or use a kelvin-voigt environment, which has no mass",
                 key,
             )

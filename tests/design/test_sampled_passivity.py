@@ -132,6 +132,7 @@ def _work(law, T, age, force, samples, settled=2000):
     return work
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=15)
 @given(
     Mt=st.fractions(0, 3, max_denominator=100),

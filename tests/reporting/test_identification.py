@@ -65,6 +65,7 @@ def test_same_bytes_and_unique_ids(actuator):
     assert len(ids) == len(set(ids))
 
 
+@pytest.mark.slow
 def test_names_of_records_are_text(tmp_path):
     """Not formulas, not markup, not marks that turn the direction of writing."""
     names = ["a$\\frac{$", 'b<i>&"$x$', "c\u202efdp", "a%\\frac{%", "שלום 中"]

@@ -92,6 +92,7 @@ def between(proved, refuted):
 
 
 class TestBox:
+    @pytest.mark.slow
     def test_published_limit_of_the_oscillator(self):
         """Zelentsovsky 1994: 6.98513; by quadratic functions alone 1 + 2 sqrt(2)."""
         box = find_margin(oscillator, quick)
@@ -191,6 +192,7 @@ class TestBox:
 
 
 class TestDwell:
+    @pytest.mark.slow
     def test_published_bounds(self):
         """Geromel and Colaneri 2006: proofs above 2.75084 s, refuted up to 2.70775 s."""
         dwell = find_shortest_dwell(GEROMEL_COLANERI, quick)
@@ -292,6 +294,7 @@ class TestOfSpecs:
         assert told[0] == "box scaled by 2"
         assert holds(box.proof.system, box.proof.evidence)
 
+    @pytest.mark.slow
     def test_box_that_is_too_large_is_shrunk(self):
         """Ranges that are refuted as declared still have a smaller box with a proof."""
         path = ROOT / "docs" / "examples" / "wide-range.nrs.yaml"

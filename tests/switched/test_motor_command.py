@@ -87,6 +87,7 @@ def test_where_it_is_not_asked_for(tmp_path):
         assert "does not saturate" not in " ".join(system.assumptions)
 
 
+@pytest.mark.slow
 def test_runs_stay_below_the_bound_and_come_near(tmp_path):
     """In single precision: the command that moves the motor most, and 500 at random."""
     loaded = spec_of(tmp_path, COMMANDED)

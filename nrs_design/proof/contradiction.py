@@ -21,6 +21,7 @@ def find_contradiction(system: SwitchedSystem) -> str | None:
         or _find_odd_rounding(system)
         or _find_odd_coupling(system)
         or _find_odd_clock(system)
+        or _find_odd_saturation(system)
     )
 
 
@@ -137,6 +138,15 @@ def _find_odd_clock(system: SwitchedSystem) -> str | None:
     if not all(first & group and group - first for group in groups):
         return "a step of a round has no mode, in contact or free"
     return None
+
+
+def _find_odd_saturation(system: SwitchedSystem) -> str | None:
+    if system.saturation is None:
+        return None
+    if not system.is_uniform:
+        return "signals saturate, but the modes are not of one size"
+    free = () if system.contact is None else system.contact.free
+    return system.saturation.find_oddity(system.order, len(system.modes), len(free))
 
 
 def _find_odd_parts(system: SwitchedSystem, item: Rounding | Coupling, width: int) -> str | None:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
+
+if TYPE_CHECKING:
+    from nrs_design.proof.saturation import Saturation
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +51,8 @@ class SwitchedSystem:
         How many of them there are at most, where a statement depends on it, as bounds do.
     clock : Clock or None
         Which modes take turns, in discrete time; None lets all of them be in force at every step.
+    saturation : Saturation or None
+        Signals that are cut off at limits; only statements that say so are about that.
     """
 
     name: str
@@ -63,6 +69,7 @@ class SwitchedSystem:
     couplings: tuple[Coupling, ...] = ()
     clock: Clock | None = None
     axes: int | None = None
+    saturation: Saturation | None = None
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching

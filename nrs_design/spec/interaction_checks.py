@@ -14,6 +14,7 @@ from nrs_design.spec.dwell import DwellObstacle
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.goals import check_applicable
+from nrs_design.spec.initial_force import check_initial_force
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 from nrs_design.spec.mixture import check_mixture, check_offsets
 from nrs_design.spec.mode_logic import check_kept
@@ -308,6 +309,7 @@ _CHECKS: tuple[Callable[[AbstractInteractionSpec], None], ...] = (
     _check_motor,
     check_sampled,
     check_constant_force,
+    check_initial_force,
     _check_coupling,
     _check_memories,
     check_hands,

@@ -63,9 +63,6 @@ def _two_periods(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     if others:
         what = f"an outer_period beside {others[0]}, which is no impedance controller"
         yield at, what, "leave outer_period out"
-    if spec.disturbances is not None:
-        what = "disturbances beside an outer_period"
-        yield ("disturbances",), what, "leave disturbances or outer_period out"
     if not spec.switching.is_arbitrary:
         what = "rules of switching beside an outer_period"
         yield ("switching",), what, "use `switching: arbitrary`, which allows for more"

@@ -9,11 +9,11 @@ The weights are products of such shares: not negative, with sum one, the same fo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product, starmap
 
 from nrs_design.errors import InternalError
+from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]

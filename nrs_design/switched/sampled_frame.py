@@ -14,7 +14,6 @@ that is held stands after e_before.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
@@ -29,6 +28,7 @@ from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.controllers.step_law import numbers_of
 from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
+from nrs_design.proof.noun import dataclass
 from nrs_design.switched.sampled_law import (
     ERROR,
     IDLE_REFERENCE,
@@ -274,9 +274,12 @@ class Frame:
         return SampledStep.of(self.listed, law, numbers, given, at.rounded, shares)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class _Sample:
     """What a sample makes of a state, before the motor moves; and how large roundings are."""
+
+    # Each is made once.
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     frame: Frame
     reference: LinearForm

@@ -31,7 +31,7 @@ def test_axes_that_act_on_each_other_are_refuted_beyond_what_a_spec_can_declare(
 
 @pytest.mark.parametrize(("delay", "expected"), [(0, False), (3, True)])
 def test_two_periods_are_refuted_by_a_round(tmp_path, delay, expected):
-    """No mode of theirs is stable by itself, since the command is held."""
+    """No mode of theirs is stable by itself, as the command is held: rounds decide."""
     path = tmp_path / "round.nrs.yaml"
     sampling = "sampling: {period: 2 ms, outer_period: 10 ms, delay: 0}\n"
     path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + sampling, encoding="utf-8")

@@ -42,6 +42,7 @@ class Shows(StrEnum):
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
+    REGION = "decay from a region under saturation"
 
 
 # That no common quadratic function exists is said of matrices, whatever happens to contact.
@@ -49,12 +50,14 @@ _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (WHILE_KEPT,),
     Shows.BOUND: (WHILE_KEPT,),
     Shows.CONVERGENCE: (WHILE_KEPT,),
+    Shows.REGION: (WHILE_KEPT,),
     Shows.INSTABILITY: (GROWN_IN_CONTACT,),
 }
 _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (NOT_ROUNDED,),
     Shows.BOUND: (NOT_ROUNDED,),
     Shows.CONVERGENCE: (NOT_ROUNDED,),
+    Shows.REGION: (NOT_ROUNDED,),
     Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
 
@@ -129,6 +132,11 @@ class AbstractEvidence(ABC):
         """Whether it shows that some mode is not stable by itself."""
         return False
 
+    @property
+    def start_size(self) -> Fraction | None:
+        """Size of the start of a saturating system that motions decay from, if it shows one."""
+        return None
+
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
         return None
@@ -200,10 +208,20 @@ class AbstractEvidence(ABC):
         """
         return self
 
-    def find_fault(self, system: SwitchedSystem) -> str | None:
-        """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
+    def find_fault(
+        self, system: SwitchedSystem, made: list[IntegerMatrix] | None = None
+    ) -> str | None:
+        """TRUSTED: say why the evidence does not hold for the system, or None if it holds.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            That it is about.
+        made : list, optional
+            Every form that is decided is put into it, for a second opinion.
+        """
         unfit = self.find_unfit(system)
-        return find_indefinite(self.forms(system)) if unfit is None else unfit
+        return find_indefinite(self.forms(system), made) if unfit is None else unfit
 
     def find_unfit(self, system: SwitchedSystem) -> str | None:
         """TRUSTED: say what, other than a form, keeps the evidence from holding, or None."""
@@ -235,7 +253,7 @@ class AbstractEvidence(ABC):
         return self._is_good() and not self.covers_lost_contact
 
     def _is_good(self) -> bool:
-        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE)
+        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:
@@ -244,9 +262,13 @@ def _in_seconds(rate: Fraction, step: Fraction) -> str:
     return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
 
 
-def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:
+def find_indefinite(
+    forms: Iterable[tuple[str, IntegerMatrix]], made: list[IntegerMatrix] | None = None
+) -> str | None:
     """TRUSTED: name the failure of the first form that is not positive definite, or None."""
     for failure, form in forms:
+        if made is not None:
+            made.append(form)
         if is_too_large(form):
             return f"{failure}, or it does but its numbers are too large to check"
         if not is_symmetric(form) or not is_positive_definite(form):

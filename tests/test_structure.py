@@ -27,6 +27,7 @@ KNOWN_CYCLES = {
 STAGES = {"models", "design", "switched", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
 DOORS = {
+    "nrs_design.models.contact",
     "nrs_design.models.robot",
     "nrs_design.search.certification",
     "nrs_design.search.gradient_settings",

@@ -33,13 +33,14 @@ def correction(
     Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
     """
     from nrs_design.models.robot import (
+        DEPTH_SINES,
         TABLE_3_5,
         correct_separately,
         correction_coefficients,
         reachable_poses,
         thesis_grid,
         thesis_tilts,
-        tilt_table,
+        tilt_tables,
         to_csv,
     )
     from nrs_design.output import TABLE, check_place, write_output
@@ -49,14 +50,14 @@ def correction(
         check_place(table, TABLE)
     loaded, _, robot = run_robot(spec)
     rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]
-    tilts = tilt_table(robot, thesis_tilts())
+    groups = (DEPTH_SINES,) if figures is None else (DEPTH_SINES, TABLE_3_5)
+    tilts, *with_angles = tilt_tables(robot, thesis_tilts(), *groups)
     apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
     files: list[str] = []
     if figures is not None:
         from nrs_design.reporting.figures.robot import draw_correction, draw_inertia_errors
 
-        with_angles = tilt_table(robot, thesis_tilts(), TABLE_3_5)
-        drawn = draw_correction(tilts, with_angles)
+        drawn = draw_correction(tilts, *with_angles)
         named = {"correction": drawn, "inertia-errors": draw_inertia_errors(apart)}
         files += write_figures(figures, named, quiet=quiet)
     if table is not None:

@@ -192,5 +192,5 @@ class LimitsSpec(SpecModel):
         description="largest command that the motor's driver takes, such as rpm, for the error "
         "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
         "five times as far as the joint, and the gains are for the joint, a fifth of the "
-        "driver's own; exported code saturates there, and bounds on the command are held against it",
+        "driver's own; exported code saturates there, and bounds on the command are held to it",
     )

@@ -39,7 +39,7 @@ def worst_case(
     """
     from nrs_design.output import check_place
     from nrs_design.pipeline.worst_case import run_worst_case
-    from nrs_design.simulation.worst_case import DEFLECTION
+    from nrs_design.simulation.worst_outputs import DEFLECTION
 
     names = ("force", "velocity", DEFLECTION)
     for path, beginning in (item for name in names for item in _places(designed, out, name)):

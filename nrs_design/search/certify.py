@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
@@ -15,6 +15,7 @@ from nrs_design.certificates.certificate import (
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
@@ -35,6 +36,8 @@ Progress = Callable[[str], None]
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
+SATURATION = "decay under saturation"
+NOT_IN_TURNS = "not looked for: where the loop has two periods, decay is proved, and no bound"
 
 
 def certify(
@@ -99,8 +102,9 @@ def certify(
     if result.verdict is Verdict.PROVED:
         bounds, attempts = _bounds(system, allowance, progress)
         settled, more = _settling(system, allowance, progress)
-        statements += bounds + settled
-        result = replace(result, attempts=(*result.attempts, *attempts, *more))
+        held, last = _saturated(system, allowance, progress)
+        statements += bounds + settled + held
+        result = replace(result, attempts=(*result.attempts, *attempts, *more, *last))
     if merged is not system or len(blocks) > 1:
         _check_again(statements, system)
     for statement in statements:
@@ -109,6 +113,26 @@ def certify(
     with floats_in_silence():
         limit = rate_limit(system)
     return replace(result, system=system, statements=statements, rate_limit=limit)
+
+
+def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> bool:
+    """Tell whether a mode, or a round of two, grows: of those that floating point suspects.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes and their switching.
+    limits : Limits, optional
+        Time and memory for the exact tests.
+    """
+    from nrs_design.search.rounds import search_rounds
+    from nrs_design.search.unstable_mode import examine_suspicious_modes
+
+    limits = limits or Limits()
+    with floats_in_silence():
+        family = Family.of(system, Allowance(limits.budget, limits.memory))
+    search = examine_suspicious_modes if system.clock is None else search_rounds
+    return _take(partial(search, family), system)[0] is not None
 
 
 def _bounds(
@@ -121,13 +145,14 @@ def _bounds(
         pairs += [(channels, output) for channels in alone for output in system.outputs[:1]]
     if not pairs:
         return (), ()
+    if system.clock is not None:
+        return (), tuple(Attempt(_bound_name(*pair), NOT_IN_TURNS, 0.0) for pair in pairs)
     from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 
     found: list[AbstractEvidence] = []
     attempts: list[Attempt] = []
     for count, (channels, output) in enumerate(pairs):
-        under = " and ".join(channel.name for channel in channels)
-        name, start = f"bound on {output.name} under {under}", perf_counter()
+        name, start = _bound_name(channels, output), perf_counter()
         progress(name)
         own = allowance.part(1 / (len(pairs) - count))
         search = partial(search_ellipsoid, system, channels, output, own)
@@ -136,6 +161,10 @@ def _bounds(
         if evidence is not None:
             found.append(evidence)
     return tuple(found), tuple(attempts)
+
+
+def _bound_name(channels: Sequence[Channel], output: Output) -> str:
+    return f"bound on {output.name} under {' and '.join(channel.name for channel in channels)}"
 
 
 def _settling(
@@ -150,6 +179,21 @@ def _settling(
     start = perf_counter()
     evidence, outcome = _take(partial(search_constant_force, system, allowance), system)
     attempt = Attempt(CONSTANT_FORCE, outcome, perf_counter() - start)
+    return () if evidence is None else (evidence,), (attempt,)
+
+
+def _saturated(
+    system: SwitchedSystem, allowance: Allowance, progress: Progress
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Show from where motions decay although signals saturate, where the system has some."""
+    if system.saturation is None:
+        return (), ()
+    from nrs_design.search.saturated_ellipsoid import search_saturated
+
+    progress(SATURATION)
+    start = perf_counter()
+    evidence, outcome = _take(partial(search_saturated, system, allowance), system)
+    attempt = Attempt(SATURATION, outcome, perf_counter() - start)
     return () if evidence is None else (evidence,), (attempt,)
 
 

@@ -186,6 +186,12 @@ NOT_QUANTIZED = AssumptionKind(
     "Small motions may go on; behind a limit the loop is open.",
     "hold the axis in contact and log the command: no lasting motion, and below the limit",
 )
+LIMITED = AssumptionKind(
+    "what saturates, and where",
+    "the limits of the spec",
+    "Motions that begin within the stated region may leave it.",
+    "log velocity command, motor command and speed: cut off at the limits of the spec or beyond",
+)
 PERIOD = AssumptionKind(
     "no jitter",
     "the period of the spec, exactly",

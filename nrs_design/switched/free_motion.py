@@ -12,8 +12,9 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, Mode
+from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import Rows, velocity_mode
@@ -105,7 +106,8 @@ def _not_losable(which: str) -> AssemblyError:
     return AssemblyError(
         "loss of contact is modelled for impedance controllers on elastic and damped environments "
         f"in deflection coordinates{which}",
-        remedy="use `contact: kept`",
+        remedy="use `contact: kept`; for position and force controllers on elastic environments, "
+        "or prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`",
         at=("contact",),
     )
 

@@ -511,7 +511,7 @@ def test_idle_states() -> None:
         ((FREE,), "impedance", "it is not said what the states of impedance controllers do"),
         ((IDLE,), "idle_states", "idle_states without impedance controllers beside"),
         ((FREE, IDLE, ("switching:", "coordinates: force\nswitching:")), "force", "do not apply"),
-        ((FREE, IDLE, (SOFT, BOLTZMANN)), "boltzmann", "is not modelled for impedance controllers"),
+        ((FREE, IDLE, (SOFT, BOLTZMANN)), "boltzmann", "is not modelled beside idle_states"),
         ((FREE, IDLE, ("20 1/s", "20 s")), "20 s", "one over it"),
         ((FREE, IDLE, ("20 1/s", "-20 1/s")), "-20 1/s", "zero or positive"),
         ((FREE, IDLE, ("decay: 20 1/s", "reset: true")), "idle_states", "decay` is missing"),

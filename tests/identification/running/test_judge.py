@@ -267,6 +267,7 @@ def test_wrong_logs(tmp_path, text, message):
     assert caught.value.remedy
 
 
+@pytest.mark.slow
 def test_a_delay_that_the_record_does_not_tell(tmp_path):
     """One slow swing fits any delay: no number is shown."""
     t = 0.001 * np.arange(8000)

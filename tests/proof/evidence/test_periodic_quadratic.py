@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseQuadratic, PeriodicQuadratic, Shows
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Clock, Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.evidence.test_conewise_quadratic import ESCAPES, LAGGING, growth, losable
 from tests.proof.systems import (
     bouncing_in_steps,
@@ -19,6 +22,7 @@ from tests.proof.systems import (
     family,
     genuine,
     matrix,
+    pushed,
 )
 from tests.proof.truth import holds
 from tests.support import is_definite_by_ldl
@@ -198,6 +202,21 @@ TURNS = PeriodicQuadratic(
 )
 def test_misfits(changes, fault):
     assert fault in replace(TURNS, **changes).find_fault(bouncing_in_turns(rounded=True))
+
+
+def test_what_disturbs_is_not_taken_for_a_rounding():
+    """Rows of roundings go over the state and what disturbs it, which decay says nothing of."""
+    system = bouncing_in_turns(rounded=True)
+    (item,) = system.roundings
+    wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
+    disturbed = pushed(replace(system, roundings=(replace(item, rows=wide),)))
+    assert disturbed.find_contradiction() is None
+    evidence = replace(TURNS, roundings=((1,), (1,)))
+    assert [*evidence.forms(disturbed)] == [*evidence.forms(system)]
+    # A rounding that grows with the state is still held against.
+    large = tuple(matrix([[100, *row.fractions()[0][1:], 7]]) for row in item.rows)
+    worse = pushed(replace(system, roundings=(replace(item, rows=large),)))
+    assert evidence.find_fault(worse) is not None
 
 
 def test_a_multiplier_may_be_zero():

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Matrices = NDArray[np.float64]
 

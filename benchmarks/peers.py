@@ -63,7 +63,7 @@ def gradient_ends_within(matrices: Matrices, seconds: float) -> bool:
 
 
 def _iterate(matrices: Matrices) -> None:
-    from nrs_design.proof.system import Time
+    from nrs_design.proof.mode import Time
     from nrs_design.search.gradient import iterate_gradient
     from nrs_design.search.gradient_settings import Gradient
 

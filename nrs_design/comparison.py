@@ -12,7 +12,8 @@ from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import Progress, run_analysis, run_certification
 from nrs_design.proof.evidence.fields import rate_text
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import read_spec
 from nrs_design.spec.document import Data, to_data

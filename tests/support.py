@@ -22,7 +22,8 @@ from nrs_design.cli import main
 from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
 from nrs_design.proof.evidence.function import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import LoadedSpec, parse_exact, read_spec
 from tests.proof import truth
 

@@ -19,7 +19,7 @@ from nrs_design.given.system import name_modes, spec_of_matrices
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode
+from nrs_design.proof.mode import Mode
 
 if TYPE_CHECKING:
     from nrs_design.api.decision import Decision

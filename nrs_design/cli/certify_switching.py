@@ -237,7 +237,7 @@ def _print(result: Result, *, verbose: bool) -> None:
     everything = verbose or certification.evidence is None
     for attempt in certification.attempts:
         # What was looked for and is missing must not look like something that nobody wanted.
-        sought = attempt.step.startswith(("bound on ", "constant force"))
+        sought = attempt.step.startswith(("bound on ", "constant force", "decay under"))
         missing = sought and attempt.outcome != "found"
         if everything or missing:
             say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")

@@ -90,7 +90,7 @@ def _document(
 
 def _show(found: LyapunovCheck, time: str, modes: list[str], *, asked: bool) -> None:
     from nrs_design.proof.evidence.fields import rate_words
-    from nrs_design.proof.system import Time
+    from nrs_design.proof.mode import Time
 
     law = "x' = A x" if time == "continuous" else "x+ = A x"
     best = None if found.rate is None else rate_words(found.rate, Time(time))

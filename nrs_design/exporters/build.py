@@ -28,7 +28,7 @@ from nrs_design.exporters.record import (
     SpecReference,
 )
 from nrs_design.proof.evidence.fields import rate_text
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec, LoadedSpec
 from nrs_design.spec.controllers import Offset

@@ -22,7 +22,8 @@ from nrs_design.exporters.record import ExportRecord, Gain
 from nrs_design.output import MAT
 from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 
 # The text at the beginning of a MAT-file; SciPy writes the time and the system into it.
 _TEXT_BYTES = 116

@@ -12,7 +12,8 @@ import numpy as np
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.pipeline import Designed
 from nrs_design.plotting import load_matplotlib
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Rows = Sequence[Sequence[Fraction]]
 

@@ -33,10 +33,12 @@ from nrs_design.proof.evidence.unstable_mode import (
     is_stable,
     worst_eigenvalue,
 )
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peaks import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
+from nrs_design.spec.quantity import Quantity
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -201,7 +203,7 @@ class Examiner:
                 yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
-        """Yield NRS108 for torque, rate, delay and rest that the spec wants to be proved."""
+        """Yield NRS108 for torque, rate, delay, rest and start that the spec wants to be proved."""
         spec = self.loaded.spec
         if spec.kind != "interaction-design" or spec.goals is None:
             return
@@ -240,6 +242,23 @@ class Examiner:
             said = "the force is proved to settle at" if met else "not proved: the force settles at"
             message = f"{said} every constant Fd that pushes in, at every constant stiffness"
             yield self._certified("constant_force", message, met=met)
+        if goals.initial_force is not None:
+            yield self._initial_force(goals.initial_force, certificate)
+
+    def _initial_force(self, wanted: Quantity | str, certificate: Certificate | None) -> Obligation:
+        statements = () if certificate is None else certificate.statements
+        level = next((size for s in statements if (size := s.start_size) is not None), None)
+        said = "no force was proved from which motions decay although signals saturate"
+        if level is not None:
+            said = (
+                "from rest with a contact force up to "
+                f"{rounded_down(level, 'N*m')} motions are proved to decay although signals "
+                "saturate"
+            )
+        if isinstance(wanted, str):
+            return self._certified("initial_force", said, met=level is not None)
+        met = level is not None and level >= wanted.exact
+        return self._certified("initial_force", f"{said}; {wanted.text} is wanted", met=met)
 
     def _certified(self, key: str, message: str, *, met: bool) -> Obligation:
         status = Status.PROVED if met else Status.INCONCLUSIVE

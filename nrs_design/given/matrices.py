@@ -11,7 +11,7 @@ from typing import Any
 from nrs_design.errors import SpecError
 from nrs_design.proof.exact import common_denominator
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import parse_exact
 

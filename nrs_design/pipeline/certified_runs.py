@@ -100,7 +100,7 @@ def hold_rate(
     """
     from nrs_design.proof.bounds import lower_float, upper_float
     from nrs_design.proof.evidence.abstract import Shows
-    from nrs_design.proof.system import Time
+    from nrs_design.proof.mode import Time
     from nrs_design.simulation.coverage import end_of_command, undecayed
 
     system, one = certificate.system, simulated

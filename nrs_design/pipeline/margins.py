@@ -12,8 +12,9 @@ from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.pipeline.certification import Result, assemble_spec, limits_of
 from nrs_design.pipeline.design import Designed, Progress, placed, silent
 from nrs_design.proof.bounds import nearly
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec import LoadedSpec
 

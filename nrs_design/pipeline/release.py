@@ -10,7 +10,8 @@ from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.touched import FREE
 from nrs_design.switched.joint import Joint
 

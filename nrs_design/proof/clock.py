@@ -7,7 +7,8 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import compress
 
-from nrs_design.proof.system import Clock, SwitchedSystem
+from nrs_design.proof.switching import Clock
+from nrs_design.proof.system import SwitchedSystem
 
 
 def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
@@ -48,6 +49,7 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
         contact=contact,
         roundings=tuple(roundings),
         channels=tuple(channels),
+        saturation=None,
         clock=None,
     )
 

@@ -7,7 +7,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Stay, SwitchedSystem, Switching
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.switching import Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 
 
 def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:

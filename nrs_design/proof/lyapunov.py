@@ -23,8 +23,8 @@ from nrs_design.proof.exact import (
     stein_decrease,
 )
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Mode, Time
 
 # A rate is sharpened to one part in two to this power of the range that it may lie in.
 RATE_BITS = 20

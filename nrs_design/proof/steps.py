@@ -32,10 +32,11 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 
+from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.exact import IntegerMatrix, add, congruence, transpose
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Coupling, Rounding, SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
     read_integer,
@@ -14,23 +16,13 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.exact import bit_length
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import (
-    ARBITRARY,
-    Channel,
-    Clock,
-    Contact,
-    Coupling,
-    FixedParameter,
-    Mode,
-    Output,
-    Reset,
-    Rounding,
-    Stay,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Clock, FixedParameter, Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
+
+if TYPE_CHECKING:
+    from nrs_design.proof.saturation import Saturation
 
 # The word for switching without rules.
 WITHOUT_RULES = "arbitrary"
@@ -60,6 +52,7 @@ def system_fields(system: SwitchedSystem) -> Fields:
         **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
         **({} if system.clock is None else {"clock": _clock_fields(system.clock)}),
         **({} if system.axes is None else {"axes": system.axes}),
+        **_saturation_fields(system),
         "assumptions": list(system.assumptions),
     }
 
@@ -117,6 +110,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         couplings=tuple(Coupling(*part) for part in _read_parts(fields, "couplings")),
         clock=_read_clock(fields["clock"]) if "clock" in fields else None,
         axes=read_integer(fields["axes"]) if "axes" in fields else None,
+        saturation=_read_saturation(fields["saturation"]) if "saturation" in fields else None,
     )
 
 
@@ -191,6 +185,52 @@ def _read_parts(
     for item in _read_list(fields.get(key, [])):
         columns = tuple(_read_matrix(column) for column in _read_list(item["columns"]))
         yield read_text(item["name"]), columns, tuple(map(_read_matrix, _read_list(item["rows"])))
+
+
+def _saturation_fields(system: SwitchedSystem) -> Fields:
+    if system.saturation is None:
+        return {}
+    signals = [
+        {
+            "name": signal.name,
+            "unit": signal.unit,
+            "limit": str(signal.limit),
+            "columns": [_matrix_fields(column) for column in signal.columns],
+            "rows": [_matrix_fields(row) for row in signal.rows],
+        }
+        for signal in system.saturation.signals
+    ]
+    start = system.saturation.start
+    begun = {
+        "name": start.name,
+        "unit": start.unit,
+        "states": [_matrix_fields(state) for state in start.states],
+        "wanted": _text(start.wanted),
+    }
+    return {"saturation": {"signals": signals, "start": begun}}
+
+
+def _read_saturation(fields: Mapping[str, Any]) -> Saturation:
+    from nrs_design.proof.saturation import CutOff, Saturation, Start
+
+    signals = (
+        CutOff(
+            read_text(item["name"]),
+            read_text(item["unit"]),
+            read_ratio(item["limit"]),
+            tuple(_read_matrix(column) for column in _read_list(item["columns"])),
+            tuple(_read_matrix(row) for row in _read_list(item["rows"])),
+        )
+        for item in _read_list(fields["signals"])
+    )
+    begun = fields["start"]
+    start = Start(
+        read_text(begun["name"]),
+        read_text(begun["unit"]),
+        tuple(_read_matrix(state) for state in _read_list(begun["states"])),
+        None if begun["wanted"] is None else read_ratio(begun["wanted"]),
+    )
+    return Saturation(tuple(signals), start)
 
 
 def _contact_fields(contact: Contact) -> Fields:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.spec import RobotSpec
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.models.contact import Elastic
 from nrs_design.models.motion_loop import realize
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reproduction import thesis
 from nrs_design.switched.modes import (
     Rows,

@@ -13,7 +13,7 @@ from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, Spec
 from nrs_design.gating.rules import ROS_AXIS, ROS_PARAMETERS
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
 from nrs_design.ros2.law import TYPE, AdmittanceLaw, Axis, is_admittance, read_law
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 
 SWEEPS = 64
 # Larger Lyapunov equations are solved by Schur decompositions, not as one linear system, for which

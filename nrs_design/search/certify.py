@@ -15,10 +15,11 @@ from nrs_design.certificates.certificate import (
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Channel, Output, SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.certification import Attempt, Certification, Limits
@@ -35,6 +36,7 @@ Progress = Callable[[str], None]
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
+SATURATION = "decay under saturation"
 NOT_IN_TURNS = "not looked for: where the loop has two periods, decay is proved, and no bound"
 
 
@@ -100,8 +102,9 @@ def certify(
     if result.verdict is Verdict.PROVED:
         bounds, attempts = _bounds(system, allowance, progress)
         settled, more = _settling(system, allowance, progress)
-        statements += bounds + settled
-        result = replace(result, attempts=(*result.attempts, *attempts, *more))
+        held, last = _saturated(system, allowance, progress)
+        statements += bounds + settled + held
+        result = replace(result, attempts=(*result.attempts, *attempts, *more, *last))
     if merged is not system or len(blocks) > 1:
         _check_again(statements, system)
     for statement in statements:
@@ -176,6 +179,21 @@ def _settling(
     start = perf_counter()
     evidence, outcome = _take(partial(search_constant_force, system, allowance), system)
     attempt = Attempt(CONSTANT_FORCE, outcome, perf_counter() - start)
+    return () if evidence is None else (evidence,), (attempt,)
+
+
+def _saturated(
+    system: SwitchedSystem, allowance: Allowance, progress: Progress
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Show from where motions decay although signals saturate, where the system has some."""
+    if system.saturation is None:
+        return (), ()
+    from nrs_design.search.saturated_ellipsoid import search_saturated
+
+    progress(SATURATION)
+    start = perf_counter()
+    evidence, outcome = _take(partial(search_saturated, system, allowance), system)
+    attempt = Attempt(SATURATION, outcome, perf_counter() - start)
     return () if evidence is None else (evidence,), (attempt,)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import CommonQuadratic
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates

@@ -13,7 +13,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.lmi import decreases
 from nrs_design.search.rounding import claims, rate_at

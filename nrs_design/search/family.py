@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import balance, scale
 from nrs_design.search.decay import limit_rate

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

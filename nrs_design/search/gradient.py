@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
 from nrs_design.search.decay import rate_of

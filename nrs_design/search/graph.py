@@ -8,7 +8,8 @@ from math import log
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Cost
 from nrs_design.search.flows import ComplexArray, Flows, spectral_radii
 

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.sdp import (

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import NoCommonQuadratic
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family

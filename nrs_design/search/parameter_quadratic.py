@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ParameterQuadratic
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import fastest_first

@@ -14,17 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.clock import on_turn
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import PeriodicQuadratic
-from nrs_design.proof.system import Clock, Contact, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import own_norm, scale
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions
 from nrs_design.search.conewise_quadratic import (
-    LARGEST_MULTIPLIER,
     LOST,
     WITH_ERRORS,
     Errors,
-    Motions,
     in_numerators,
     multiplied,
     numerators,

@@ -7,7 +7,8 @@ from math import isfinite
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.family import to_floats
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.lmi import find_common_quadratic
 from nrs_design.search.sdp import program_cost

@@ -14,7 +14,7 @@ from math import floor, isfinite
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 
 BACK_OFFS = (0.9995, 0.999, 0.998, 0.99, 0.9, 0.5, 0.1, 1e-2, 1e-3, 1e-4)
 BITS = (4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 50, 60)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import UnstablePeriod
-from nrs_design.proof.system import Mode
+from nrs_design.proof.mode import Mode
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.period import NOTHING_GROWS, powers

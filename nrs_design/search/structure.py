@@ -31,7 +31,7 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     if len(first) == len(system.modes):
         return system
     modes = tuple(system.modes[index] for index in first.values())
-    return replace(system, modes=modes, channels=(), outputs=())
+    return replace(system, modes=modes, channels=(), outputs=(), saturation=None)
 
 
 def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:

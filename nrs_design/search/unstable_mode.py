@@ -14,7 +14,7 @@ from nrs_design.proof.evidence.unstable_mode import (
     worst_eigenvalue,
 )
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Time
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.search.allowance import Cost
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family

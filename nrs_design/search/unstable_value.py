@@ -16,7 +16,8 @@ from nrs_design.proof.evidence import (
     UnstableValue,
 )
 from nrs_design.proof.evidence.unstable_mode import is_stable, worst_eigenvalue
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.mixture import search_mixture

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.flows import spectral_radii

@@ -9,7 +9,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.proof.system import Stay, SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import SwitchedRun
 

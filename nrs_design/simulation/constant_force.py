@@ -7,8 +7,10 @@ from fractions import Fraction
 
 import numpy as np
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Norm
 
 

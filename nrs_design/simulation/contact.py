@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Norm
 from nrs_design.simulation.switched import SwitchedRun, times, transition_matrices
 

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Channel, SwitchedSystem, Time
+from nrs_design.proof.channels import Channel
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.rules import Indices, Rules
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.constant import system_at
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.lift import monomials
-from nrs_design.proof.system import SwitchedSystem, Switching
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 
 Array = NDArray[np.float64]
 

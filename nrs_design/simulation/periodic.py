@@ -10,7 +10,8 @@ from functools import reduce
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.switched import SwitchedRun, fine_step
 

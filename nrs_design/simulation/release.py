@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.contact import clipped, worst_contact
 from nrs_design.simulation.norms import Array, Norm, quadratic_norm
 from nrs_design.simulation.rounds import worst_rounds

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from nrs_design.proof.system import Contact, SwitchedSystem
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.contact import with_free_modes
 from nrs_design.simulation.norms import Array, Norm
 from nrs_design.simulation.switched import SwitchedRun, times, transition_matrices

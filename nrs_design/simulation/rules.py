@@ -10,7 +10,9 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.system import Clock, Stay, SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock, Stay
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array
 
 Indices = NDArray[np.int64]

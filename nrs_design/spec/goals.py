@@ -32,7 +32,9 @@ ONLY_FOR = {
     "max_force_error": "force",
 }
 # What a certificate must show, for all controllers together.
-OF_THE_CERTIFICATE = frozenset({"peak_torque", "decay_rate", "delay", "constant_force"})
+OF_THE_CERTIFICATE = frozenset(
+    {"peak_torque", "decay_rate", "delay", "constant_force", "initial_force"}
+)
 
 
 def _below_half_turn(angle: Quantity) -> Quantity:
@@ -109,6 +111,13 @@ class GoalsSpec(SpecModel):
         description="settles: it must be proved that the force settles at any constant Fd > 0 that "
         "pushes in, through loss of contact, at any constant stiffness; for the whole spec, with "
         "`contact: losable` and one elastic environment, in continuous time",
+    )
+
+    initial_force: Torque | Literal["largest"] | None = Field(
+        default=None,
+        description="contact force in N*m from which, at rest, every motion must be proved to "
+        "decay although velocity command and motor command saturate at their limits; largest: as "
+        "large as is found; for the whole spec, with `limits: command`, in continuous time",
     )
 
     @model_validator(mode="after")

@@ -10,13 +10,13 @@ from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.sampling import LARGEST_RATIO
 
 if TYPE_CHECKING:
-    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 # Place, what is not modelled, and what to do.
 Refusal = tuple[tuple[str, ...], str, str]
 
 
-def check_sampled(spec: InteractionDesignSpec) -> None:
+def check_sampled(spec: AbstractInteractionSpec) -> None:
     """Refuse what is not modelled beside `sampling`, all of it at once."""
     if spec.sampling is None:
         return
@@ -30,7 +30,7 @@ def _refuse(at: tuple[str, ...], what: str, remedy: str) -> None:
     raise fault(f"in the sampled loop, {what}: not modelled", remedy, *at)
 
 
-def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _not_modelled(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     yield from _controllers(spec)
     if spec.sampling is not None and spec.sampling.round > 1:
         yield from _two_periods(spec)
@@ -56,7 +56,7 @@ def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
         yield ("switching", *at), what, "leave them out, or sampling"
 
 
-def _two_periods(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _two_periods(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     """Refuse what is not modelled where the outer loop has a period of its own."""
     at = ("sampling", "outer_period")
     others = [name for name, c in spec.controllers.items() if c.commands != "velocity"]
@@ -68,14 +68,14 @@ def _two_periods(spec: InteractionDesignSpec) -> Iterator[Refusal]:
         yield ("switching",), what, "use `switching: arbitrary`, which allows for more"
 
 
-def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _controllers(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     commanded = spec.disturbances is not None and spec.disturbances.command is not None
     for name, controller in spec.controllers.items():
         at = ("controllers", name)
         if not controller.sampled:
             remedy = "use impedance, position and force controllers, or leave sampling out"
             yield (*at, "type"), f"{name} is a {controller.type} controller", remedy
-        if spec.offset != "none" and "offset" in type(controller).model_fields:
+        if spec.offset != "none" and controller.own_offset is not None:
             what = f"the offset of {name}, which leaves a mode at rest anywhere"
             yield (*at, "offset"), what, "use `offset: none`, or leave sampling out"
         if commanded and controller.commands == "position":
@@ -86,7 +86,7 @@ def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
             yield ("disturbances", "command"), what, "leave command out, or Kt"
 
 
-def _loss_of_contact(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _loss_of_contact(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     if spec.contact != "losable":
         return
     bleeding = next((name for name, c in spec.controllers.items() if c.bleeds), None)

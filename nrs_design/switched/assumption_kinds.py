@@ -67,9 +67,16 @@ UNCOUPLED = AssumptionKind(
 )
 LINKS = AssumptionKind(
     "links stay within their bounds",
-    "inertia, speed and torques that are declared",
+    "inertia and torques that are declared",
     "Axes may drive each other further than the proof allows.",
-    "nrs-design robot at the poses that are used; log joint speeds: below the one in the spec",
+    "nrs-design robot at the poses that are used",
+)
+JOINT_SPEED = AssumptionKind(
+    "joint speeds stay below their bound",
+    "the speed up to which Coriolis torques are counted",
+    "Coriolis torques may be larger than the proof allows.",
+    "log the joint speeds; of a sampled loop, `nrs-design export --format monitor` checks them "
+    "while it runs",
 )
 GRAVITY = AssumptionKind(
     "gravity is compensated",
@@ -177,6 +184,12 @@ NOT_QUANTIZED = AssumptionKind(
     "steps of the sensors far below the signals; commands below the limit of the driver",
     "Small motions may go on; behind a limit the loop is open.",
     "hold the axis in contact and log the command: no lasting motion, and below the limit",
+)
+LIMITED = AssumptionKind(
+    "what saturates, and where",
+    "the limits of the spec",
+    "Motions that begin within the stated region may leave it.",
+    "log velocity command, motor command and speed: cut off at the limits of the spec or beyond",
 )
 PERIOD = AssumptionKind(
     "no jitter",

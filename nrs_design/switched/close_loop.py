@@ -10,7 +10,8 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Offset
 from nrs_design.switched.constraints import assemble_switching

@@ -10,8 +10,10 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Mode, Output, SwitchedSystem
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import DisturbancesSpec
 from nrs_design.switched.assumption_kinds import INPUTS
@@ -56,7 +58,7 @@ def with_command(
     AssemblyError
         If it is not modelled for these controllers, environments or coordinates.
     """
-    plain = all(controller.type == "impedance" for controller in spec.controllers.values())
+    plain = all(controller.commands == "velocity" for controller in spec.controllers.values())
     if not plain or spec.coordinates != "deflection" or not touched:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something, in "

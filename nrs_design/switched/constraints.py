@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Reset, Stay, Switching
+from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.spec import DwellTime, SwitchingSpec
 from nrs_design.switched.parameters import Corner, pair_ends
 

@@ -12,8 +12,9 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, Mode
+from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import Rows, velocity_mode

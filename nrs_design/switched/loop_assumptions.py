@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
@@ -12,6 +11,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
+from nrs_design.proof.noun import dataclass
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command, Offset
 from nrs_design.switched import assumption_kinds as kinds
@@ -89,8 +89,12 @@ _SAME_STIFFNESS = (
     "Where a stiffness changes while force is controlled, the step of the force that comes with it "
     "is an input, too; what it does to the motion is covered, arbitrarily fast."
 )
-_NOT_MODELLED = kinds.NOT_SAMPLED.says(
+NOT_MODELLED = kinds.NOT_SAMPLED.says(
     "Continuous time: sampling, delay, quantization, friction and saturation are not modelled."
+)
+NOT_MODELLED_BUT_LIMITS = kinds.NOT_SAMPLED.says(
+    "Continuous time: sampling, delay, quantization and friction are not modelled, saturation only "
+    "where a statement says so."
 )
 
 
@@ -154,7 +158,7 @@ def assume_loop(loop: Assumed) -> tuple[Assumption, ...]:
             loop.rules,
             reset=(loop.idle is not None and loop.idle.reset) or loop.offset == "measured",
         ),
-        _NOT_MODELLED,
+        NOT_MODELLED,
         *_gain_texts(loop.boxes, loop.design.command),
     )
 

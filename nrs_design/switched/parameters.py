@@ -12,8 +12,9 @@ from itertools import product
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import FixedParameter, Mode
+from nrs_design.proof.switching import FixedParameter
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.interval import Interval
 

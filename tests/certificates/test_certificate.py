@@ -27,7 +27,8 @@ from nrs_design.proof.evidence import (
     UnstablePeriod,
 )
 from nrs_design.proof.evidence.fields import rate_text
-from nrs_design.proof.system import Reset, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Reset, Switching
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix, number_in
 

@@ -15,7 +15,8 @@ from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.unstable_mode import UnstableMode
-from nrs_design.proof.system import ARBITRARY, Stay, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import ARBITRARY, Stay, Switching
 from nrs_design.search.certify import certify
 from nrs_design.spec import read_spec
 from tests.proof.systems import genuine

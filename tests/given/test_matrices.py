@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.given.matrices import read_matrix, read_number, read_rows, time_of
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 
 F = Fraction
 TENTH = F(3602879701896397, 2**55)

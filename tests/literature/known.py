@@ -11,7 +11,8 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Certification, Verdict, certify
 from nrs_design.spec import parse_exact, parse_spec
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text

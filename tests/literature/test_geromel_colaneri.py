@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from nrs_design.proof.system import Switching
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import parse_exact
 from tests.support import holds

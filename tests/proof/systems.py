@@ -8,23 +8,14 @@ from functools import cache
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import Realization
+from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import (
-    ARBITRARY,
-    Channel,
-    Clock,
-    Contact,
-    Coupling,
-    Mode,
-    Output,
-    Reset,
-    Rounding,
-    Stay,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.saturation import CutOff, Saturation, Start
+from nrs_design.proof.switching import ARBITRARY, Clock, Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from nrs_design.switched.modes import velocity_mode
@@ -223,6 +214,40 @@ def settling() -> SwitchedSystem:
     return replace(system, contact=replace(contact, pushed=True))
 
 
+def saturating() -> SwitchedSystem:
+    """The same mass, pushed by ``v' = v + s1 + s2`` on a ground that does not slow it.
+
+    ``s1 = sat(-v)``, cut off at 2, and ``s2 = sat(s1 - v)``, cut off at 1: from ``v = 3`` on it
+    flies away.
+    """
+    column, first, second = matrix([[1], [0]]), matrix([[-1, 0]]), matrix([[-1, 0, 1]])
+    signals = (
+        CutOff("s1", "N", Fraction(2), (column,) * 3, (first,) * 3),
+        CutOff("s2", "N", Fraction(1), (column,) * 3, (second,) * 3),
+    )
+    start = Start("force", "N", tuple(matrix([[0], [Fraction(1, k)]]) for k in (1, 2)))
+    return replace(bouncing(), saturation=Saturation(signals, start))
+
+
+def kept(system: SwitchedSystem) -> SwitchedSystem:
+    """Take the free mode out of a system of which signals saturate."""
+    assert system.saturation is not None
+    count = len(system.modes)
+    signals = tuple(
+        replace(s, columns=s.columns[:count], rows=s.rows[:count])
+        for s in system.saturation.signals
+    )
+    return replace(system, contact=None, saturation=replace(system.saturation, signals=signals))
+
+
+def pushed_away(pull: Entry = 3) -> SwitchedSystem:
+    """``x' = x + sat(-pull x)``, cut off at 1: it decays from ``|x| < 1`` exactly."""
+    signal = CutOff("s", "N", Fraction(1), (matrix([[1]]),), (matrix([[-Fraction(pull)]]),))
+    start = Start("place", "m", (matrix([[1]]),))
+    system = family([[1 - Fraction(pull)]])
+    return replace(system, saturation=Saturation((signal,), start))
+
+
 def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
     """The same in steps of a tenth of a second by Euler's method."""
     b = Fraction(damping)
@@ -331,6 +356,9 @@ SYSTEMS = {
     "no-common-quadratic": lambda: dayawansa_martin(6),
     "no-common-quadratic, discrete": lambda: ando_shih("0.99"),
     "block-triangular": degenerate_dual,
+    "saturated-ellipsoid": saturating,
+    "saturated-ellipsoid, kept": lambda: kept(saturating()),
+    "saturated-ellipsoid, scalar": pushed_away,
     "unstable-mode": lambda: family([[0, 1], [-1, 0]]),
     "unstable-mixture": shears,
     "unstable-period": branicky,

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.proof.clock import keeps_turns, on_turn
+from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode, UnstablePeriod
-from nrs_design.proof.system import Clock
+from nrs_design.proof.switching import Clock
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, matrix, pushed
 
 ROUND = Clock(3, ("a", "b"))
@@ -78,7 +79,7 @@ def test_what_is_in_force_at_a_step():
         assert {row.shape for row in part.roundings[0].rows} == {(1, 3)}
         assert part.contact.pulls == system.contact.pulls
         assert len(part.roundings[0].columns) == len(part.roundings[0].rows) == count
-        assert part.find_contradiction() is None
+        assert find_contradiction(part) is None
 
 
 def test_the_parts_of_a_rounding_are_those_of_their_modes():

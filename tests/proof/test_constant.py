@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.constant import name_between, system_at
-from nrs_design.proof.system import ARBITRARY, FixedParameter, Stay, Switching
+from nrs_design.proof.switching import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
 from nrs_design.switched.assemble import assemble_from_text
 from tests.proof.systems import PAIR, family, hidden_value

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.lyapunov import check_quadratic, indefinite_vector
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Time
+from nrs_design.proof.mode import Mode, Time
 from tests.support import is_definite_by_ldl, matrix
 
 F = Fraction

@@ -6,8 +6,10 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import FixedParameter, Mode, Reset, Rounding, Stay, Switching
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.switching import FixedParameter, Reset, Stay, Switching
 from nrs_design.proof.system_fields import read_system, system_fields
 from tests.proof.systems import (
     SYSTEMS,

@@ -12,6 +12,7 @@ from random import Random
 
 import numpy as np
 
+from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -28,13 +29,15 @@ from nrs_design.proof.evidence import (
     NoCommonQuadratic,
     ParameterQuadratic,
     PeriodicQuadratic,
+    SaturatedEllipsoid,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
     UnstableValue,
 )
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Channel, Mode, Rounding, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Rows = list[list[Fraction]]
 Polynomial = dict[tuple[int, ...], Fraction]
@@ -244,6 +247,54 @@ def _constant_force(system: SwitchedSystem, item: ConstantForce) -> bool:
         bordered = [[*row, entry] for row, entry in zip(square, linear, strict=True)]
         forms.append([*bordered, [*linear, corner]])
     return all(is_definite(form) for form in forms)
+
+
+def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bool:
+    """Every choice of arguments and rows, from the loop without any signal."""
+    what, contact = system.saturation, system.contact
+    if what is None or system.time is not Time.CONTINUOUS or system.couplings:
+        return False
+    if system.switching.resets or item.rate <= 0 or item.level <= 0:
+        return False
+    n, signals = system.order, what.signals
+    if contact is not None and contact.pulls:
+        return False
+    if len(item.Q) != n or len(item.H) != len(signals) or any(len(h) != n for h in item.H):
+        return False
+    Q = [[Fraction(v, 2**item.denominator_log2) for v in row] for row in item.Q]
+    H = [[Fraction(v, 2**item.H_denominator_log2) for v in row] for row in item.H]
+    forms = [Q]
+    free = () if contact is None else contact.free
+    for k, mode in enumerate((*system.modes, *free)):
+
+        def given(held, k=k):
+            found = []
+            for i, signal in enumerate(signals):
+                q = signal.rows[k].fractions()[0]
+                before = [[share * v for v in s] for share, s in zip(q[n:], found, strict=True)]
+                argument = [sum(column) for column in zip(q[:n], *before, strict=True)]
+                found.append(H[i] if i in held else argument)
+            acting = (signal.columns[k].fractions() for signal in signals)
+            return [times(c, [row]) for c, row in zip(acting, found, strict=True)]
+
+        alone = combine((1, mode.A.fractions()), *((-1, part) for part in given(())))
+        for mask in range(2 ** len(signals)):
+            held = [i for i in range(len(signals)) if mask >> i & 1]
+            B = combine((1, alone), *((1, part) for part in given(held)))
+            if k < len(system.modes):
+                forms.append(decrease(B, Q, item.rate, system.time))
+            else:
+                B, inner = ([row[:-1] for row in M[:-1]] for M in (B, Q))
+                forms.append(decrease(B, inner, item.rate, system.time))
+    if not all(map(is_definite, forms)):
+        return False
+    # h Q^-1 h' by Cramer's rule.
+    for h, signal in zip(H, signals, strict=True):
+        bordered = [[*row, v] for row, v in zip(Q, h, strict=True)] + [[*h, Fraction(0)]]
+        if not -determinant(bordered) / determinant(Q) < signal.limit**2:
+            return False
+    starts = [x.fractions() for x in what.start.states]
+    return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
 
 
 def in_steps(
@@ -918,6 +969,7 @@ _ORACLES = {
     NoCommonQuadratic: _no_common_quadratic,
     ParameterQuadratic: _parameter_quadratic,
     PeriodicQuadratic: _periodic_quadratic,
+    SaturatedEllipsoid: _saturated_ellipsoid,
     ModePolynomial: _mode_polynomials_decrease,
     ModeQuadratic: _mode_quadratic,
     UnstableMode: _unstable_mode,

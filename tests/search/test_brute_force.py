@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.certify import Limits, Verdict, certify
 from tests.proof.systems import branicky, dayawansa_martin, family, oscillator, shears
 

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Stay, Switching
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search import common_quadratic
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE

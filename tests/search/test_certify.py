@@ -16,7 +16,8 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search import certify as certify_module
 from nrs_design.search import common_quadratic, gradient, ladder, lmi, unstable_mode
 from nrs_design.search.candidates import Candidate
@@ -405,6 +406,7 @@ class TestMethods:
         )
         assert settle(dayawansa_martin(10), limits=Limits(max_degree=8)).evidence.degree == 4
 
+    @pytest.mark.slow
     def test_blocks_share_the_budget(self):
         """What one block cannot use up is left for the other, which refutes."""
         hard = dayawansa_martin("11.26").modes

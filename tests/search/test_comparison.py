@@ -5,7 +5,7 @@ from functools import partial
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.comparison import compare_methods

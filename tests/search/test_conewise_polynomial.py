@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewisePolynomial
-from nrs_design.proof.system import Contact, Mode
+from nrs_design.proof.mode import Mode
 from nrs_design.search import conewise_polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import certify

@@ -9,8 +9,9 @@ from math import log
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseModeQuadratic, ConewiseQuadratic, UnstableMode
-from nrs_design.proof.system import Contact, Mode, Time
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.conewise_quadratic import search_conewise
 from tests.proof.systems import bouncing, bouncing_in_steps, matrix

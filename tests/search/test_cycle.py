@@ -7,7 +7,8 @@ from itertools import combinations, permutations
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.cycle import elementary_cycles
 from nrs_design.search.graph import Jump

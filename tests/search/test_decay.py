@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.decay import (
     RESOLUTION,

@@ -12,7 +12,7 @@ import pytest
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import NoCommonQuadratic
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.method import Method

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.evidence import CommonQuadratic, read_evidence
 from nrs_design.proof.exact import MAX_WORK, is_positive_definite, multiply
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search import fast_check
 from nrs_design.search.fast_check import (
     CLEAR_BITS,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.candidates import OUT_OF_RANGE
 from nrs_design.search.common_quadratic import search_by_lmi
 from nrs_design.search.family import Family, floats_in_silence

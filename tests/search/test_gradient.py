@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import impedance_rows
 from nrs_design.search.allowance import Allowance, NotAffordableError
@@ -184,6 +184,7 @@ def test_what_it_finds_in_any_coordinates_is_for_the_modes(coordinates):
         assert holds(system, found.evidence)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("matrices", "time"), [(PAIR, Time.CONTINUOUS), (EASY_STEPS, Time.DISCRETE)]
 )

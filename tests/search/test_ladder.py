@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import UnstablePeriod
-from nrs_design.proof.system import Switching
+from nrs_design.proof.switching import Switching
 from nrs_design.search import common_quadratic, gradient, mode_quadratic, obstruction, polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certification import Limits

@@ -4,7 +4,7 @@ import cvxpy as cp
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search import lmi
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.interior_point import step_cost

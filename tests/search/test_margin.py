@@ -11,7 +11,7 @@ from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline import run_certification
 from nrs_design.pipeline.margins import run_margin, run_shortest_dwell
-from nrs_design.proof.system import Stay, Switching
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.margin import (
@@ -92,6 +92,7 @@ def between(proved, refuted):
 
 
 class TestBox:
+    @pytest.mark.slow
     def test_published_limit_of_the_oscillator(self):
         """Zelentsovsky 1994: 6.98513; by quadratic functions alone 1 + 2 sqrt(2)."""
         box = find_margin(oscillator, quick)
@@ -191,6 +192,7 @@ class TestBox:
 
 
 class TestDwell:
+    @pytest.mark.slow
     def test_published_bounds(self):
         """Geromel and Colaneri 2006: proofs above 2.75084 s, refuted up to 2.70775 s."""
         dwell = find_shortest_dwell(GEROMEL_COLANERI, quick)
@@ -292,6 +294,7 @@ class TestOfSpecs:
         assert told[0] == "box scaled by 2"
         assert holds(box.proof.system, box.proof.evidence)
 
+    @pytest.mark.slow
     def test_box_that_is_too_large_is_shrunk(self):
         """Ranges that are refuted as declared still have a smaller box with a proof."""
         path = ROOT / "docs" / "examples" / "wide-range.nrs.yaml"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Switching
+from nrs_design.proof.switching import Switching
 from nrs_design.search import mode_quadratic
 from nrs_design.search.family import Family
 from nrs_design.search.mode_quadratic import search_mode_functions

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.proof.system import Switching
+from nrs_design.proof.switching import Switching
 from nrs_design.search.parameter_quadratic import search_parameter_quadratic
 from tests.proof.systems import oscillator, shears
 from tests.search.support import found

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Reset, Switching
+from nrs_design.proof.switching import Reset, Switching
 from nrs_design.search.certify import first_accepted
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.period import search_period

@@ -4,7 +4,8 @@ from math import sqrt
 
 import pytest
 
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.rate_limit import rate_limit
 from tests.proof.systems import ando_shih, family, golden, must_leave
 

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.lmi import find_common_quadratic, margins
 from nrs_design.search.raw import find_raw_quadratic

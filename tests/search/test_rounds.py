@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 from nrs_design.proof.evidence import UnstablePeriod
-from nrs_design.proof.system import Clock, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Clock
 from nrs_design.search.certify import certify
 from nrs_design.search.rounds import search_rounds
 from tests.proof.systems import bouncing_in_steps, doubled_in_turns, family

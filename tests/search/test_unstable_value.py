@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.search.candidates import OUT_OF_RANGE
 from nrs_design.search.family import Family
 from nrs_design.search.unstable_value import search_switching_at_values, search_value

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import UnstablePeriod
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.period import search_period
 from tests.proof.systems import ando_shih, family, golden, matrix, resets_between
@@ -76,6 +77,7 @@ def ring(count, gain, **rules):
     return family(*map(step, range(count)), time=Time.DISCRETE, switching=Switching(**rules))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gain", "grows"), [("1.01", True), ("0.99", False)])
 def test_around_a_ring_of_allowed_switches(gain, grows):
     around = tuple((f"m{k}", f"m{(k + 1) % 5}") for k in range(5))

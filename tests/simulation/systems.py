@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import ARBITRARY, Mode, Reset, SwitchedSystem, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Reset
+from nrs_design.proof.system import SwitchedSystem
 
 
 def system(*matrices, time=Time.CONTINUOUS, switching=ARBITRARY):

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.simulation.admissible import active_norms, admissible_run, norm_ratio
 from tests.simulation.systems import reset, system
 

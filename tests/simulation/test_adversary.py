@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Reset, Stay, SwitchedSystem, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.adversary import improve, misjudged_signals, random_signals
 from nrs_design.simulation.game import Aim, Game, play
 from nrs_design.simulation.rules import Rules

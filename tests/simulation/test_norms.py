@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.system import Switching
+from nrs_design.proof.switching import Switching
 from nrs_design.simulation.norms import (
     diagonal_exponents,
     level_curve,

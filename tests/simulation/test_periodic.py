@@ -6,7 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.simulation.periodic import (
     mixture_matrix,
     one_period,

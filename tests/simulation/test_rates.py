@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.simulation.rates import mode_rates
 from tests.simulation.systems import system
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.release import Outputs, certified, simulate_release
 
 # The velocity v and the deflection d: d' = v and v' = -k d - c v.

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Clock
+from nrs_design.proof.switching import Clock
 from nrs_design.reporting.kinds.periodic_quadratic import step_norms
 from nrs_design.simulation.rounds import all_modes, norms_in_rounds, worst_rounds
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, genuine

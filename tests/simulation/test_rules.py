@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Stay, SwitchedSystem, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.rules import Rules, fitting_step
 
 MODES = tuple(

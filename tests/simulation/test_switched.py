@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import (

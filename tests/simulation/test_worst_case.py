@@ -11,18 +11,11 @@ from scipy.optimize import brentq
 
 from nrs_design.pipeline import run_certification, run_design
 from nrs_design.pipeline.worst_case import run_worst_case
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import (
-    ARBITRARY,
-    Channel,
-    Clock,
-    Mode,
-    Output,
-    Stay,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import ARBITRARY, Clock, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.scenario import Control, Profile, Scenario, Surface
@@ -104,6 +97,7 @@ def farthest(low, high, c):
     return brentq(lambda X: next_peak(X) - X, 1e-3, 1e3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("low", "high"), [("3", "5"), ("4", "6")])
 def test_switched_stiffness(low, high):
     exact = farthest(float(low), float(high), 1.0)
@@ -114,6 +108,7 @@ def test_switched_stiffness(low, high):
     assert run.value == pytest.approx(exact, rel=0.03)
 
 
+@pytest.mark.slow
 def test_rules_are_kept_and_cost_the_adversary():
     free = found(oscillator("3", "5"), rounds=0, starts=6)
     rules = Switching(Fraction(1, 2), stays=(("k-5", Stay(Fraction(1, 2), Fraction(3, 4))),))

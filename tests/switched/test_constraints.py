@@ -8,7 +8,7 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Reset, Stay
+from nrs_design.proof.switching import Reset, Stay
 from nrs_design.spec import LoadedSpec, parse_spec
 from nrs_design.switched import constraints
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text

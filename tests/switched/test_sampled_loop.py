@@ -12,7 +12,9 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.contradiction import find_contradiction
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 from nrs_design.spec import read_spec
@@ -61,7 +63,7 @@ def test_modes_and_states_of_the_thesis_robot(tmp_path):
     # Two controllers, two delays, two ends of k, two bounds on exp(-T/tau).
     assert len(system.modes) == 16
     assert len(system.contact.free) == 8
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     terms = ["e", "Kp e", "D (e - e before)", "a vm", "b F", "T (v - vm)"]
     assert [item.name for item in system.roundings] == terms
     texts = " ".join(system.assumptions)
@@ -123,7 +125,7 @@ DAMPED = (
 def test_a_damped_environment_lags_instead_of_pulling(tmp_path):
     """Four forces, at the ends of k and b; in the air, and while it lags, no force is sampled."""
     system = system_of(tmp_path, "{period: 2 ms, delay: 1}", DAMPED)
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     assert len(system.contact.pulls) == 4
     speed, last = system.states.index("omega [rad/s]"), system.order - 1
     corners = set()
@@ -142,7 +144,7 @@ def test_a_damped_environment_lags_instead_of_pulling(tmp_path):
 def test_a_faster_outer_loop_holds_the_command(tmp_path):
     sampling = "{period: 2 ms, outer_period: 0.1 ms, delay: [0, 1]}"
     system = system_of(tmp_path, sampling)
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     assert system.sample_time == Fraction(1, 10_000)
     assert "u held" in system.states
     assert system.clock.length == 20
@@ -169,7 +171,7 @@ def test_a_faster_outer_loop_holds_the_command(tmp_path):
 
 def test_a_slower_outer_loop_holds_the_reference(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, outer_period: 6 ms, delay: 1}", DAMPED)
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     assert (system.clock.length, system.sample_time) == (3, Fraction(1, 500))
     assert "u held" not in system.states
     between = [m for m in system.modes if m.name not in system.clock.first]
@@ -191,7 +193,7 @@ def test_with_a_spring_free_motion_takes_its_turns(tmp_path):
     sampling = "{period: 2 ms, outer_period: 1 ms, delay: 0}\ncontact: losable"
     system = system_of(tmp_path, sampling, sprung)
     assert system.contact is None
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     assert sum("/free/" in name for name in system.clock.first) == 4
 
 
@@ -280,7 +282,7 @@ def test_position_and_force_control_share_the_motion(tmp_path):
     # Two ends of exp(-T/tau); in contact two ends of k, for force control two delays besides.
     assert len(system.modes) == 2 + 4 + 8
     assert system.contact is None
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     texts = " ".join(system.assumptions)
     assert "Contact is not lost while force is controlled" in texts
     assert "set the reference before the error is formed" in texts

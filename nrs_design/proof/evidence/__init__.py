@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
     from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
     from nrs_design.proof.evidence.periodic_quadratic import PeriodicQuadratic
+    from nrs_design.proof.evidence.saturated_ellipsoid import SaturatedEllipsoid
     from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
     from nrs_design.proof.evidence.unstable_mode import UnstableMode
     from nrs_design.proof.evidence.unstable_period import UnstablePeriod
@@ -50,6 +51,7 @@ __all__ = [
     "NoCommonQuadratic",
     "ParameterQuadratic",
     "PeriodicQuadratic",
+    "SaturatedEllipsoid",
     "Shows",
     "UnstableMixture",
     "UnstableMode",
@@ -75,6 +77,7 @@ KINDS: Mapping[str, str] = {
     "no-common-quadratic": "NoCommonQuadratic",
     "parameter-quadratic": "ParameterQuadratic",
     "periodic-quadratic": "PeriodicQuadratic",
+    "saturated-ellipsoid": "SaturatedEllipsoid",
     "unstable-mixture": "UnstableMixture",
     "unstable-mode": "UnstableMode",
     "unstable-period": "UnstablePeriod",

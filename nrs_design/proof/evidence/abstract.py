@@ -9,6 +9,8 @@ from fractions import Fraction
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import at_least
+from nrs_design.proof.channels import Channel, Output
+from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence.fields import find_unreadable
 from nrs_design.proof.exact import (
     IntegerMatrix,
@@ -17,7 +19,8 @@ from nrs_design.proof.exact import (
     is_too_large,
 )
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Channel, Output, SwitchedSystem, Switching
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
@@ -39,6 +42,7 @@ class Shows(StrEnum):
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
+    REGION = "decay from a region under saturation"
 
 
 # That no common quadratic function exists is said of matrices, whatever happens to contact.
@@ -46,12 +50,14 @@ _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (WHILE_KEPT,),
     Shows.BOUND: (WHILE_KEPT,),
     Shows.CONVERGENCE: (WHILE_KEPT,),
+    Shows.REGION: (WHILE_KEPT,),
     Shows.INSTABILITY: (GROWN_IN_CONTACT,),
 }
 _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (NOT_ROUNDED,),
     Shows.BOUND: (NOT_ROUNDED,),
     Shows.CONVERGENCE: (NOT_ROUNDED,),
+    Shows.REGION: (NOT_ROUNDED,),
     Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
 }
 
@@ -126,6 +132,11 @@ class AbstractEvidence(ABC):
         """Whether it shows that some mode is not stable by itself."""
         return False
 
+    @property
+    def start_size(self) -> Fraction | None:
+        """Size of the start of a saturating system that motions decay from, if it shows one."""
+        return None
+
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
         return None
@@ -197,10 +208,20 @@ class AbstractEvidence(ABC):
         """
         return self
 
-    def find_fault(self, system: SwitchedSystem) -> str | None:
-        """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
+    def find_fault(
+        self, system: SwitchedSystem, made: list[IntegerMatrix] | None = None
+    ) -> str | None:
+        """TRUSTED: say why the evidence does not hold for the system, or None if it holds.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            That it is about.
+        made : list, optional
+            Every form that is decided is put into it, for a second opinion.
+        """
         unfit = self.find_unfit(system)
-        return find_indefinite(self.forms(system)) if unfit is None else unfit
+        return find_indefinite(self.forms(system), made) if unfit is None else unfit
 
     def find_unfit(self, system: SwitchedSystem) -> str | None:
         """TRUSTED: say what, other than a form, keeps the evidence from holding, or None."""
@@ -213,7 +234,7 @@ class AbstractEvidence(ABC):
                 return f"mode {mode.name} is not a square matrix over a positive denominator"
         if (unreadable := find_unreadable(self)) is not None:
             return unreadable
-        if (contradiction := system.find_contradiction()) is not None:
+        if (contradiction := find_contradiction(system)) is not None:
             return contradiction
         if not self.fits(system.switching):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
@@ -232,7 +253,7 @@ class AbstractEvidence(ABC):
         return self._is_good() and not self.covers_lost_contact
 
     def _is_good(self) -> bool:
-        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE)
+        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:
@@ -241,9 +262,13 @@ def _in_seconds(rate: Fraction, step: Fraction) -> str:
     return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
 
 
-def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:
+def find_indefinite(
+    forms: Iterable[tuple[str, IntegerMatrix]], made: list[IntegerMatrix] | None = None
+) -> str | None:
     """TRUSTED: name the failure of the first form that is not positive definite, or None."""
     for failure, form in forms:
+        if made is not None:
+            made.append(form)
         if is_too_large(form):
             return f"{failure}, or it does but its numbers are too large to check"
         if not is_symmetric(form) or not is_positive_definite(form):

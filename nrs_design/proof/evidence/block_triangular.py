@@ -11,8 +11,10 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_integer
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 
 Blocks = tuple[tuple[int, ...], ...]
 

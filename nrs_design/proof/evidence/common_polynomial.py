@@ -29,8 +29,9 @@ from nrs_design.proof.exact import (
     stein_factor,
 )
 from nrs_design.proof.lift import derivative_lift, power_lift, vanishes
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Mode, SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 MAX_DEGREE = 64
 MAX_MONOMIALS = 120

@@ -23,9 +23,10 @@ from nrs_design.proof.exact import (
     multiply,
     stein_decrease,
 )
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 _FAILURE = "V does not decrease at the claimed rate"
 

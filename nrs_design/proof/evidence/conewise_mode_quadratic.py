@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.conewise_quadratic import NO_CONTACT
 from nrs_design.proof.evidence.fields import (
     Matrix,
@@ -25,8 +26,9 @@ from nrs_design.proof.exact import (
     step_decrease,
 )
 from nrs_design.proof.matrix import leading, with_crossing
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Functions = tuple[tuple[str, Matrix], ...]
 Forms = Iterator[tuple[str, IntegerMatrix]]

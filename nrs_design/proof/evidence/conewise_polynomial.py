@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
 from nrs_design.proof.evidence.conewise_quadratic import NO_CONTACT
@@ -14,8 +15,9 @@ from nrs_design.proof.evidence.fields import Matrix, rate_words, read_integers
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.matrix import RationalMatrix, leading
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Any, ClassVar, Self
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
@@ -25,9 +26,10 @@ from nrs_design.proof.exact import (
     scaled,
 )
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 NO_CONTACT = "the system does not say how contact is lost"

@@ -11,8 +11,9 @@ from nrs_design.proof.evidence.fields import Matrix, matrix_fields, read_dyadic,
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, with_crossing
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 _NO_RATE = Fraction(0)
 

@@ -29,8 +29,9 @@ from nrs_design.proof.exact import (
     scaled,
 )
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Steps, find_odd_roundings
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 NO_COUPLING = "the system does not say what axes do to each other"

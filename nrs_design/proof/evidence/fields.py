@@ -10,7 +10,7 @@ from typing import Any
 
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.exact import is_too_large
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.text import quoted
 
 Matrix = tuple[tuple[int, ...], ...]

@@ -9,7 +9,7 @@ from nrs_design.proof.enclosure import balls, exponential, lower_integers, preci
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, multiply
-from nrs_design.proof.system import Edge
+from nrs_design.proof.switching import Edge
 
 
 def power(A: RationalMatrix, exponent: int) -> RationalMatrix:

@@ -7,7 +7,8 @@ from typing import ClassVar
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 
 
 class AbstractFunction(AbstractEvidence):

@@ -8,6 +8,8 @@ from itertools import product
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.channels import Channel, Output
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
 from nrs_design.proof.evidence.conewise_quadratic import in_threes, multiplier_count
 from nrs_design.proof.evidence.fields import (
@@ -24,9 +26,10 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
-from nrs_design.proof.system import Channel, Contact, Output, SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 Rows = Sequence[Sequence[Fraction]]

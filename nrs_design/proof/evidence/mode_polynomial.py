@@ -24,8 +24,10 @@ from nrs_design.proof.evidence.mode_quadratic import (
 from nrs_design.proof.exact import MAX_WORK, IntegerMatrix, add
 from nrs_design.proof.lift import power_lift, vanishes
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Mode, Reset, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Reset, Switching
+from nrs_design.proof.system import SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,10 @@ from nrs_design.proof.exact import (
     step_decrease,
 )
 from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Edge, Mode, Stay, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Edge, Stay, Switching
+from nrs_design.proof.system import SwitchedSystem
 
 MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096

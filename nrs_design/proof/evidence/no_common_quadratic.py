@@ -9,8 +9,10 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import Matrix, read_integers, read_text
 from nrs_design.proof.exact import IntegerMatrix, add, common_denominator
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)

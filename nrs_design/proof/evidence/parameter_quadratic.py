@@ -16,8 +16,9 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease, scaled
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)

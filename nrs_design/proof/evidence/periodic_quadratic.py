@@ -19,9 +19,10 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import IntegerMatrix
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 
 NO_CLOCK = "the modes of the system do not take turns"
 

@@ -16,8 +16,10 @@ from nrs_design.proof.evidence.unstable_mode import (
 )
 from nrs_design.proof.exact import IntegerMatrix, common_denominator
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 
 # Longer weights make no better mixtures, only longer computations.
 MAX_DENOMINATOR = 2**64

@@ -18,8 +18,10 @@ from nrs_design.proof.exact import (
     spectrum_work,
 )
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import Mode, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,10 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 
 MAX_STEPS = 1024
 MAX_WORK = 5_000_000

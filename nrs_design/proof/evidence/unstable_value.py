@@ -14,7 +14,8 @@ from nrs_design.proof.evidence.unstable_mode import UnstableMode
 from nrs_design.proof.evidence.unstable_period import UnstablePeriod
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.system import SwitchedSystem, Switching
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 
 Part = UnstableMode | UnstableMixture | UnstablePeriod

@@ -12,7 +12,7 @@ import numpy as np
 from nrs_design.design.root_locus import locus_gains, root_locus
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.proof.evidence.fields import rate_words
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.figures.view import View, disk, half_plane
 from nrs_design.reporting.style import (
     ALARM,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.proof.evidence.fields import rate_words
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.style import (
     BLUE,
     INK,

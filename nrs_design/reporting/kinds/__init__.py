@@ -21,6 +21,7 @@ from nrs_design.proof.evidence import (
     NoCommonQuadratic,
     ParameterQuadratic,
     PeriodicQuadratic,
+    SaturatedEllipsoid,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
@@ -42,6 +43,7 @@ from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
 from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
 from nrs_design.reporting.kinds.parameter_quadratic import ParameterQuadraticPage
 from nrs_design.reporting.kinds.periodic_quadratic import PeriodicQuadraticPage
+from nrs_design.reporting.kinds.saturated_ellipsoid import SaturatedEllipsoidPage
 from nrs_design.reporting.kinds.unstable_mixture import UnstableMixturePage
 from nrs_design.reporting.kinds.unstable_mode import UnstableModePage
 from nrs_design.reporting.kinds.unstable_period import UnstablePeriodPage
@@ -62,6 +64,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     NoCommonQuadratic: NoCommonQuadraticPage,
     ParameterQuadratic: ParameterQuadraticPage,
     PeriodicQuadratic: PeriodicQuadraticPage,
+    SaturatedEllipsoid: SaturatedEllipsoidPage,
     UnstableMixture: UnstableMixturePage,
     UnstableMode: UnstableModePage,
     UnstablePeriod: UnstablePeriodPage,

@@ -10,7 +10,8 @@ import numpy as np
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import AbstractEvidence, BlockTriangular, Shows
 from nrs_design.proof.evidence.block_triangular import diagonal_block
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Bullets, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.blocks import draw_blocks
 from nrs_design.reporting.figures.run import draw_run

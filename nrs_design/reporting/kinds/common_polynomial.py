@@ -7,7 +7,8 @@ import numpy as np
 from nrs_design.proof.evidence import CommonPolynomial
 from nrs_design.proof.evidence.common_polynomial import lifted_decrease, lifted_factor
 from nrs_design.proof.exact import add
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage

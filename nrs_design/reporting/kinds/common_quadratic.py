@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nrs_design.proof.evidence import CommonQuadratic
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section
 from nrs_design.reporting.figures.lyapunov import draw_quadratic
 from nrs_design.reporting.formatting import number

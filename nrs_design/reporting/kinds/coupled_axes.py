@@ -8,7 +8,8 @@ from itertools import product
 
 from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, SwitchedSystem
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.lyapunov import draw_quadratic
 from nrs_design.reporting.formatting import number

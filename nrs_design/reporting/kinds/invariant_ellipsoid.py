@@ -7,15 +7,17 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import InvariantEllipsoid
-from nrs_design.proof.system import Channel, Output, Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.bound import draw_bound
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.run import simulated
-from nrs_design.simulation.worst_case import WorstRun, output_values, worst_against
+from nrs_design.simulation.worst_case import WorstRun, worst_against
+from nrs_design.simulation.worst_outputs import output_values
 
 _DECIDED = (
     "Q holds integers over a power of two, and exact arithmetic decides that no motion leaves the "

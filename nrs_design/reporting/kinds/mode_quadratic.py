@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from nrs_design.proof.bounds import at_most
 from nrs_design.proof.evidence import ModeQuadratic
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section
 from nrs_design.reporting.figures.lyapunov import draw_quadratics
 from nrs_design.reporting.figures.run import draw_mode_levels, draw_run

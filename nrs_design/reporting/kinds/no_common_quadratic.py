@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from nrs_design.proof.evidence import NoCommonQuadratic
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from nrs_design.proof.evidence import PeriodicQuadratic
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section
 from nrs_design.reporting.figures.contact import draw_deflection
 from nrs_design.reporting.figures.lyapunov import draw_quadratics

@@ -6,7 +6,8 @@ import numpy as np
 
 from nrs_design.proof.evidence import UnstableMode
 from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.kinds.abstract import AbstractKindPage

@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.evidence import UnstablePeriod
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, plural

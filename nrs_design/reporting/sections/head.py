@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from nrs_design import __version__
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Derived
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.reporting.sections.places import linked

@@ -8,7 +8,8 @@ from nrs_design.certificates.bounds import keeps_command
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.controllers.laws.impedance import KEPT_VELOCITY
 from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
@@ -26,6 +27,10 @@ _ALONE = "Coupling between the axes of the robot."
 _UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
 _BOUNDED = "Sizes of velocities and torques other than those bounded above."
 _SATURATED = "Friction, backlash, and saturation of motor or driver."
+_IN_A_REGION = (
+    "Friction, backlash, and saturation but for that of the commands in motions that begin within "
+    "what is stated above."
+)
 _UNSATURATED = (
     "Friction, backlash, and saturation of motor or driver in motions that begin away from rest; "
     "from rest under the disturbances at which the motor command keeps its limit, as bounded "
@@ -68,7 +73,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
             "rounded display; where a range of a gain is declared, all values in it."
         )
     proved += _bounds(result.certification)
-    proved += _settling(result)
+    proved += _beside(result)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
         Bullets("Proved", tuple(proved)),
@@ -92,11 +97,11 @@ def _bounds(certification: Certification) -> list[str]:
     ]
 
 
-def _settling(result: Result) -> list[str]:
-    """State what is shown about a constant force, beside the claim that decides."""
+def _beside(result: Result) -> list[str]:
+    """State what is shown of a constant force and of saturation, beside the claim that decides."""
     system, said = result.certification.system, list[str]()
     for item in result.certification.statements:
-        if item.shows is Shows.CONVERGENCE:
+        if item.shows in (Shows.CONVERGENCE, Shows.REGION):
             said.append(item.claim(system))
             if result.loaded.spec.has_ranges:
                 said += page_of(system, item).between_corners()
@@ -110,11 +115,12 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
     covers = evidence is not None and evidence.covers_lost_contact
     exact = evidence is None or not evidence.covers_rounding
     driven = keeps_command(system, certification.statements)
+    regional = any(item.shows is Shows.REGION for item in certification.statements)
     return (
         *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_JITTER, *(_ROUNDED,) * exact)),
         *(() if covers else (_KEPT,)),
         *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
-        _UNSATURATED if driven else _SATURATED,
+        _IN_A_REGION if regional else _UNSATURATED if driven else _SATURATED,
         *_NOT_COVERED_BY_A_DESIGN,
         _BOUNDED if _bounds(certification) else _UNBOUNDED,
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.release import physical_outputs
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.release import Panel, draw_release
 from nrs_design.reporting.formatting import number

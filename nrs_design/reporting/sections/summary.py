@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Derived, Light, Sentence, State
 from nrs_design.reporting.formatting import plural
 from nrs_design.reporting.kinds import page_of

@@ -16,7 +16,8 @@ from nrs_design.proof.evidence import (
     read_evidence,
 )
 from nrs_design.proof.evidence.block_triangular import diagonal_block
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import certify
 from tests.proof.systems import dayawansa_martin, family, genuine, resets_between
 from tests.support import ends_soon

@@ -8,7 +8,8 @@ import pytest
 
 from nrs_design.proof.evidence import CommonPolynomial, read_evidence
 from nrs_design.proof.evidence.common_polynomial import lifted_factor
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.method import Method
 from tests.proof.systems import (

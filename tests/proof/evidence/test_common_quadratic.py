@@ -7,10 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import CommonQuadratic, Shows, UnstableMode
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Steps
-from nrs_design.proof.system import Mode, Reset, Rounding, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Reset, Switching
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.systems import bouncing_in_steps, genuine
 from tests.support import dayawansa_martin, family, holds, is_definite_by_ldl, matrix
 

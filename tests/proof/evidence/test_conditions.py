@@ -13,7 +13,8 @@ from nrs_design.proof.evidence import (
     ModePolynomial,
     ModeQuadratic,
 )
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict, certify
 from tests.proof.systems import family, resets_between
 from tests.support import is_definite_by_ldl

@@ -7,9 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseModeQuadratic, ConewiseQuadratic, Shows
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem, Time
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.evidence.test_conewise_quadratic import ESCAPES, growth, losable, over
 from tests.proof.systems import bouncing, bouncing_in_steps, family, genuine, matrix
 from tests.proof.truth import (

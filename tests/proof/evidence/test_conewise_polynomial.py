@@ -9,11 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import CommonPolynomial, ConewisePolynomial, Shows
 from nrs_design.proof.evidence.conewise_polynomial import without_last
 from nrs_design.proof.lift import monomials
+from nrs_design.proof.mode import Mode
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Contact, Mode, SwitchedSystem
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from nrs_design.search.polynomial import search_polynomial

@@ -8,9 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, Shows
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Contact, Mode, Reset, SwitchedSystem, Switching, Time
+from nrs_design.proof.switching import Reset, Switching
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, genuine, matrix
 from tests.proof.truth import (
     combine,

@@ -9,9 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from nrs_design.proof.channels import Coupling
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConstantForce, Shows, read_evidence
+from nrs_design.proof.mode import Mode
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import Contact, Coupling, Mode, Reset, Switching
+from nrs_design.proof.switching import Reset, Switching
 from tests.proof.systems import bouncing, bouncing_in_steps, family, matrix, settling
 from tests.proof.truth import holds
 

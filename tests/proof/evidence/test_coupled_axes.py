@@ -8,19 +8,14 @@ from random import Random
 import numpy as np
 import pytest
 
+from nrs_design.proof.channels import Coupling, Rounding
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, CoupledAxes, Shows
 from nrs_design.proof.evidence.abstract import ROUNDED
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import (
-    Contact,
-    Coupling,
-    Mode,
-    Reset,
-    Rounding,
-    SwitchedSystem,
-    Switching,
-    Time,
-)
+from nrs_design.proof.switching import Reset, Switching
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.systems import bouncing, family, genuine, leaning, matrix
 from tests.proof.truth import decrease, holds, is_positive_multiple
 from tests.support import broken

@@ -24,7 +24,7 @@ from nrs_design.proof.evidence.fields import (
     rounding_fields,
 )
 from nrs_design.proof.exact import MAX_WORK
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from tests.support import number_in
 
 WHOLE = st.integers(-(2**70), 2**70)

@@ -7,7 +7,8 @@ import pytest
 from nrs_design.proof.evidence.flow import enclosed_form, power, shifted
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Edge, Mode
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.switching import Edge
 
 A = RationalMatrix.from_rows([[Fraction(1, 2), 3], [-1, Fraction(2, 7)]])
 

@@ -7,7 +7,7 @@ import pytest
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.abstract import Shows
 from nrs_design.proof.evidence.function import is_square
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from tests.proof.systems import genuine
 
 TINY = Fraction(1, 10**30)

@@ -8,20 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import CommonQuadratic, InvariantEllipsoid, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Steps
-from nrs_design.proof.system import (
-    Channel,
-    Contact,
-    Coupling,
-    Mode,
-    Output,
-    Rounding,
-    SwitchedSystem,
-    Time,
-)
+from nrs_design.proof.system import SwitchedSystem
 from tests.proof.evidence.test_conewise_quadratic import LAGGING
 from tests.proof.systems import (
     Entry,
@@ -519,7 +514,7 @@ def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
     system = replace(system, roundings=tuple(errors))
     evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
     assert evidence.find_misfit(system) is None
-    assert system.find_contradiction() is None
+    assert find_contradiction(system) is None
     steps = Steps(
         Q3, 3, 1 - sum(SHARES3), sum(multipliers), roundings, (2, 1), tuple(WEIGHTS3)
     ).forms(system)

@@ -8,7 +8,8 @@ import pytest
 from nrs_design.proof.evidence import ModePolynomial, ModeQuadratic
 from nrs_design.proof.evidence.mode_polynomial import find_large_lift, lift_system
 from nrs_design.proof.evidence.mode_quadratic import MAX_DWELL_STEPS
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from tests.proof.systems import family, genuine, geromel_colaneri, resets_between

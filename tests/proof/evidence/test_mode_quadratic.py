@@ -9,7 +9,8 @@ import pytest
 from nrs_design.proof.evidence import ModeQuadratic, read_evidence
 from nrs_design.proof.evidence.mode_quadratic import find_odd_switch, signals_of
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Reset, Stay, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
 from tests.proof.systems import (

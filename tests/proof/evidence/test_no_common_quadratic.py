@@ -6,9 +6,11 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Contact, Mode, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from tests.proof.systems import (

@@ -6,7 +6,8 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.evidence import ParameterQuadratic
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict, certify
 from tests.proof.systems import (
     family,

@@ -8,7 +8,8 @@ import pytest
 from nrs_design.proof.evidence import UnstableMixture, read_evidence
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
 from tests.proof.systems import family, genuine, resets_between, shears

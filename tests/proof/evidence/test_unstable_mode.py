@@ -15,7 +15,8 @@ from nrs_design.proof.evidence.unstable_mode import (
 )
 from nrs_design.proof.exact import MAX_SPECTRUM_WORK, TooLargeError, spectrum_work
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.system import Mode, Reset, Stay, Switching, Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.search.certify import certify
 from tests.support import dayawansa_martin, family, holds, is_stable_by_lyapunov, matrix
 

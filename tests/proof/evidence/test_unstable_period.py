@@ -11,7 +11,8 @@ from flint import arb, ctx, fmpq
 from nrs_design.proof.enclosure import precision
 from nrs_design.proof.evidence import UnstablePeriod, read_evidence
 from nrs_design.proof.evidence.unstable_period import monodromy
-from nrs_design.proof.system import Stay, Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.method import Method
 from tests.proof.systems import (

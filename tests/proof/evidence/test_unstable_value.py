@@ -13,8 +13,9 @@ from nrs_design.proof.evidence import (
     UnstablePeriod,
     UnstableValue,
 )
+from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.system import FixedParameter, Switching, Time
+from nrs_design.proof.switching import FixedParameter, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.gradient_settings import Gradient

@@ -11,7 +11,8 @@ from nrs_design.proof.evidence import (
     CommonQuadratic,
     UnstableMode,
 )
-from nrs_design.proof.system import Switching, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
 from nrs_design.reporting.document import Table
 from nrs_design.reporting.kinds import page_of
 from tests.simulation.systems import system

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.proof.evidence import CommonPolynomial
-from nrs_design.proof.system import Time
+from nrs_design.proof.mode import Time
 from nrs_design.reporting.kinds.common_polynomial import polynomial_rates
 from nrs_design.search.certify import certify
 from nrs_design.search.method import Method

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import ParameterQuadratic
-from nrs_design.proof.system import Switching
+from nrs_design.proof.switching import Switching
 from nrs_design.reporting.kinds.parameter_quadratic import function_at, parameter_rates
 from nrs_design.search.certify import certify
 from tests.simulation.systems import system

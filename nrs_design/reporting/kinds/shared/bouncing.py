@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Section
 from nrs_design.reporting.figures.contact import draw_deflection
 from nrs_design.reporting.figures.run import draw_run

@@ -7,7 +7,8 @@ from fractions import Fraction
 import numpy as np
 
 from nrs_design.proof.evidence.fields import rate_words
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Table
 from nrs_design.reporting.figures.lyapunov import draw_mode_rates
 from nrs_design.reporting.formatting import number

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Section
 from nrs_design.reporting.figures.run import MOTION_STATES, draw_phase_plane, draw_run
 from nrs_design.reporting.sections.modes import hardest_modes

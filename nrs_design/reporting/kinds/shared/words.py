@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.system import SwitchedSystem, Time
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.formatting import shortened
 
 # Modes that a sentence names.

@@ -1,0 +1,38 @@
+"""How contact is lost and made again."""
+
+from __future__ import annotations
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.noun import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Contact that is lost and made again at any time.
+
+    The last state is the deflection delta, the others are y. While delta is positive, the modes of
+    the system are in force; while it is not, nothing pushes, and one of the free modes is.
+
+    Parameters
+    ----------
+    free : tuple of Mode
+        The motion without force, each of shape (n, n), with any switching among them. In its last
+        column, what the deflection does to the other states, there are zeros; in its last row, what
+        the motion does to the deflection.
+    pulls : tuple of RationalMatrix, each of shape (1, n)
+        For an environment that could pull: forces ``q x`` at the corners of its ranges. While
+        delta is positive and a force within these ranges is not, there is no force, and one of the
+        free modes is in force. Empty for springs, whose force has the sign of the deflection.
+    required : bool
+        Stability must be shown through any loss of contact; otherwise a proof may take for granted
+        that contact is kept, and its claim says so.
+    pushed : bool
+        A constant force may push into contact: the deflection at which its force is that one is
+        the same in all modes that follow each other, and a statement may be about it.
+    """
+
+    free: tuple[Mode, ...]
+    pulls: tuple[RationalMatrix, ...] = ()
+    required: bool = False
+    pushed: bool = False

@@ -1,0 +1,170 @@
+"""TRUSTED: whether the parts of a switched system make sense for each other."""
+
+from __future__ import annotations
+
+from nrs_design.proof.channels import Coupling, Rounding
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+
+
+def find_contradiction(system: SwitchedSystem) -> str | None:
+    """TRUSTED: say why the rules of switching make no sense for these modes, or None."""
+    names = {mode.name for mode in system.modes}
+    return (
+        _find_odd_stay(system, names)
+        or _find_odd_switch(system, names)
+        or _find_odd_ends(system, names)
+        or _find_odd_contact(system, names)
+        or _find_odd_sample_time(system)
+        or _find_odd_channel(system)
+        or _find_odd_rounding(system)
+        or _find_odd_coupling(system)
+        or _find_odd_clock(system)
+        or _find_odd_saturation(system)
+    )
+
+
+def _find_odd_stay(system: SwitchedSystem, names: set[str]) -> str | None:
+    own = system.switching.stays
+    if len(dict(own)) < len(own) or not dict(own).keys() <= names:
+        return "the dwell times are not those of modes"
+    stays = system.stays()
+    for name in dict(own):
+        if (longest := stays[name].longest) is not None and longest < stays[name].shortest:
+            return f"mode {name} must be left before it may be"
+    if min((system.switching.dwell_time, *(stay.shortest for _, stay in own))) < 0:
+        return "a dwell time is negative"
+    return None
+
+
+def _find_odd_switch(system: SwitchedSystem, names: set[str]) -> str | None:
+    for source, target in system.switching.transitions or ():
+        if source == target or not {source, target} <= names:
+            return "a transition does not lead from one mode to another"
+    for reset in system.switching.resets:
+        if reset.source == reset.target or not {reset.source, reset.target} <= names:
+            return "a reset does not lead from one mode to another"
+        if not reset.map.is_well_formed:
+            return "a reset is not a matrix over a positive denominator"
+    return None
+
+
+def _find_odd_ends(system: SwitchedSystem, names: set[str]) -> str | None:
+    ends = [name for pair in system.switching.fixed_ends for name in pair]
+    if ends and sorted(ends) != sorted(names):
+        return "the modes are not the ends of one constant parameter"
+    return None
+
+
+def _find_odd_contact(system: SwitchedSystem, names: set[str]) -> str | None:
+    if system.contact is None:
+        return None
+    n, free = system.order, system.contact.free
+    if n < 2 or not system.is_uniform:
+        return "contact is lost, but the modes do not share a deflection beside other states"
+    if not free or len({mode.name for mode in free} - names) < len(free):
+        return "contact is lost, but there is no free mode, or two modes have one name"
+    if not all(_is_motion(mode.A, n, system.time) for mode in free):
+        return "the deflection acts on the other states in a free mode"
+    if not all(q.is_well_formed and q.shape == (1, n) for q in system.contact.pulls):
+        return "a force is not one row over a positive denominator"
+    return None
+
+
+def _find_odd_sample_time(system: SwitchedSystem) -> str | None:
+    if system.sample_time is None:
+        return None
+    if system.time is Time.CONTINUOUS or system.sample_time <= 0:
+        return "the time of a step is not positive, or there are no steps"
+    return None
+
+
+def _find_odd_channel(system: SwitchedSystem) -> str | None:
+    n, free = system.order, () if system.contact is None else system.contact.free
+    sized = [(c.name, M, (n, 1)) for c in system.channels for M in c.columns]
+    sized += [(o.name, M, (1, n)) for o in system.outputs for M in o.rows]
+    for name, M, shape in sized:
+        if not M.is_well_formed or M.shape != shape:
+            return f"{name} does not have the size of the state"
+    for channel in system.channels:
+        if channel.bound <= 0 or len(channel.columns) != len(system.modes) + len(free):
+            return f"{channel.name} has no positive bound, or not one column for every mode"
+    if not all(output.rows for output in system.outputs):
+        return "an output has no rows"
+    if any(output.limit is not None and output.limit <= 0 for output in system.outputs):
+        return "the limit of an output is not positive"
+    names = [*(c.name for c in system.channels), *(o.name for o in system.outputs)]
+    return "two disturbances or outputs have one name" if len(set(names)) < len(names) else None
+
+
+def _find_odd_rounding(system: SwitchedSystem) -> str | None:
+    if system.roundings and system.time is Time.CONTINUOUS:
+        return "the arithmetic rounds, but there are no steps"
+    if system.roundings and not system.is_uniform:
+        return "the arithmetic rounds, but the modes are not of one size"
+    width = system.order + len(system.channels)
+    for item in system.roundings:
+        if (odd := _find_odd_parts(system, item, width)) is not None:
+            return f"the rounding of {item.name} {odd}"
+    names = [item.name for item in system.roundings]
+    return "two roundings have one name" if len(set(names)) < len(names) else None
+
+
+def _find_odd_coupling(system: SwitchedSystem) -> str | None:
+    if system.axes is not None and (system.axes < 1 or not system.couplings):
+        return "there is no axis, or axes are counted that do not act on each other"
+    if system.couplings and not system.is_uniform:
+        return "axes act on each other, but their modes are not of one size"
+    width = system.order + len(system.channels) + len(system.roundings)
+    for item in system.couplings:
+        if (odd := _find_odd_parts(system, item, width)) is not None:
+            return f"the coupling by {item.name} {odd}"
+    names = [item.name for item in system.couplings]
+    return "two couplings have one name" if len(set(names)) < len(names) else None
+
+
+def _find_odd_clock(system: SwitchedSystem) -> str | None:
+    if system.clock is None:
+        return None
+    if system.time is Time.CONTINUOUS or system.clock.length < 2 or not system.is_uniform:
+        return "modes take turns without steps, in rounds of less than two, or of unlike size"
+    if not system.switching.is_arbitrary:
+        return "modes take turns, and have rules of switching besides"
+    first, free = set(system.clock.first), () if system.contact is None else system.contact.free
+    groups = [{mode.name for mode in part} for part in (system.modes, free) if part]
+    if not first <= set().union(*groups):
+        return "a mode that does not exist is to take its turn"
+    if not all(first & group and group - first for group in groups):
+        return "a step of a round has no mode, in contact or free"
+    return None
+
+
+def _find_odd_saturation(system: SwitchedSystem) -> str | None:
+    if system.saturation is None:
+        return None
+    if not system.is_uniform:
+        return "signals saturate, but the modes are not of one size"
+    free = () if system.contact is None else system.contact.free
+    return system.saturation.find_oddity(system.order, len(system.modes), len(free))
+
+
+def _find_odd_parts(system: SwitchedSystem, item: Rounding | Coupling, width: int) -> str | None:
+    """Say why columns and rows are not those of every mode and free mode, or None."""
+    n, free = system.order, () if system.contact is None else system.contact.free
+    sized = [*((M, (n, 1)) for M in item.columns), *((M, (1, width)) for M in item.rows)]
+    if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
+        return "does not have the size of the state"
+    if not len(item.columns) == len(item.rows) == len(system.modes) + len(free):
+        return "has not one column and row for every mode"
+    if any(row.numerators[0][n - 1] for row in item.rows[len(system.modes) :]):
+        return "depends on the deflection in free motion"
+    return None
+
+
+def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:
+    """Tell whether a free mode has its shape, and the deflection only moves on from where it is."""
+    if not A.is_well_formed or A.shape != (order, order):
+        return False
+    *others, last = (row[-1] for row in A.numerators)
+    return not any(others) and last == (0 if time is Time.CONTINUOUS else A.denominator)

@@ -1,0 +1,167 @@
+"""An ellipsoid in which motions decay although signals of the loop saturate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from typing import Any, ClassVar, Self
+
+from nrs_design.proof.bounds import rounded_down
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.fields import (
+    Matrix,
+    matrix_fields,
+    rate_words,
+    read_dyadic,
+    read_ratio,
+)
+from nrs_design.proof.evidence.function import is_square
+from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
+from nrs_design.proof.matrix import RationalMatrix, leading, multiply
+from nrs_design.proof.mode import Time
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.saturation import Saturation
+from nrs_design.proof.system import SwitchedSystem
+
+Forms = Iterator[tuple[str, IntegerMatrix]]
+NOTHING_SATURATES = "the system does not say what saturates"
+
+
+@dataclass(frozen=True, slots=True)
+class SaturatedEllipsoid(AbstractEvidence):
+    """``V = w' Q w`` decreases wherever ``V <= 1``, although signals are cut off at their limits.
+
+    Every signal ``s = sat(a)`` has a row h with ``|h w| <= limit`` in the ellipsoid (Hu and Lin).
+    There s is a mixture of its argument a and of ``h w``, so the loop moves as a mixture of the
+    matrices that have, for each signal, one or the other in its place: `Saturation.between`. With
+    w the state, or ``w = (y, max(delta, 0))`` where the system says how contact is lost, V
+    decreases
+
+    - in contact: ``-(B'Q + QB + 2 alpha Q) > 0`` for each of these matrices of every mode;
+    - free, where the system says how contact is lost: the same for the blocks of y of these
+      matrices of every free mode, and of Q;
+
+    and the set ``V <= 1`` lies where the rows keep their limits: ``[[Q, h'], [h, limit^2]] > 0``.
+    All are linear in the matrices: convex combinations of modes are covered.
+
+    Parameters
+    ----------
+    Q : tuple of tuple of int, shape (n, n)
+        Numerators of the symmetric matrix.
+    denominator_log2 : int
+        Q is these numerators over two to this power.
+    rate : Fraction
+        The alpha in 1/s.
+    H : tuple of tuple of int, shape (signals, n)
+        Numerators of the rows h.
+    H_denominator_log2 : int
+        H is these numerators over two to this power.
+    level : Fraction
+        Motions that begin at the start of the system, at this size at most, begin in ``V <= 1``.
+    """
+
+    kind: ClassVar[str] = "saturated-ellipsoid"
+    covers_mixtures: ClassVar[bool] = True
+    covers_lost_contact: ClassVar[bool] = True
+
+    Q: Matrix
+    denominator_log2: int
+    rate: Fraction
+    H: Matrix
+    H_denominator_log2: int
+    level: Fraction
+
+    @property
+    def shows(self) -> Shows:
+        """Decay from a region."""
+        return Shows.REGION
+
+    @property
+    def start_size(self) -> Fraction:
+        """The level."""
+        return self.level
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check that something saturates, shapes, and the signs of rate and level."""
+        if system.saturation is None:
+            return NOTHING_SATURATES
+        if system.time is not Time.CONTINUOUS:
+            return "saturation is covered in continuous time only"
+        if system.contact is not None and system.contact.pulls:
+            return "the environment could pull, which is not covered where signals saturate"
+        if not is_square(self.Q, system.order):
+            return f"Q is not a {system.order} x {system.order} matrix"
+        rows = len(system.saturation.signals)
+        if len(self.H) != rows or any(len(row) != system.order for row in self.H):
+            return f"H has not {rows} rows of {system.order} entries"
+        return None if self.rate > 0 and self.level > 0 else "the rate or the level is not positive"
+
+    def forms(self, system: SwitchedSystem) -> Forms:
+        """Yield Q, the decreases in contact and free, and what the ellipsoid must and may hold."""
+        assert system.saturation is not None  # find_misfit
+        yield "Q is not symmetric and positive definite", self.Q
+        yield from self._decreases(system, system.saturation)
+        Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
+        for signal, h in zip(system.saturation.signals, self._held(), strict=True):
+            rows = [[*q, entry] for q, entry in zip(Q, h, strict=True)]
+            form = RationalMatrix.from_rows([*rows, [*h, signal.limit**2]])
+            yield f"the row of {signal.name} is beyond its limit", form.numerators
+        start = system.saturation.start
+        for state in start.states:
+            x = state.fractions()
+            ((value,),) = multiply([*zip(*x, strict=True)], multiply(Q, x))
+            left = RationalMatrix.from_rows([[1 - self.level**2 * value]])
+            yield f"the ellipsoid does not hold the stated {start.name}", left.numerators
+
+    def _decreases(self, system: SwitchedSystem, saturation: Saturation) -> Forms:
+        held, count = self._held(), len(system.modes)
+        for k, mode in enumerate(system.modes):
+            for B in saturation.between(mode.A, k, held):
+                form = lyapunov_decrease(B.numerators, B.denominator, self.Q, self.rate)
+                yield f"V does not decrease at the claimed rate in mode {mode.name}", form
+        free = () if system.contact is None else system.contact.free
+        for k, mode in enumerate(free, count):
+            for B in saturation.between(mode.A, k, held):
+                own = leading(B.numerators)
+                form = lyapunov_decrease(own, B.denominator, leading(self.Q), self.rate)
+                where = f"in free motion, mode {mode.name}"
+                yield f"V does not decrease at the claimed rate {where}", form
+
+    def _held(self) -> list[list[Fraction]]:
+        return RationalMatrix(self.H, 2**self.H_denominator_log2).fractions()
+
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
+        """State from where motions decay, how fast, and what saturates."""
+        assert system.saturation is not None  # find_misfit
+        signals, start = system.saturation.signals, system.saturation.start
+        limits = [f"the {s.name} at {rounded_down(s.limit, s.unit)}" for s in signals]
+        states, lost = "the state,", ""
+        if system.contact is not None:
+            states = "the states other than the deflection, and it where it is positive,"
+            lost = ", contact lost and made again at any time"
+        return (
+            f"Although signals saturate, each at the stated limit or beyond it ({', '.join(limits)}"
+            f"): every motion that begins in the ellipsoid w' Q w <= 1 stays in it, and "
+            f"|w(t)| <= exp(-alpha t) |w(0)| with {rate_words(self.rate, system.time)} in the norm "
+            f"|w| = sqrt(w' Q w), where w holds {states} switching arbitrarily{lost}, with no "
+            f"disturbance. In particular: every motion that begins at rest with a {start.name} up "
+            f"to {rounded_down(self.level, start.unit)}, and all else zero."
+        )
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return Q, H, the rate and the level."""
+        return {
+            "Q": matrix_fields(self.Q, self.denominator_log2),
+            "H": matrix_fields(self.H, self.H_denominator_log2),
+            "rate": str(self.rate),
+            "level": str(self.level),
+        }
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read Q, H, the rate and the level; they say nothing where nothing saturates."""
+        if system.saturation is None:
+            raise ValueError(NOTHING_SATURATES)
+        rate, level = read_ratio(fields["rate"]), read_ratio(fields["level"])
+        Q, H = read_dyadic(fields["Q"]), read_dyadic(fields["H"])
+        return cls(*Q, rate, *H, level)

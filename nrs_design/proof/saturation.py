@@ -1,0 +1,155 @@
+"""Signals of a loop that are cut off at limits, and what the loop does between its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import product
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.noun import dataclass
+
+Rows = list[list[Fraction]]
+
+# There are two to this power of matrices for each mode.
+MOST_SIGNALS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class CutOff:
+    """A signal ``s`` that saturates: ``s = min(max(a, -limit), limit)``.
+
+    Its argument is ``a = q (x, s_1, ..., s_j)``, where the s_i are the signals before it.
+
+    Parameters
+    ----------
+    name, unit : str
+        What it is, such as ``velocity command`` in ``rad/s``.
+    limit : Fraction
+        Where it is cut off, both ways.
+    columns : tuple of RationalMatrix, each of shape (n, 1)
+        What it does to the state, in every mode and after them in the free modes.
+    rows : tuple of RationalMatrix, each of shape (1, n + number of signals before it)
+        The q in the same order; in free motion nothing in them stands for the deflection.
+    """
+
+    name: str
+    unit: str
+    limit: Fraction
+    columns: tuple[RationalMatrix, ...]
+    rows: tuple[RationalMatrix, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """States that a motion begins in: a size times any mixture of some of them.
+
+    Parameters
+    ----------
+    name, unit : str
+        What the size is of, such as ``contact force`` in ``N*m``.
+    states : tuple of RationalMatrix, each of shape (n, 1)
+        At the size one, at the corners of the ranges.
+    wanted : Fraction or None
+        The size that a statement is meant to reach; for words and searches only.
+    """
+
+    name: str
+    unit: str
+    states: tuple[RationalMatrix, ...]
+    wanted: Fraction | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Saturation:
+    """What saturates in a loop, and how motions begin that a statement about it names.
+
+    The modes say what the loop does while nothing is cut off. Beyond that it is
+    ``x' = A x + sum c_i (s_i - l_i x)``, where ``l_i x`` is what ``s_i`` were if nothing was.
+
+    Parameters
+    ----------
+    signals : tuple of CutOff
+        Each may depend on those before it.
+    start : Start
+        How motions begin.
+    """
+
+    signals: tuple[CutOff, ...]
+    start: Start
+
+    def find_oddity(self, order: int, modes: int, free: int) -> str | None:
+        """TRUSTED: say what makes no sense for so many states, modes and free modes, or None.
+
+        Parameters
+        ----------
+        order : int
+            Number of states.
+        modes, free : int
+            How many there are in contact, and free.
+        """
+        if not self.signals or len({signal.name for signal in self.signals}) < len(self.signals):
+            return "no signal saturates, or two that do have one name"
+        if len(self.signals) > MOST_SIGNALS:
+            return f"more than {MOST_SIGNALS} signals saturate"
+        for i, signal in enumerate(self.signals):
+            sized = [(M, (order, 1)) for M in signal.columns]
+            sized += [(M, (1, order + i)) for M in signal.rows]
+            if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
+                return f"{signal.name} does not have the size of the state"
+            if not len(signal.columns) == len(signal.rows) == modes + free:
+                return f"{signal.name} has not one column and row for every mode"
+            if signal.limit <= 0:
+                return f"the limit of {signal.name} is not positive"
+            if any(row.numerators[0][order - 1] for row in signal.rows[modes:]):
+                return f"{signal.name} depends on the deflection in free motion"
+        states = self.start.states
+        if not states or not all(x.is_well_formed and x.shape == (order, 1) for x in states):
+            return f"{self.start.name} does not have the size of the state"
+        return None
+
+    def between(
+        self, A: RationalMatrix, k: int, held: Sequence[Sequence[Fraction]]
+    ) -> Iterator[RationalMatrix]:
+        """Yield the matrices between which the loop is while every ``|h x|`` is within its limit.
+
+        The signal is then a mixture of its argument and of ``h x``, since it is the argument cut
+        off at a limit that ``h x`` keeps.
+
+        Parameters
+        ----------
+        A : RationalMatrix, shape (n, n)
+            The k-th mode, of those in contact and after them those that are free.
+        k : int
+            Which.
+        held : sequence of rows, each of n numbers
+            The h of every signal.
+        """
+        rows = A.fractions()
+        linear = self._signals(k, rows, held, (False,) * len(self.signals))
+        for replaced in product((False, True), repeat=len(self.signals)):
+            moved = [list(row) for row in rows]
+            taken = self._signals(k, rows, held, replaced)
+            for signal, new, old in zip(self.signals, taken, linear, strict=True):
+                for row, (c,) in zip(moved, signal.columns[k].fractions(), strict=True):
+                    for j, (other, own) in enumerate(zip(new, old, strict=True)):
+                        row[j] += c * (other - own)
+            yield RationalMatrix.from_rows(moved)
+
+    def _signals(
+        self,
+        k: int,
+        A: Rows,
+        held: Sequence[Sequence[Fraction]],
+        replaced: Sequence[bool],
+    ) -> Rows:
+        """Return every signal as a row over the state: its argument, or the h in its place."""
+        n = len(A)
+        found: Rows = []
+        for signal, h, other in zip(self.signals, held, replaced, strict=True):
+            row = signal.rows[k].fractions()[0]
+            argument = row[:n]
+            for share, before in zip(row[n:], found, strict=True):
+                argument = [a + share * b for a, b in zip(argument, before, strict=True)]
+            found.append(list(h) if other else argument)
+        return found

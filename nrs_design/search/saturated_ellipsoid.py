@@ -1,0 +1,403 @@
+"""Search for ellipsoids in which motions decay although signals saturate (untrusted).
+
+With ``S = Q^-1`` and ``Y = H S`` the conditions of `nrs_design.proof.evidence.saturated_ellipsoid`
+in contact are linear in S and Y (Hu and Lin), and the largest start is found at once. Free motion
+is about a block of Q. There is ``y' M y < 0`` on a block if and only if ``(B + g e')' Q + Q (B + g
+e') < 0`` for some column g, e the unit vector of the deflection; for a fixed g that is linear in S.
+So g is taken from the last S, beginning where nothing saturates, and S is improved until that
+gains little. At last H is rounded, and Q is found for it with as much to spare as possible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import SaturatedEllipsoid
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.allowance import Allowance
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.family import Family, to_floats
+from nrs_design.search.rounding import round_rate, unscale
+from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
+
+Array = NDArray[np.float64]
+
+DIGITS = (16, 20, 24, 32, 40, 50, 60)
+H_DIGITS = 40
+# The slowest decay that counts, as a share of the fastest there is, and by how much a start stays
+# below the largest one: nearer to it there is no decay to speak of.
+SLOWEST, BELOW = 1e-3, 0.99
+# Improvements of a region in free motion, and the least gain that is worth another.
+STEPS, GAIN = 12, 1.003
+BISECTIONS = 8
+# A start just inside of a region leaves nothing for rounding.
+ENOUGH = 0.999
+# Shares of the largest rate that are claimed.
+RATES = (0.99, 0.9, 0.5, 0.1)
+# In coordinates in which nothing saturates in the unit ball.
+SMALLEST, LARGEST = 1e-7, 1e5
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The loop in floating point; signals in units of their limits.
+
+    Parameters
+    ----------
+    A : ndarray, shape (k, n, n)
+        Modes in contact, and after them the free ones, which leave the deflection where it is.
+    free : int
+        How many of them are free.
+    columns : ndarray, shape (k, s, n)
+        What every signal does.
+    rows : tuple of ndarray, each of shape (k, n + signals before)
+        Their arguments.
+    starts : ndarray, shape (c, n)
+        States at the size one.
+    """
+
+    A: Array
+    free: int
+    columns: Array
+    rows: tuple[Array, ...]
+    starts: Array
+
+    @classmethod
+    def of(cls, system: SwitchedSystem) -> Problem:
+        """Convert a system of which something saturates."""
+        saturation = system.saturation
+        assert saturation is not None  # who asks has looked
+        free = () if system.contact is None else system.contact.free
+        limits = np.array([float(s.limit) for s in saturation.signals])
+        A = to_floats([mode.A for mode in (*system.modes, *free)])
+        columns = np.stack([to_floats(s.columns)[:, :, 0] for s in saturation.signals], axis=1)
+        columns *= limits[:, None]
+        if free:
+            A[-len(free) :, -1] = columns[-len(free) :, :, -1] = 0.0
+        n, rows = A.shape[1], list[Array]()
+        for i, signal in enumerate(saturation.signals):
+            row = to_floats(signal.rows)[:, 0] / limits[i]
+            row[:, n:] *= limits[:i]
+            rows.append(row)
+        starts = to_floats(saturation.start.states)[:, :, 0]
+        return cls(A, len(free), columns, tuple(rows), starts)
+
+    def transformed(self, T: Array) -> Problem:
+        """Return the same in coordinates ``x = T z``."""
+        inverse, n = np.linalg.inv(T), len(T)
+        rows = (np.concatenate([row[:, :n] @ T, row[:, n:]], axis=1) for row in self.rows)
+        return replace(
+            self,
+            A=inverse @ self.A @ T,
+            columns=self.columns @ inverse.T,
+            rows=tuple(rows),
+            starts=self.starts @ inverse.T,
+        )
+
+    @property
+    def linear(self) -> Array:
+        """The signals while nothing is cut off, as rows; shape (k, s, n)."""
+        found: list[Array] = []
+        n = self.A.shape[1]
+        for row in self.rows:
+            whole = row[:, :n].copy()
+            for i, before in enumerate(found):
+                whole += row[:, n + i, None] * before
+            found.append(whole)
+        return np.stack(found, axis=1)
+
+    def vertices(self, S: Any, Y: Sequence[Any]) -> Iterator[tuple[int, Any]]:
+        """Yield, with the index of its mode, ``B S`` for every B that a mode is a mixture of.
+
+        Parameters
+        ----------
+        S : ndarray or expression, shape (n, n)
+            The identity gives the matrices themselves.
+        Y : sequence of ndarray or expression, each of shape (1, n)
+            The rows ``h S``.
+        """
+        n, linear = self.A.shape[1], self.linear
+        for k, replaced in product(range(len(self.A)), product((False, True), repeat=len(Y))):
+            B, taken = self.A[k] @ S, list[Any]()
+            for i, (row, y, other) in enumerate(zip(self.rows, Y, replaced, strict=True)):
+                argument = row[k, None, :n] @ S
+                for share, before in zip(row[k, n:], taken, strict=True):
+                    argument = argument + share * before
+                taken.append(y if other else argument)
+                B = B + self.columns[k, i, :, None] @ (taken[-1] - linear[k, i, None] @ S)
+            yield k, B
+
+    def is_free(self, k: int) -> bool:
+        """Tell whether a mode is one of free motion."""
+        return k >= len(self.A) - self.free
+
+
+@dataclass(frozen=True)
+class Region:
+    """The ellipsoid ``z' S^-1 z <= 1``, with its H, and the largest start in it."""
+
+    S: Array
+    H: Array
+    size: float
+
+
+def search_saturated(
+    system: SwitchedSystem, allowance: Allowance
+) -> Candidates[SaturatedEllipsoid]:
+    """Yield ellipsoids that hold a start, those with the fastest decay first.
+
+    The start is the wanted one; without one, or where it is out of reach, nearly the largest.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Stable, in continuous time, with what saturates.
+    allowance : Allowance
+        Time and memory.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
+    """
+    assert system.saturation is not None  # who asks has looked
+    family, raw = Family.of(system), Problem.of(system)
+    slowest = SLOWEST * family.limit
+    T = np.diag(np.ldexp(1.0, family.exponents))
+    first = _unsaturated(raw.transformed(T), slowest, allowance)
+    if first is None:
+        return NO_MARGIN
+    # A triangular change of coordinates leaves the deflection alone, which is zero in free motion.
+    T = T @ _triangular(first)
+    T /= np.linalg.norm(raw.linear @ T, axis=-1).max()
+    own = raw.transformed(T)
+    if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):
+        return OUT_OF_RANGE
+    start = Region(np.eye(len(T)), own.linear[0], 0.0)
+    wanted = system.saturation.start.wanted
+    enough = np.inf if wanted is None else float(wanted) / BELOW**2
+    largest = _largest(own, slowest, start, allowance, enough)
+    if largest is None:
+        return NO_MARGIN
+    level = Fraction(f"{BELOW * largest.size:.4e}")
+    if wanted is not None and wanted < level:
+        level = wanted
+    region, rate = _fastest(own, largest, float(level), slowest, family.limit, allowance)
+    yield from map(Candidate, _rounded(raw, system, T, region, rate, level, allowance))
+    return None
+
+
+def _unsaturated(problem: Problem, rate: float, allowance: Allowance) -> Array | None:
+    """Return a quadratic function of the loop in which nothing is cut off."""
+    n = problem.A.shape[1]
+    Q, t = _unknowns(n, 0)[0], _last(n, 0)
+    blocks = [(np.eye(n), -Q), (np.zeros((n, n)), Q - t * np.eye(n))]
+    for k, A in enumerate(problem.A):
+        last = n - problem.is_free(k)
+        blocks.append(_decrease(A[:last, :last], Q[:, :last, :last], t, rate))
+    x = _solved(blocks, allowance)
+    return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
+
+
+def _largest(
+    problem: Problem, rate: float, start: Region, allowance: Allowance, enough: float = np.inf
+) -> Region | None:
+    """Return the region with the largest start; in free motion, one that is hard to improve."""
+    best = None
+    for _ in range(STEPS if problem.free else 1):
+        found = _improved(problem, rate, start, allowance)
+        if found is None or (best is not None and found.size < GAIN * best.size):
+            return best if found is None or (best and best.size > found.size) else found
+        best = start = found
+        if best.size >= enough:
+            break
+    return best
+
+
+def _improved(problem: Problem, rate: float, near: Region, allowance: Allowance) -> Region | None:
+    """Return the largest region for the columns g that fit another."""
+    n, count = problem.A.shape[1], len(problem.rows)
+    (S, Y), size = _unknowns(n, count), _last(n, count)
+    unit = np.linalg.norm(problem.starts, axis=1).max()
+    # An ellipsoid may be long, but not without end.
+    blocks = [(LARGEST * np.eye(n), -S)]
+    blocks += [(np.zeros((n, n)), S - size * np.outer(x, x)) for x in problem.starts / unit]
+    corner = np.zeros((n + 1, n + 1))
+    corner[n, n] = 1.0
+    for y in Y:
+        blocks.append((corner, _bordered(S, y)))
+    before = dict(enumerate(problem.vertices(np.eye(n), [h[None] for h in near.H])))
+    for i, (k, form) in enumerate(problem.vertices(S, Y)):
+        if problem.is_free(k):
+            form = form + _column(before[i][1], near.S, rate)[:, None] @ S[:, n - 1 : n, :]
+        images = -(form + np.swapaxes(form, -1, -2)) - 2 * rate * S
+        blocks.append((-SMALLEST * np.eye(n), images))
+    x = _solved(blocks, allowance)
+    if x is None:
+        return None
+    found = np.asarray(np.tensordot(x, S, axes=1))
+    rows = np.concatenate([np.tensordot(x, y, axes=1) for y in Y])
+    return Region(found, rows @ np.linalg.inv(found), float(np.sqrt(x[-1]) / unit))
+
+
+def _column(B: Array, S: Array, rate: float) -> Array:
+    """Return the g for which free motion, at its B, decreases in all states at once."""
+    Q = np.linalg.inv(S)
+    M = -(B.T @ Q + Q @ B + 2 * rate * Q)
+    r = M[-1].copy()
+    r[-1] = (M[-1, -1] - np.abs(np.diag(M)[:-1]).max()) / 2
+    return np.asarray(S @ r)
+
+
+def _fastest(
+    problem: Problem,
+    region: Region,
+    level: float,
+    slowest: float,
+    fastest: float,
+    allowance: Allowance,
+) -> tuple[Region, float]:
+    """Return a region that holds the start, with the largest rate that bisection finds."""
+    low, high = slowest, fastest
+    for _ in range(BISECTIONS):
+        rate = float(np.sqrt(low * high))
+        found = _largest(problem, rate, region, allowance, level / ENOUGH)
+        if found is None or found.size * ENOUGH < level:
+            high = rate
+        else:
+            region, low = found, rate
+    return region, low
+
+
+def _rounded(
+    raw: Problem,
+    system: SwitchedSystem,
+    T: Array,
+    region: Region,
+    rate: float,
+    level: Fraction,
+    allowance: Allowance,
+) -> Iterator[SaturatedEllipsoid]:
+    """Yield the region with H rounded and Q found anew for it, with ever more digits."""
+    assert system.saturation is not None
+    limits = np.array([float(s.limit) for s in system.saturation.signals])
+    H = limits[:, None] * (region.H @ np.linalg.inv(T))
+    T = np.asarray(T @ _triangular(np.linalg.inv(region.S)), dtype=np.float64)
+    log2 = max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
+    rows = tuple(tuple(round(float(v)) for v in row) for row in np.ldexp(H, log2))
+    kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T
+    for share in RATES:
+        alpha = round_rate(share * rate, Time.CONTINUOUS)
+        own = _fitted(raw.transformed(T), kept, float(level), float(alpha), allowance)
+        if own is None:
+            continue
+        inverse = np.linalg.inv(T)
+        Q = inverse.T @ own @ inverse
+        # In these units the diagonal of Q is about one.
+        shifts = -np.round(np.log2(np.diag(Q)) / 2).astype(np.int64)
+        unit = np.ldexp(np.ldexp(Q, shifts[:, None]), shifts[None])
+        for bits in DIGITS:
+            numerators, power = unscale(unit, shifts, bits)
+            if power < 0:
+                numerators = tuple(tuple(v << -power for v in row) for row in numerators)
+            yield SaturatedEllipsoid(numerators, max(power, 0), alpha, rows, log2, level)
+
+
+def _fitted(
+    problem: Problem, H: Array, level: float, rate: float, allowance: Allowance
+) -> Array | None:
+    """Return Q for a given H, where it is about the identity, with as much to spare as possible."""
+    n = problem.A.shape[1]
+    Q, t = _unknowns(n, 0)[0], _last(n, 0)
+    blocks = []
+    for h in H:
+        constant = np.zeros((n + 1, n + 1))
+        constant[n, :n] = constant[:n, n] = h
+        constant[n, n] = 1.0
+        border = _bordered(Q, np.zeros((len(Q), 1, n)))
+        blocks.append((constant, border - t * np.eye(n + 1)))
+    for x in problem.starts:
+        value = level**2 * (x @ Q @ x)[:, None, None]
+        blocks.append((np.ones((1, 1)), -value - t))
+    for k, B in problem.vertices(np.eye(n), [h[None] for h in H]):
+        last = n - problem.is_free(k)
+        blocks.append(_decrease(B[:last, :last], Q[:, :last, :last], t, rate))
+    x = _solved(blocks, allowance)
+    return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
+
+
+def _triangular(Q: Any) -> Array:
+    """Return an upper triangular T with ``T' Q T = I``."""
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(Q).T))
+
+
+def _unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
+    """Return what each unknown makes of a symmetric matrix, and of rows; the last one of neither.
+
+    Parameters
+    ----------
+    n : int
+        Order of the matrix, and length of the rows.
+    rows : int
+        How many rows there are.
+    """
+    basis, total = symmetric_basis(n), n * (n + 1) // 2 + rows * n + 1
+    S, Y = np.zeros((total, n, n)), [np.zeros((total, 1, n)) for _ in range(rows)]
+    S[: len(basis)] = basis
+    for i, row in enumerate(Y):
+        first = len(basis) + i * n
+        row[first : first + n, 0] = np.eye(n)
+    return S, Y
+
+
+def _last(n: int, rows: int) -> Array:
+    """Return what each unknown makes of the number that is to be large."""
+    number = np.zeros((n * (n + 1) // 2 + rows * n + 1, 1, 1))
+    number[-1] = 1.0
+    return number
+
+
+def _bordered(S: Array, y: Array) -> Array:
+    """Return ``[[S, y'], [y, 0]]`` for every unknown."""
+    n = S.shape[-1]
+    whole = np.zeros((len(S), n + 1, n + 1))
+    whole[:, :n, :n] = S
+    whole[:, n:, :n], whole[:, :n, n:] = y, np.swapaxes(y, -1, -2)
+    return whole
+
+
+def _decrease(A: Array, Q: Array, t: Array, rate: float) -> tuple[Array, Array]:
+    """Return the block that wants a decrease of at least t."""
+    half = Q @ A
+    size = np.eye(len(A))
+    return 0.0 * size, -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q - t * size
+
+
+def _solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
+    """Make the last unknown large where all blocks are positive; None where it is not positive.
+
+    Parameters
+    ----------
+    blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
+        A constant, and what every unknown adds to it.
+    allowance : Allowance
+        Time and memory.
+    """
+    unknowns = len(blocks[0][1])
+    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
+    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
+    x = maximize_margin(
+        np.concatenate([-pack(images).T for _, images in blocks]),
+        np.concatenate([pack(constant) for constant, _ in blocks]),
+        [len(constant) for constant, _ in blocks],
+        time_limit=allowance.left,
+    )
+    return x if x is not None and x[-1] > 0 else None

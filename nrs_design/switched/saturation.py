@@ -1,0 +1,141 @@
+"""What of an impedance loop saturates, in continuous time: the velocity command, and the motor's.
+
+The admittance commands the velocity v. The motion loop integrates ``e' = sat(v) - omega`` and
+commands the motor ``u = Kp e + Kd (sat(v) - omega)``, of which the driver takes ``sat(u)``:
+``tau omega' = Km sat(u) - omega``, less what a load adds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.float32 import float32_not_above
+from nrs_design.models.contact.environment import Environment
+from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.models.plant import Plant
+from nrs_design.proof.bounds import rounded_down
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.saturation import CutOff, Saturation, Start
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.switched.assumption_kinds import LIMITED
+from nrs_design.switched.joint import Joint
+from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
+
+
+def with_saturation(
+    system: SwitchedSystem,
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    loop: MotionLoop,
+    design: ControllerDesign,
+) -> SwitchedSystem:
+    """Let a statement be about motions in which velocity command and motor command saturate.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The loop in which nothing does, in deflection coordinates.
+    spec : InteractionDesignSpec
+        With its limits and the goal, as `nrs_design.spec.initial_force` checks.
+    plant : Plant
+        With the motor, and what is touched.
+    loop : MotionLoop
+        Closed motion loop G.
+    design : ControllerDesign
+        Gains that ship.
+    """
+    assert spec.goals is not None  # it is asked for
+    assert spec.limits.command is not None
+    joint = Joint.of(plant, design.motion)
+    motion = realize(loop) if joint is None else joint.nominal
+    drive = plant.actuator.gain / plant.actuator.time_constant
+    n, free = system.order, () if system.contact is None else system.contact.free
+    modes = (*system.modes, *free)
+    error, omega, columns = _physical(motion, n)
+    Kp, Kd = design.motion.Kp, design.motion.Kd
+    motor = RationalMatrix.from_rows([[*combine((Kp, error), (-Kd, omega)), Kd]])
+    drives = [_drive(mode, Kp) if joint is not None else drive for mode in modes]
+    velocity_limit = float32_not_above(spec.limits.velocity.not_above)
+    command_limit = float32_not_above(spec.limits.command.not_above)
+    signals = (
+        CutOff(
+            "velocity command",
+            "rad/s",
+            velocity_limit,
+            (_column(columns[0]),) * len(modes),
+            tuple(RationalMatrix.from_rows([_command(mode, motion)]) for mode in modes),
+        ),
+        CutOff(
+            "motor command",
+            spec.actuator.command,
+            command_limit,
+            tuple(_column([share * entry for entry in columns[1]]) for share in drives),
+            (motor,) * len(modes),
+        ),
+    )
+    wanted = spec.goals.initial_force
+    start = Start(
+        "contact force",
+        "N*m",
+        tuple(_rest(system.states, plant.among(design.contacts))),
+        None if wanted is None or isinstance(wanted, str) else wanted.exact,
+    )
+    modelled: dict[str, str] = {NOT_MODELLED: NOT_MODELLED_BUT_LIMITS}
+    texts = (modelled.get(text, text) for text in system.assumptions)
+    limited = LIMITED.says(
+        "Where signals saturate: the velocity command of the admittance is cut off at "
+        f"{rounded_down(velocity_limit, 'rad/s')} before the motion loop takes it, or at any "
+        "larger value on either side, or nowhere; the command of the motor likewise at "
+        f"{rounded_down(command_limit, spec.actuator.command)}; nothing else is. Nobody commands "
+        "anything, and nothing disturbs, while the motion decays.",
+        f"{rounded_down(velocity_limit, 'rad/s')} and "
+        f"{rounded_down(command_limit, spec.actuator.command)}, or more",
+    )
+    return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
+
+
+def _physical(
+    motion: Realization | JointMotion, n: int
+) -> tuple[LinearForm, LinearForm, tuple[LinearForm, LinearForm]]:
+    """Return e and omega as forms of the state, and what a change of each is in the state."""
+    omega, unit = motion.output(n), coordinates(n)
+    error = unit[0] if isinstance(motion, JointMotion) else motion.integral(zero(n))
+    (a, b), (c, d) = error[:2], omega[:2]
+    determinant = a * d - b * c
+    rest = zero(n - 2)
+    first = [d / determinant, -c / determinant, *rest]
+    second = [-b / determinant, a / determinant, *rest]
+    return error, omega, (first, second)
+
+
+def _command(mode: Mode, motion: Realization | JointMotion) -> LinearForm:
+    """Return the velocity that the law commands in a mode: what drives its motion loop."""
+    n, A = len(mode.A.numerators), mode.A.fractions()
+    still = motion.rates(zero(n))
+    k = 0 if isinstance(motion, JointMotion) else motion.order - 1
+    return combine((Fraction(1), A[k]), (Fraction(-1), still[k]))
+
+
+def _drive(mode: Mode, Kp: Fraction) -> Fraction:
+    """Return what a command accelerates in a mode: the error drives the motor by Km Kp/tau."""
+    return Fraction(mode.A.numerators[1][0], mode.A.denominator) / Kp
+
+
+def _rest(states: Sequence[str], touched: Sequence[Environment]) -> list[RationalMatrix]:
+    """Return the states at rest with a unit of force, at every stiffness."""
+    unit = coordinates(len(states))
+    found: list[RationalMatrix] = []
+    for environment in touched:
+        for stiffness in (environment.stiffness.low, environment.stiffness.high):
+            found.append(_column([entry / stiffness for entry in unit[-1]]))
+    return found
+
+
+def _column(form: Sequence[Fraction]) -> RationalMatrix:
+    return RationalMatrix.from_rows([[entry] for entry in form])

@@ -1,0 +1,238 @@
+"""Decay although signals saturate: a region known by hand, attacks, and what every form bars."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.proof.channels import Coupling
+from nrs_design.proof.evidence import SaturatedEllipsoid, Shows, read_evidence
+from nrs_design.proof.mode import Time
+from nrs_design.proof.saturation import CutOff, Saturation
+from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.switching import Reset, Switching
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    family,
+    genuine,
+    kept,
+    matrix,
+    pushed_away,
+    saturating,
+)
+from tests.proof.truth import holds
+
+# For x' = x + sat(-3 x): h = -17/16, V = (19/16)^2 x^2 nearly, from |x| <= 13/16.
+HELD = SaturatedEllipsoid(((361,),), 8, Fraction(1, 32), ((-17,),), 4, Fraction(13, 16))
+
+
+def test_a_scalar_loop_decays_from_inside_of_its_region():
+    system = pushed_away()
+    assert HELD.find_fault(system) is None
+    assert agrees(system, HELD)
+    assert holds(system, HELD)
+    assert HELD.shows is Shows.REGION
+    assert HELD.start_size == Fraction(13, 16)
+    assert HELD.proved_rate(system) is None
+    claim = HELD.claim(system)
+    assert "a place up to 0.8125 m" in claim
+    assert "alpha = 0.03125 1/s" in claim
+    assert "the s at 1 N" in claim
+    assert "contact" not in claim
+
+
+def test_the_claim_says_that_contact_may_be_lost():
+    system, evidence = genuine("saturated-ellipsoid")
+    assert "contact lost and made again at any time" in evidence.claim(system)
+    assert "contact is kept" not in evidence.claim(system)
+
+
+def test_the_known_region_is_filled():
+    """It is |x| < 1: with h near -1 the certificate comes as near as wanted."""
+    rows, Q = ((-(2**20) - 2**3,),), ((2**40 + 2**26,),)
+    near = SaturatedEllipsoid(Q, 40, Fraction(1, 10**6), rows, 20, Fraction(9999, 10000))
+    assert near.find_fault(pushed_away()) is None
+    assert near.find_fault(pushed_away(2)) is None
+    assert near.find_fault(pushed_away(1)) is not None
+
+
+@given(
+    st.integers(-80, 80),
+    st.integers(1, 5000),
+    st.fractions("1/20", 3, max_denominator=40),
+    st.fractions("1/100", 2, max_denominator=100),
+)
+def test_nothing_is_shown_from_outside_of_the_known_region(h, q, level, rate):
+    evidence = SaturatedEllipsoid(((q,),), 8, rate, ((h,),), 4, level)
+    if evidence.find_fault(pushed_away()) is None:
+        assert level < 1
+        assert holds(pushed_away(), evidence)
+
+
+def test_limits_that_are_wider_are_covered():
+    system = pushed_away()
+    (signal,) = system.saturation.signals
+    for limit in (1, 2, 1000):
+        wider = (replace(signal, limit=Fraction(limit)),)
+        what = replace(system.saturation, signals=wider)
+        assert HELD.find_fault(replace(system, saturation=what)) is None
+    narrow = replace(system.saturation, signals=(replace(signal, limit=Fraction(1, 2)),))
+    assert "beyond its limit" in HELD.find_fault(replace(system, saturation=narrow))
+
+
+@pytest.mark.parametrize(
+    ("evidence", "fault"),
+    [
+        # What each condition bars: without it, decay from |x| > 1 or of an unstable loop.
+        (replace(HELD, Q=((64,),), level=Fraction(19, 10)), "the row of s is beyond its limit"),
+        (replace(HELD, H=((-15,),)), "does not decrease at the claimed rate in mode m0"),
+        (replace(HELD, level=Fraction(2)), "does not hold the stated place"),
+        (replace(HELD, H=((0,),), Q=((64,),)), "does not decrease"),
+        (replace(HELD, rate=Fraction(1, 16)), "does not decrease"),
+        # On the edge, every form is singular and shows nothing.
+        (replace(HELD, H=((-16,),)), "does not decrease"),
+        (replace(HELD, H=((-19,),)), "beyond its limit"),
+        (replace(HELD, level=Fraction(16, 19)), "does not hold the stated place"),
+        (replace(HELD, Q=((-361,),)), "Q is not symmetric and positive definite"),
+        (replace(HELD, rate=Fraction(0)), "is not positive"),
+        (replace(HELD, level=Fraction(0)), "is not positive"),
+        (replace(HELD, level=Fraction(-1, 2)), "is not positive"),
+        (replace(HELD, Q=((361, 0), (0, 1))), "Q is not a 1 x 1 matrix"),
+        (replace(HELD, H=()), "H has not 1 rows of 1 entries"),
+        (replace(HELD, H=((-17,), (-17,))), "H has not 1 rows"),
+        (replace(HELD, H=((-17, 0),)), "H has not 1 rows"),
+        (replace(HELD, H=((-17.0,),)), "float"),
+    ],
+)
+def test_other_numbers_are_refused(evidence, fault):
+    assert fault in evidence.find_fault(pushed_away())
+
+
+def test_a_loop_that_is_unstable_within_its_limits_is_refused():
+    """The row alone would decay: x' = x - sat(x/2) does not, from anywhere."""
+    assert "does not decrease" in HELD.find_fault(pushed_away("1/2"))
+    assert not holds(pushed_away("1/2"), HELD)
+
+
+def changed(**parts):
+    system = pushed_away()
+    (signal,) = system.saturation.signals
+    return replace(
+        system, saturation=replace(system.saturation, signals=(replace(signal, **parts),))
+    )
+
+
+def without_signals(*signals):
+    return replace(pushed_away(), saturation=Saturation(signals, pushed_away().saturation.start))
+
+
+SIGNAL = pushed_away().saturation.signals[0]
+UNEVEN = replace(
+    family([[-2]], [[-2, 0], [0, -2]], switching=Switching(resets=())),
+    saturation=pushed_away().saturation,
+)
+
+
+@pytest.mark.parametrize(
+    ("system", "fault"),
+    [
+        (replace(pushed_away(), saturation=None), "does not say what saturates"),
+        (replace(pushed_away(), time=Time.DISCRETE), "continuous time only"),
+        (changed(limit=Fraction(0)), "the limit of s is not positive"),
+        (changed(columns=()), "has not one column and row for every mode"),
+        (changed(rows=SIGNAL.rows * 2), "has not one column and row for every mode"),
+        (changed(columns=(matrix([[1], [1]]),)), "s does not have the size of the state"),
+        (changed(rows=(matrix([[1, 1]]),)), "s does not have the size of the state"),
+        (without_signals(), "no signal saturates"),
+        (without_signals(SIGNAL, SIGNAL), "two that do have one name"),
+        (
+            without_signals(*(replace(SIGNAL, name=f"s{i}") for i in range(5))),
+            "more than 4 signals saturate",
+        ),
+        (
+            replace(
+                pushed_away(),
+                saturation=replace(
+                    pushed_away().saturation,
+                    start=replace(pushed_away().saturation.start, states=()),
+                ),
+            ),
+            "place does not have the size of the state",
+        ),
+        (UNEVEN, "not of one size"),
+        (
+            replace(
+                pushed_away(),
+                couplings=(Coupling("c", (matrix([[1]]),), (matrix([[1]]),)),),
+            ),
+            "what axes do to each other",
+        ),
+    ],
+)
+def test_another_system_is_refused(system, fault):
+    assert fault in HELD.find_fault(system)
+
+
+def test_contact_is_asked_for_what_it_does():
+    system, evidence = genuine("saturated-ellipsoid")
+    pulling = replace(system, contact=replace(system.contact, pulls=(matrix([[0, 1]]),)))
+    assert "could pull" in evidence.find_fault(pulling)
+    first, *others = system.saturation.signals
+    feeling = replace(first, rows=(*first.rows[:-1], matrix([[-1, 1]])))
+    what = replace(system.saturation, signals=(feeling, *others))
+    fault = "s1 depends on the deflection in free motion"
+    assert fault in evidence.find_fault(replace(system, saturation=what))
+    reset = Switching(resets=(Reset("m0", "m1", matrix([[2, 0], [0, 2]])),))
+    assert "kind of switching" in evidence.find_fault(replace(system, switching=reset))
+    assert evidence.find_fault(replace(bouncing_in_steps(), saturation=None)) is not None
+    assert evidence.find_fault(bouncing()) == "the system does not say what saturates"
+
+
+def test_free_motion_has_conditions_of_its_own():
+    """What decays in contact flies away where the pull is cut off earlier in the air."""
+    system, evidence = genuine("saturated-ellipsoid")
+    flying = replace(system.contact.free[0], A=matrix([[1, 0], [1, 0]]))
+    lost = replace(system, contact=replace(system.contact, free=(flying,)))
+    # In the air nothing pulls: v' = v, where its linear form is what it is in contact.
+    off = [
+        replace(s, rows=(*s.rows[:-1], matrix([[0] * (2 + i)])))
+        for i, s in enumerate(system.saturation.signals)
+    ]
+    lost = replace(lost, saturation=replace(system.saturation, signals=tuple(off)))
+    assert "in free motion, mode free" in evidence.find_fault(lost)
+    assert evidence.find_fault(kept(system)) is None
+    assert not holds(lost, evidence)
+
+
+def test_every_choice_of_arguments_and_rows_is_needed():
+    """Two signals, one in the other: x' = 1 x + s1 + s2, by hand for every vertex."""
+    s1 = CutOff("s1", "N", Fraction(2), (matrix([[1]]),), (matrix([[-1]]),))
+    s2 = CutOff("s2", "N", Fraction(1), (matrix([[1]]),), (matrix([[-1, 1]]),))
+    what = Saturation((s1, s2), pushed_away().saturation.start)
+    found = what.between(matrix([[-2]]), 0, [[Fraction(-1, 2)], [Fraction(-3, 4)]])
+    # s1 in {-x, -x/2}; s2 in {s1 - x, -3x/4}.
+    assert [B.fractions()[0][0] for B in found] == [
+        1 - 1 - 2,
+        1 - 1 - Fraction(3, 4),
+        1 - Fraction(1, 2) - Fraction(3, 2),
+        1 - Fraction(1, 2) - Fraction(3, 4),
+    ]
+    system = replace(pushed_away(), modes=family([[-2]]).modes, saturation=what)
+    # The last vertex alone bars this: from x = 3 it flies away, and h2 = -1/4 is no pull.
+    weak = SaturatedEllipsoid(((16,),), 8, Fraction(1, 64), ((-16,), (-4,)), 5, Fraction(7, 2))
+    assert "does not decrease" in weak.find_fault(system)
+    assert not holds(system, weak)
+
+
+def test_fields_are_read_again():
+    fields = {"kind": "saturated-ellipsoid", **HELD.to_fields()}
+    assert read_evidence(fields, pushed_away()) == HELD
+    with pytest.raises(ValueError, match="does not say what saturates"):
+        read_evidence(fields, family([[-1]]))
+
+
+def test_what_saturates_is_a_part_of_the_system():
+    assert saturating().saturation != kept(saturating()).saturation

@@ -1,0 +1,8 @@
+from nrs_design.proof.contact import Contact
+
+
+def test_nothing_said_of_contact_asks_for_nothing():
+    contact = Contact(())
+    assert not contact.required
+    assert not contact.pushed
+    assert contact.pulls == ()

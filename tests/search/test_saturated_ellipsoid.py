@@ -1,0 +1,122 @@
+"""Regions in which motions decay although signals saturate: published values, and bad input."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.mode import Mode
+from nrs_design.proof.saturation import CutOff, Saturation, Start
+from nrs_design.search.allowance import Allowance, NotAffordableError
+from nrs_design.search.candidates import NO_MARGIN
+from nrs_design.search.certify import certify, first_accepted
+from nrs_design.search.saturated_ellipsoid import search_saturated
+from tests.proof.systems import family, matrix, pushed_away
+
+KM, TAU, KD = Fraction("4.8417e-4"), Fraction("0.0351"), Fraction(2060)
+KP, DRIVE, MT = KD * Fraction("56.9706"), KM / TAU, Fraction("0.01")
+STIFFNESSES = Fraction("41.5"), Fraction("44.2")
+
+
+def thesis(*dampings, lost=False, wanted=None):
+    """The robot of the thesis by hand, in the states e, omega, vm and delta."""
+
+    def rows(k, Bt):
+        return [
+            [0, -1, -1, 0],
+            [DRIVE * KP, -1 / TAU - DRIVE * KD, -DRIVE * KD, 0],
+            [0, 0, -Fraction(Bt) / MT, k / MT],
+            [0, 1, 0, 0],
+        ]
+
+    system = family(*(rows(k, Bt) for Bt in dampings for k in STIFFNESSES))
+    free = tuple(Mode(f"free {Bt}", matrix(rows(Fraction(0), Bt))) for Bt in dampings)
+    count = len(system.modes) + lost * len(free)
+    unit = [matrix([[int(i == j)] for j in range(4)]) for i in range(3)]
+    signals = (
+        CutOff(
+            "velocity command",
+            "rad/s",
+            Fraction("0.13962634"),
+            (unit[0],) * count,
+            (matrix([[0, 0, -1, 0]]),) * count,
+        ),
+        CutOff(
+            "motor command",
+            "rpm",
+            Fraction(2000),
+            (matrix([[0], [DRIVE], [0], [0]]),) * count,
+            (matrix([[KP, -KD, 0, 0, KD]]),) * count,
+        ),
+    )
+    start = Start("force", "N*m", (matrix([[0], [0], [0], [Fraction(1, 43)]]),), wanted)
+    contact = Contact(free, required=True) if lost else None
+    return replace(system, contact=contact, saturation=Saturation(signals, start))
+
+
+def found(system):
+    return first_accepted(search_saturated(system, Allowance()), system)
+
+
+@pytest.mark.parametrize("lost", [False, True])
+@pytest.mark.parametrize(
+    ("dampings", "force"),
+    [(("2.15",), 2.45), (("1.04",), 0.895), (("2.15", "1.04"), 0.887)],
+)
+def test_the_reference_is_reached(dampings, force, lost):
+    """0.89 N m and 2.45 N m at 43 N m/rad in the reference, with contact kept."""
+    evidence, words = found(thesis(*dampings, lost=lost))
+    assert words == "found"
+    assert float(evidence.level) == pytest.approx(0.99 * force, rel=2e-3)
+
+
+def test_a_wanted_force_decays_as_fast_as_is_found():
+    evidence, _ = found(thesis("2.15", "1.04", lost=True, wanted=Fraction(1, 2)))
+    assert evidence.level == Fraction(1, 2)
+    assert evidence.rate > 2.5
+    larger, _ = found(thesis("2.15", "1.04", lost=True, wanted=Fraction(4, 5)))
+    assert larger.level == Fraction(4, 5)
+    assert 0.1 < larger.rate < 1.5
+
+
+def test_where_the_wanted_force_is_out_of_reach_the_most_is_stated():
+    evidence, _ = found(thesis("2.15", wanted=Fraction(3)))
+    assert 2.4 < evidence.level < 2.45
+
+
+def test_a_region_that_is_known_is_nearly_filled():
+    evidence, _ = found(pushed_away())
+    assert 0.98 < evidence.level < 1
+
+
+def test_a_loop_without_a_quadratic_function_has_no_region():
+    evidence, words = found(pushed_away("1/2"))
+    assert evidence is None
+    assert words == NO_MARGIN
+
+
+def test_without_time_nothing_is_looked_for():
+    with pytest.raises(NotAffordableError):
+        next(search_saturated(pushed_away(), Allowance(0.0)))
+
+
+def test_it_is_stated_beside_the_verdict():
+    system = thesis("2.15")
+    certification = certify(system)
+    assert [item.kind for item in certification.statements][-1] == "saturated-ellipsoid"
+    assert certification.evidence.kind != "saturated-ellipsoid"
+    assert certification.attempts[-1].step == "decay under saturation"
+    # Equal modes are merged for the verdict, and each has what it does to its signals.
+    twice = replace(
+        system,
+        modes=(*system.modes, *(replace(mode, name=f"{mode.name}'") for mode in system.modes)),
+        saturation=replace(
+            system.saturation,
+            signals=tuple(
+                replace(s, columns=s.columns * 2, rows=s.rows * 2)
+                for s in system.saturation.signals
+            ),
+        ),
+    )
+    assert certify(twice).statements[-1].find_fault(twice) is None

@@ -187,7 +187,7 @@ ALONE = (
 def test_what_is_good_must_cover_other_axes_and_what_grows_says_that_it_is_one(what):
     system = leaning(replace(bouncing(), contact=None), "1/8")
     fault, claim = Said(what=what).find_fault(system), Said(what=what).claim(system)
-    if what in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE):
+    if what in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION):
         assert "does not cover what axes do to each other" in fault
     else:
         assert fault is None
@@ -322,10 +322,10 @@ FACTS = {
     "covers_clock": {"periodic-quadratic", "unstable-period"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic"},
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"},
     "covers_mixtures": SETS
     | BOUNCING
-    | {"common-polynomial", "constant-force", "block-triangular"},
+    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,

@@ -23,7 +23,7 @@ def lint(session: nox.Session) -> None:
 @nox.session
 def types(session: nox.Session) -> None:
     session.install(".", "mypy", "scipy-stubs", *CONSTRAINTS)
-    session.run("mypy")
+    session.run("mypy", "--num-workers", "2")
 
 
 @nox.session

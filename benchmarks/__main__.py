@@ -13,6 +13,7 @@ from benchmarks.measure import Comparison, Finding, machine_facts
 
 BENCHMARKS = (
     "cold_pair",
+    "verify_shipped",
     "many_modes",
     "tight_margins",
     "high_order",

@@ -10,7 +10,6 @@ import numpy as np
 from benchmarks.measure import Finding
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.pipeline import Designed, Overrides, limits_of, run_certification
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
@@ -119,7 +118,7 @@ def _largest_force(
     whole = [law for law in laws if law is not None]
     choices = _choices(designed, system, found, rng, runs)
     offset = rng.uniform(-1, 1, runs) * np.deg2rad(LARGEST_ANGLE) * 0.9
-    motion = SampledMotion.of(design.motion, period)
+    motion = design.motion.sampled(period)
     forces = simulate_single_precision(motion, whole, PERIOD, choices, offset, losable=losable)
     return float(np.abs(forces).max())
 

@@ -10,6 +10,7 @@ import re
 from itertools import count
 from pathlib import Path
 
+from making.combinations import combinations_table
 from making.commands import commands_page
 from making.cost import cost_figures
 from making.faults import refuse
@@ -80,6 +81,8 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     def make(match: re.Match[str]) -> str:
         if match[1] == "floors":
             return drawing(ROOT / "nrs_design", markdown)
+        if match[1] == "combinations":
+            return combinations_table()
         assert match[1] == "misprints"
         return misprints_table()
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from errno import ENOTDIR
 from pathlib import Path
@@ -39,31 +40,48 @@ SCHEMA = (
     b'{\n  "$schema": "https://json-schema.org/draft/2020-12/schema",\n'
     b'  "title": "nrs-design export",\n',
 )
-RESPONSE = b"time_s,angle_rad,velocity_rad_s,torque_Nm,"
-OUTCOMES = b"run,scenario,seed,peak_torque_Nm,"
-WORST_RUN = b"time_s,torque_Nm,"
+# Records of others may begin with some of these columns: all that are always there count.
+RESPONSE = re.compile(
+    rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
+)
+OUTCOMES = (
+    b"run,scenario,seed,peak_torque_Nm,peak_deflection_rad,peak_velocity_rad_s,stopped,",
+    b"run,scenario,seed,peak_torque_Nm,peak_deflection_rad,peak_velocity_rad_s,stopped\n",
+)
+WORST_RUN = re.compile(
+    rb"time_s,(?:torque_Nm,)?(?:velocity_rad_s,)?(?:deflection_rad,)?(?:[\w-]+,)*?state-[^\n]*,mode\n"
+)
 # An archive of arrays that begins with a stored text, `about.npy`, which says that it is a run.
 ARCHIVE = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00_\x00\x9b?\xcc\x00\x00\x00\xcc\x00\x00\x00"
     b"\x09\x00\x00\x00about.npy"
 )
-TABLE = b"theta4_deg,K1,K2,K3,"
-GATE = (
-    b"spec ",
-    b"::",
-    b'{\n  "schema": "nrs-design/gate/',
-    b'{\n  "$schema": "https://json.schemastore.org/sarif',
-    b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites ',
+TABLE = b"theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares\n"
+# Other programs write SARIF and JUnit files, too: ours say that they are.
+GATE = re.compile(
+    rb"spec +verdict +common quadratic +decay rate +modes +certificate\n"
+    rb"|::(?:error|warning|notice) (?:[^\n]*,)?title=(?:NRS\d+|nrs-design)::"
+    rb'|\{\n  "schema": "nrs-design/gate/'
+    rb'|\{\n  "\$schema": "https://json\.schemastore\.org/sarif[^{]*\{\s*"tool": \{\s*"driver": \{'
+    rb'\s*"name": "nrs-design"'
+    rb'|<\?xml version="1\.0" encoding="UTF-8"\?>\n<testsuites name="nrs-design" '
 )
-SVG = b"<?xml "
-PDF = b"%PDF-"
-PNG = b"\x89PNG"
+# What follows the first line of a figure that stands for itself.
+SVG_MARK = "<!-- nrs-design figure -->\n"
+SVG = f'<?xml version="1.0" encoding="utf-8" standalone="no"?>\n{SVG_MARK}'.encode()
+# A keyword of each page and an entry of each image, which tell them from those of other programs.
+MAKER = "nrs-design"
+PDF = re.compile(rb"%PDF-.*<pdf:Keywords>" + MAKER.encode() + rb"\b", re.DOTALL)
+PNG = re.compile(
+    rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
+)
 
 
-# More than the longest of them.
-_LONGEST = 256
+# More than the longest of them that is no pattern, and than any file that a pattern is to tell.
+_LONGEST, _WHOLE = 256, 2**26
 
-Beginning = bytes | tuple[bytes, ...]
+Beginning = bytes | tuple[bytes, ...] | re.Pattern[bytes]
+Output = tuple[Path, str | bytes, Beginning]
 
 
 def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"") -> None:
@@ -75,7 +93,7 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
         Its folder is made if it does not exist.
     content : str or bytes
         Text is written as UTF-8.
-    replaces : bytes or tuple of bytes
+    replaces : bytes, tuple of bytes or pattern
         How a file that is there already must begin for it to be replaced, or in which ways; any
         file by default. An empty one may always be.
 
@@ -85,20 +103,49 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
         If the place cannot be written to, is a link, a folder or a device (here or on Windows),
         lies behind a link to a folder, or holds a file of another kind.
     """
-    check_place(path, replaces)
+    write_outputs([(path, content, replaces)])
+
+
+def write_outputs(outputs: Collection[Output]) -> None:
+    """Write the files of one result: none where one of them is refused, or cannot be written.
+
+    Parameters
+    ----------
+    outputs : collection of (Path, str or bytes, bytes or tuple of bytes or pattern)
+        Place, content and what is replaced, as `write_output` takes them.
+
+    Raises
+    ------
+    OutputError
+        As `write_output` raises it, for the first that is refused.
+    """
+    for path, _, replaces in outputs:
+        check_place(path, replaces)
+    written: list[tuple[str, Path]] = []
+    try:
+        for path, content, _ in outputs:
+            with _told(path):
+                _write_beside(path, content, written)
+        while written:
+            temporary, path = written[0]
+            with _told(path):
+                os.replace(temporary, path)
+            del written[0]
+    finally:
+        for temporary, _ in written:
+            os.unlink(temporary)
+
+
+def _write_beside(path: Path, content: str | bytes, written: list[tuple[str, Path]]) -> None:
+    """Write a temporary file into the folder of a place, and note it before it is filled."""
     # A file name that is no text may have got in; it is shown with escapes.
     data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
-    with _told(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except BaseException:
-            os.unlink(temporary)
-            raise
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    written.append((temporary, path))
+    with os.fdopen(handle, "wb") as file:
+        file.write(data)
+    os.chmod(temporary, 0o644)
 
 
 def check_place(path: Path, replaces: Beginning = b"") -> None:
@@ -162,8 +209,13 @@ def check_replaceable(path: Path, beginning: Beginning) -> None:
             "is a folder or a device, not a file", path=path, remedy="name another file"
         )
     with path.open("rb") as file:
-        found = file.read(_LONGEST)
-    if found and not found.startswith(beginning):
+        if isinstance(beginning, re.Pattern):
+            found = file.read(_WHOLE)
+            ours = beginning.match(found) is not None
+        else:
+            found = file.read(_LONGEST)
+            ours = found.startswith(beginning)
+    if found and not ours:
         raise OutputError(
             "exists already and is not such a file of nrs-design, so it is not overwritten",
             path=path,

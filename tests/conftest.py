@@ -7,6 +7,9 @@ and the same each time; the slow session draws many, and others each time.
 Where no bytecode may be kept beside the sources, commands that run in processes of their own keep
 it in the cache of pytest: to compile all modules takes as long as to run them.
 
+A test that takes minutes says how many seconds, `slow(seconds=...)`, and begins before the others:
+who began it last would end alone.
+
 What is collected stays until the end, so no search for garbage looks at it again; and the searches
 are as rare as in the program itself.
 """
@@ -29,6 +32,14 @@ def pytest_configure(config: pytest.Config) -> None:
     cache = getattr(config, "cache", None)
     if cache is not None and os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
         os.environ.setdefault("PYTHONPYCACHEPREFIX", str(cache.mkdir("bytecode")))
+
+
+def _seconds(item: pytest.Item) -> float:
+    return max((mark.kwargs.get("seconds", 0.0) for mark in item.iter_markers("slow")), default=0.0)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=_seconds, reverse=True)
 
 
 def pytest_collection_finish() -> None:

@@ -5,8 +5,37 @@ from pathlib import Path
 import pytest
 
 from nrs_design.errors import OutputError
-from nrs_design.output import CERTIFICATE, GATE, PAGE, PDF, PNG, SCHEMA, check_place, write_output
+from nrs_design.gating.formats.text import COLUMNS
+from nrs_design.output import (
+    CERTIFICATE,
+    GATE,
+    OUTCOMES,
+    PAGE,
+    PDF,
+    PNG,
+    RESPONSE,
+    SCHEMA,
+    SVG,
+    WORST_RUN,
+    check_place,
+    write_output,
+    write_outputs,
+)
 from nrs_design.spec.schema import schema_text
+
+XML = '<?xml version="1.0" encoding="utf-8" standalone="no"?>\n'
+RUN = "time_s,angle_rad,velocity_rad_s,torque_Nm"
+OUTCOME = "run,scenario,seed,peak_torque_Nm,peak_deflection_rad"
+JUNIT = '<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="{}" tests="1">'
+SARIF = (
+    '{{\n  "$schema": "https://json.schemastore.org/sarif-2.1.0.json",\n  "version": "2.1.0",\n'
+    '  "runs": [\n    {{\n      "tool": {{\n        "driver": {{\n          "name": "{}",'
+)
+# The first two chunks of an image of one point: what it is like, and who says that it made it.
+FOREIGN_PNG = b"\x89PNG\r\n\x1a\n" + bytes.fromhex(
+    "0000000d49484452000000010000000108000000003a7e9b55"
+)
+OUR_PNG = FOREIGN_PNG + b"\0\0\0\x13tEXtSoftware\0nrs-design"
 
 
 @pytest.mark.parametrize(
@@ -58,9 +87,17 @@ def test_a_working_folder_behind_a_link_is_the_users_own_choice(tmp_path, monkey
     [
         (CERTIFICATE, '{\n  "schema": "nrs-design/certificate/9"', '{"schema": "other"}'),
         (PAGE, f"{PAGE.decode()}<title>", "<!DOCTYPE html>\n<html>"),
-        (PDF, "%PDF-1.4", "kind: switched-system"),
-        (PNG, b"\x89PNG\r\n", "\x89PN"),
+        (PDF, "%PDF-1.7\n... <pdf:Keywords>nrs-design, sha256:0</pdf:Keywords>", "%PDF-1.7\n%%EOF"),
+        (PNG, OUR_PNG, FOREIGN_PNG),
+        (SVG, f"{XML}<!-- nrs-design figure -->\n<svg/>", f"{XML}<svg/>"),
         (GATE, '{\n  "schema": "nrs-design/gate/1"', '{\n  "schema": "nrs-design/lock/1"'),
+        (GATE, "::error file=a,line=1,col=1,title=NRS101::no", "::error file=a::no title=NRS101::"),
+        (GATE, JUNIT.format("nrs-design"), JUNIT.format("pytest tests")),
+        (GATE, SARIF.format("nrs-design"), SARIF.format("ruff")),
+        (GATE, f"{'  '.join(COLUMNS)}\n---", "spec  1 of the project\n"),
+        (RESPONSE, f"{RUN},depth_rad,reference_rad,hand_rad_s,theta_rad,mode\n", f"{RUN},mode\n"),
+        (WORST_RUN, "time_s,torque_Nm,state-xp1,state-delta_rad,mode\n", "time_s,torque_Nm,mode\n"),
+        (OUTCOMES, f"{OUTCOME},peak_velocity_rad_s,stopped\n0,", f"{OUTCOME}\n0,"),
         (SCHEMA, schema_text(), "kind: switched-system"),
     ],
 )
@@ -68,10 +105,38 @@ def test_only_a_file_of_its_kind_is_replaced(tmp_path, kind, ours, foreign):
     path = tmp_path / "out"
     write_output(path, ours, replaces=kind)
     write_output(path, ours, replaces=kind)
-    path.write_text(foreign)
+    write_output(path, foreign)
+    before = path.read_bytes()
     with pytest.raises(OutputError, match="not overwritten"):
         write_output(path, ours, replaces=kind)
-    assert path.read_text() == foreign
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize("fault", ["foreign", "link", "full"])
+def test_of_files_that_belong_together_all_are_written_or_none(tmp_path, monkeypatch, fault):
+    paths = [tmp_path / f"new/{name}" for name in "abc"]
+    write_outputs([(path, "ours 1", b"ours") for path in paths])
+    write_outputs([(path, "ours 2", b"ours") for path in paths])
+    before = dict.fromkeys(paths, "ours 2")
+    if fault == "foreign":
+        paths[2].write_text("precious")
+        before[paths[2]] = "precious"
+    elif fault == "link":
+        paths[2].unlink()
+        paths[2].symlink_to(paths[0])
+    else:
+        calls = iter(range(3))
+        chmod = os.chmod
+
+        def fail(*arguments):
+            if next(calls) == 2:
+                raise OSError(28, "No space left on device")
+            chmod(*arguments)
+
+        monkeypatch.setattr(os, "chmod", fail)
+    with pytest.raises(OutputError):
+        write_outputs([(path, "ours 3", b"ours") for path in paths])
+    assert {path: path.read_text() for path in (tmp_path / "new").iterdir()} == before
 
 
 def test_an_empty_file_holds_nothing_that_could_be_lost(tmp_path):

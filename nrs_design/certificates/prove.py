@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import field
 from typing import Any
 
 from nrs_design.certificates.certificate import (
@@ -21,6 +22,7 @@ from nrs_design.certificates.certificate import (
 from nrs_design.errors import DISAGREE, InternalError, NrsDesignError
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.proof.evidence.fields import read_text
+from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
@@ -41,10 +43,14 @@ _MALFORMED = (
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """Outcome of a re-check: the certificate, and why it is rejected (None if it is valid)."""
+    """Outcome of a re-check: the certificate, and why it is rejected (None if it is valid).
+
+    Beside it, for every statement, the forms that were decided, until flint has seen them.
+    """
 
     certificate: Certificate | None
     fault: str | None
+    forms: tuple[list[IntegerMatrix], ...] = field(default=(), repr=False, compare=False)
 
 
 def prove(document: Mapping[str, Any]) -> Verification:
@@ -98,9 +104,10 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
         schema=document["schema"],
     )
     fault = _find_difference(document, certificate)
-    for statement in certificate.statements:
-        fault = fault or statement.find_fault(system)
-    return Verification(certificate, fault)
+    forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
+    for statement, made in zip(certificate.statements, forms, strict=True):
+        fault = fault or statement.find_fault(system, made)
+    return Verification(certificate, fault, forms)
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:
@@ -120,9 +127,11 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     certificate = verification.certificate
     if certificate is None or verification.fault is not None:
         return verification
-    if not all(agrees(certificate.system, item) for item in certificate.statements):
+    system, statements = certificate.system, certificate.statements
+    pairs = zip(statements, verification.forms, strict=True)
+    if not all(agrees(system, item, forms) for item, forms in pairs):
         raise InternalError(DISAGREE)
-    return verification
+    return Verification(certificate, None)
 
 
 def read_gains(document: Mapping[str, Any]) -> dict[str, dict[str, str]]:

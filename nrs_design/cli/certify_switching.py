@@ -207,7 +207,7 @@ def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str
 
 
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
-    if parts is None or str(result.certification.verdict) == "proved":
+    if parts is None or (not parts and str(result.certification.verdict) == "proved"):
         return
     from nrs_design.pipeline.subsets import subset_lines
 
@@ -219,8 +219,9 @@ def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
 
 
 def _unlooked(result: Result) -> tuple[str, ...]:
-    """Return what parts of a spec are decided without."""
-    return ("disturbances",) if result.certification.system.channels else ()
+    """Return what the list of parts is decided without: the bounds of a proof are in it."""
+    proved = str(result.certification.verdict) == "proved"
+    return ("disturbances",) if result.certification.system.channels and not proved else ()
 
 
 def _print(result: Result, *, verbose: bool) -> None:

@@ -106,9 +106,12 @@ def _format(name: str) -> Format:
             f"{name} is not a format of this command", remedy=f"use `nrs-design {group} export`"
         )
     if name not in FORMATS:
+        from nrs_design.spec.faults import did_you_mean
+
         raise NrsDesignError(
             f"there is no format {name!r}",
-            remedy=f"one of {', '.join(FORMATS)}; `nrs-design export --list` explains them",
+            remedy=f"{did_you_mean(name, FORMATS, 'one of')}; `nrs-design export --list` explains "
+            "them",
         )
     return FORMATS[name]
 

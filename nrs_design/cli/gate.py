@@ -119,7 +119,7 @@ def format_of(format_: GateFormat, *, as_json: bool) -> GateFormat:
 def _check_options(out: Path | None, *, locked: bool, prune: bool) -> None:
     """Refuse what excludes each other, and what must not be overwritten, before the work."""
     from nrs_design.gating.find_specs import SUFFIXES
-    from nrs_design.output import GATE, check_replaceable
+    from nrs_design.output import GATE, check_place
 
     if prune and locked:
         raise NrsDesignError(
@@ -129,7 +129,7 @@ def _check_options(out: Path | None, *, locked: bool, prune: bool) -> None:
     if out is not None and out.name.lower().endswith(SUFFIXES):
         raise OutputError("is the name of a spec", path=out, remedy="choose another --out")
     if out is not None:
-        check_replaceable(out, GATE)
+        check_place(out, GATE)
 
 
 def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None, *, quiet: bool) -> None:

@@ -21,6 +21,7 @@ def margins_summary(margins: ProofMargins) -> dict[str, Any]:
             "proved_scale_exact": None if box.proved is None else str(box.proved),
             "refuted_scale": None if box.refuted is None else upper_float(box.refuted),
             "refuted_scale_exact": None if box.refuted is None else str(box.refuted),
+            "why_not_refuted": box.end or None,
             "method": box.proof.method if box.proof else None,
         }
     if dwell is not None:
@@ -70,11 +71,12 @@ def loop_summary(margins: LoopMargins) -> dict[str, Any]:
     return content
 
 
-def _ends(bracket: Bracket) -> dict[str, float | None]:
+def _ends(bracket: Bracket) -> dict[str, float | str | None]:
     from nrs_design.proof.bounds import lower_float, upper_float
 
     proved, refuted = bracket.proved, bracket.refuted
     return {
         "proved": None if proved is None else lower_float(proved),
         "refuted": None if refuted is None else upper_float(refuted),
+        "why_not_refuted": bracket.end or None,
     }

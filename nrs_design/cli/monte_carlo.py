@@ -16,6 +16,7 @@ from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
+    from nrs_design.output import Beginning
     from nrs_design.pipeline import Progress
     from nrs_design.pipeline.monte_carlo import MonteCarlo
     from nrs_design.simulation.monte_carlo import Outcome, Share
@@ -154,12 +155,12 @@ def _bounds(asked: MonteCarlo, proof: Certificate) -> dict[str, tuple[float, tup
     return found
 
 
-def _places(asked: MonteCarlo, out: Path | None) -> list[tuple[Path, bytes]]:
+def _places(asked: MonteCarlo, out: Path | None) -> list[tuple[Path, Beginning]]:
     from nrs_design.output import OUTCOMES, PNG, SVG
 
     if out is None:
         return []
-    beginnings = {"csv": OUTCOMES, "svg": SVG, "png": PNG}
+    beginnings: dict[str, Beginning] = {"csv": OUTCOMES, "svg": SVG, "png": PNG}
     stem = f"{asked.designed.spec.name}.monte-carlo"
     return [(out / f"{stem}.{suffix}", beginning) for suffix, beginning in beginnings.items()]
 
@@ -172,7 +173,7 @@ def _write(
 ) -> list[Path]:
     if out is None:
         return []
-    from nrs_design.output import write_output
+    from nrs_design.output import write_outputs
     from nrs_design.reporting.images import to_png, to_svg_file
     from nrs_design.reporting.monte_carlo import draw_outcomes, outcomes_table
 
@@ -184,8 +185,9 @@ def _write(
         to_png(figure),
     )
     places = _places(asked, out)
-    for content, (path, beginning) in zip(contents, places, strict=True):
-        write_output(path, content, replaces=beginning)
+    write_outputs(
+        [(path, content, ours) for content, (path, ours) in zip(contents, places, strict=True)]
+    )
     return [path for path, _ in places]
 
 

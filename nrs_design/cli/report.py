@@ -133,10 +133,11 @@ def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) 
 
     if out is None:
         check_owner(loaded.path, loaded.spec.name, REPORTS)
-        return
-    check_page(loaded.path, out)
+    else:
+        check_page(loaded.path, out)
     if file_format is not ReportFormat.PNG:
-        check_place(out, PDF if file_format is ReportFormat.PDF else PAGE)
+        file = out or REPORTS / f"{loaded.spec.name}.{file_format}"
+        check_place(file, PDF if file_format is ReportFormat.PDF else PAGE)
 
 
 def _build(
@@ -245,15 +246,14 @@ def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
 
 
 def _write(report: Report, file_format: ReportFormat, out: Path | None, spec: Path) -> list[Path]:
-    from nrs_design.output import PAGE, PDF, PNG, write_output
+    from nrs_design.output import PAGE, PDF, PNG, write_output, write_outputs
     from nrs_design.ownership import origin_of
     from nrs_design.reporting import render_html, render_pdf, render_png
 
     if file_format is ReportFormat.PNG:
         folder = out or REPORTS / report.name
         images = {folder / f"{name}.png": data for name, data in render_png(report).items()}
-        for path, data in images.items():
-            write_output(path, data, replaces=PNG)
+        write_outputs([(path, data, PNG) for path, data in images.items()])
         return list(images)
     path = out or REPORTS / f"{report.name}.{file_format}"
     if file_format is ReportFormat.PDF:

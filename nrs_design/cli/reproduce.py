@@ -71,18 +71,19 @@ def reproduce(
 
 def _draw(folder: Path, step: Callable[[str], None]) -> tuple[Counterpart, ...]:
     """Write the page of figures and the runs that they show."""
-    from nrs_design.output import PAGE, RESPONSE, check_place, write_output
+    from nrs_design.output import PAGE, RESPONSE, write_outputs
     from nrs_design.reproduction.gallery.figures import draw_counterparts
     from nrs_design.reproduction.gallery.page import gallery_page
 
     found = draw_counterparts(step)
     runs = {folder / f"{name}.csv": run for one in found for name, run in one.runs.items()}
-    for place in runs:
-        check_place(place, RESPONSE)
     step("writing the page of figures")
-    write_output(folder / _GALLERY, gallery_page(found), replaces=PAGE)
-    for place, run in runs.items():
-        write_output(place, run.to_csv(), replaces=RESPONSE)
+    write_outputs(
+        [
+            (folder / _GALLERY, gallery_page(found), PAGE),
+            *((place, run.to_csv(), RESPONSE) for place, run in runs.items()),
+        ]
+    )
     return found
 
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from nrs_design.certificates.certificate import Certificate
+    from nrs_design.output import Beginning
     from nrs_design.pipeline import Designed, Progress
     from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
     from nrs_design.pipeline.scenarios import Runs, Simulated
@@ -104,11 +105,11 @@ def _check_places(spec: InteractionDesignSpec, names: Sequence[str], out: Path |
             check_place(path, beginning)
 
 
-def _places(out: Path, spec: str, scenario: str) -> dict[str, tuple[Path, bytes]]:
+def _places(out: Path, spec: str, scenario: str) -> dict[str, tuple[Path, Beginning]]:
     """Return where each file of a run goes, and how one begins that it may replace."""
     from nrs_design.output import ARCHIVE, PNG, RESPONSE, SVG
 
-    beginnings = {"csv": RESPONSE, "npz": ARCHIVE, "svg": SVG, "png": PNG}
+    beginnings: dict[str, Beginning] = {"csv": RESPONSE, "npz": ARCHIVE, "svg": SVG, "png": PNG}
     return {
         suffix: (out / f"{spec}.{scenario}.{suffix}", beginning)
         for suffix, beginning in beginnings.items()
@@ -119,12 +120,13 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
     """Write every run, once all of them are there."""
     if out is None:
         return []
-    from nrs_design.output import write_output
+    from nrs_design.output import Output, write_outputs
     from nrs_design.reporting.figures.simulated import draw_simulated
     from nrs_design.reporting.images import to_png, to_svg_file
     from nrs_design.simulation.run import common_lever_arm
 
-    limits, files = designed.spec.limits, []
+    limits = designed.spec.limits
+    outputs: list[Output] = []
     for one, bounds, _ in runs:
         response = one.run.response
         touched = [surface.environment for surface in one.scenario.surfaces]
@@ -138,10 +140,9 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
             "png": to_png(figure),
         }
         places = _places(out, designed.spec.name, one.scenario.name)
-        for suffix, (path, beginning) in places.items():
-            write_output(path, contents[suffix], replaces=beginning)
-            files.append(path)
-    return files
+        outputs += [(path, contents[suffix], ours) for suffix, (path, ours) in places.items()]
+    write_outputs(outputs)
+    return [path for path, _, _ in outputs]
 
 
 def _document(

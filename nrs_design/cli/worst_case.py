@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nrs_design.certificates.certificate import Certificate
+    from nrs_design.output import Beginning
     from nrs_design.pipeline import Designed, Progress
     from nrs_design.pipeline.worst_case import WorstCase
 
@@ -38,7 +39,7 @@ def worst_case(
     """
     from nrs_design.output import check_place
     from nrs_design.pipeline.worst_case import run_worst_case
-    from nrs_design.simulation.worst_case import DEFLECTION
+    from nrs_design.simulation.worst_outputs import DEFLECTION
 
     names = ("force", "velocity", DEFLECTION)
     for path, beginning in (item for name in names for item in _places(designed, out, name)):
@@ -86,12 +87,12 @@ def _arm(designed: Designed) -> float | None:
     return common_lever_arm(designed.spec, designed.spec.touched)
 
 
-def _places(designed: Designed, out: Path | None, name: str) -> list[tuple[Path, bytes]]:
+def _places(designed: Designed, out: Path | None, name: str) -> list[tuple[Path, Beginning]]:
     from nrs_design.output import ARCHIVE, PNG, SVG, WORST_RUN
 
     if out is None:
         return []
-    beginnings = {"csv": WORST_RUN, "npz": ARCHIVE, "svg": SVG, "png": PNG}
+    beginnings: dict[str, Beginning] = {"csv": WORST_RUN, "npz": ARCHIVE, "svg": SVG, "png": PNG}
     stem = f"{designed.spec.name}.worst-{name}"
     return [(out / f"{stem}.{suffix}", beginning) for suffix, beginning in beginnings.items()]
 
@@ -99,11 +100,12 @@ def _places(designed: Designed, out: Path | None, name: str) -> list[tuple[Path,
 def _write(designed: Designed, case: WorstCase, out: Path | None) -> list[Path]:
     if out is None:
         return []
-    from nrs_design.output import write_output
+    from nrs_design.output import Output, write_outputs
     from nrs_design.reporting.images import to_png, to_svg_file
     from nrs_design.reporting.worst_case import draw_worst, response_of
 
-    written, arm = [], _arm(designed)
+    outputs: list[Output] = []
+    arm = _arm(designed)
     for run in case.runs:
         response = response_of(case, run)
         figure = draw_worst(case, run, arm)
@@ -114,10 +116,11 @@ def _write(designed: Designed, case: WorstCase, out: Path | None) -> list[Path]:
             to_png(figure),
         )
         places = _places(designed, out, run.output.name)
-        for content, (path, beginning) in zip(contents, places, strict=True):
-            write_output(path, content, replaces=beginning)
-            written.append(path)
-    return written
+        outputs += [
+            (path, content, ours) for content, (path, ours) in zip(contents, places, strict=True)
+        ]
+    write_outputs(outputs)
+    return [path for path, _, _ in outputs]
 
 
 def _document(designed: Designed, case: WorstCase, seed: int) -> dict[str, Any]:

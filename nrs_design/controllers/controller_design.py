@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
+from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,15 +27,11 @@ less. The position is taken at the sample, the force sample may be older.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from nrs_design.controllers.float32 import PRECISION, to_float32
+from nrs_design.controllers.float32 import PRECISION
 from nrs_design.errors import DesignError
-
-if TYPE_CHECKING:
-    from nrs_design.controllers.laws.motion import ProportionalDerivative
+from nrs_design.proof.noun import dataclass
 
 # Half a unit in the last place, over the number.
 UNIT = Fraction(1, 2**PRECISION)
@@ -76,11 +72,6 @@ class SampledMotion:
 
     Kp: Fraction
     D: Fraction
-
-    @classmethod
-    def of(cls, law: ProportionalDerivative, period: Fraction) -> SampledMotion:
-        """Discretize the PD law (thesis 4.3) for a period in s."""
-        return cls(law.Kp, to_float32(law.Kd / period))
 
 
 @dataclass(frozen=True, slots=True)

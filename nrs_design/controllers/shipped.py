@@ -14,7 +14,6 @@ from nrs_design.controllers.sampled import (
     SampledAdmittance,
     SampledForce,
     SampledLaw,
-    SampledMotion,
 )
 from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import build_law
@@ -78,7 +77,7 @@ def _step_law(
     outer: Fraction,
 ) -> StepLaw:
     low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
-    frame = StepFrame(SampledMotion.of(design.motion, period), low_pass, limits_of(spec))
+    frame = StepFrame(design.motion.sampled(period), low_pass, limits_of(spec))
     moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
     placed = [name for name, law in laws.items() if isinstance(law, SampledForce)]
     if spec.offset != "none":

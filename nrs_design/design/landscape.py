@@ -10,7 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.design.impedance import ImpedanceLoop, stabilizes
+from nrs_design.design.impedance import (
+    ImpedanceLoop,
+    characteristic_basis,
+    characteristic_polynomials,
+    stabilizes,
+)
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
@@ -37,11 +42,14 @@ class CostMap:
         Virtual masses in kg m^2 and dampings in N m s/rad, ascending.
     cost : ndarray, shape (b, m)
         NaN where the nominal loop is not stable.
+    abscissa : ndarray, shape (b, m)
+        Largest real part of the poles of the nominal loop in 1/s: it is zero on the border.
     """
 
     Mt: FloatArray
     Bt: FloatArray
     cost: FloatArray
+    abscissa: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +94,17 @@ def map_cost(problem: ImpedanceProblem, Mt: float, Bt: float) -> CostMap:
     )
     grid = np.meshgrid(masses, dampings)
     cost = np.where(stabilizes(problem.loop, *grid), impedance_cost(problem, *grid), np.nan)
-    return CostMap(masses, dampings, cost)
+    return CostMap(masses, dampings, cost, _abscissa(problem.loop, *grid))
+
+
+def _abscissa(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+    """Return the largest real part of the poles, as eigenvalues of companion matrices."""
+    closed = characteristic_polynomials(characteristic_basis(loop), Mt, Bt)
+    order = closed.shape[-1] - 1
+    companion = np.zeros((*Mt.shape, order, order))
+    companion[..., 0, :] = -closed[..., 1:] / closed[..., :1]
+    companion[..., range(1, order), range(order - 1)] = 1.0
+    return np.asarray(np.linalg.eigvals(companion).real.max(axis=-1), dtype=np.float64)
 
 
 def _ends(bounds: tuple[float, float], value: float) -> tuple[float, float]:

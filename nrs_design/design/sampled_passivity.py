@@ -115,7 +115,7 @@ def sampled_bands(
     """
     if law.Kt:
         raise ValueError("a spring makes another admittance")
-    loop = _Loop.of(motor, SampledMotion.of(motion, period), period)
+    loop = _Loop.of(motor, motion.sampled(period), period)
     if not (loop.is_stable and (law.a is None or abs(law.a) < 1)):
         return ()
     return tuple(_band(loop, law, motor.time_constant, period, age) for age in ages)

@@ -29,6 +29,7 @@ KINDS = {
     "FORCE": "The torque is beyond its limit",
     "STIFFNESS": "A window shows a stiffness outside the ranges, for certain",
     "CONTACT": "A window shows free motion, for certain, and contact must be kept",
+    "SPEED": "The axes together are faster than their coupling is known for",
 }
 
 
@@ -66,7 +67,8 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
     names = program.names
     guard = f"{names.upper}_MONITOR_H"
     macros = "".join(_macro(*row) for row in _limits(names, limits))
-    text = _HEADER.replace("@KINDS@", _kinds(names)).replace("@MACROS@", macros)
+    text = _HEADER.replace("@KINDS@", _kinds(names, limits)).replace("@MACROS@", macros)
+    text = text.replace("@SPEED@", "" if limits.speed is None else _SPEED)
     text = text.replace("@GUARD@", guard).replace("@OWN@", names.lower)
     text = text.replace("@UP@", names.upper).replace("@SPEC@", names.spec)
     return comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER) + text
@@ -117,18 +119,29 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
             "tissue has. So one is judged only if the torque keeps its sign, and a quarter of its "
             "largest size at least."
         )
+    if limits.speed is not None:
+        yield (
+            "The axes act on each other, and how much is known below a speed only. It is that of "
+            "all axes together, the root of the sum of the squares of their joint speeds, which "
+            "the caller knows: one monitor sees one axis. It is judged as it is read."
+        )
     yield "Uneven steps of time: no proof knows them. The caller says how much is accepted."
     yield from (f"Not monitored: {text}" for text in limits.left_out)
 
 
 def numbers_of(names: CNames, limits: MonitorLimits) -> dict[str, int | Fraction]:
     """Return every macro of the header with its number: what may be left, and limits."""
-    kinds = {f"{names.upper}_LEFT_{kind}": k for k, kind in enumerate(KINDS)}
+    kinds = {f"{names.upper}_LEFT_{kind}": k for k, kind in enumerate(_told(limits))}
     return {**kinds, **{name: number for name, number, _ in _limits(names, limits)}}
 
 
-def _kinds(names: CNames) -> str:
-    rows = enumerate(KINDS.items())
+def _told(limits: MonitorLimits) -> dict[str, str]:
+    """Return what may be left: of one axis by itself, no speed."""
+    return {k: text for k, text in KINDS.items() if k != "SPEED" or limits.speed is not None}
+
+
+def _kinds(names: CNames, limits: MonitorLimits) -> str:
+    rows = enumerate(_told(limits).items())
     return "".join(f"/* {text}: */\n#define {names.upper}_LEFT_{k} {i}U\n" for i, (k, text) in rows)
 
 
@@ -141,6 +154,8 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
     yield f"{up}_TORQUE", limits.torque, "N*m, from the spec"
     if limits.command is not None:
         yield f"{up}_COMMAND", limits.command, "from the spec"
+    if limits.speed is not None:
+        yield f"{up}_SPEED", limits.speed, "rad/s, over all axes, from the spec"
     if limits.age is not None:
         least, most = limits.age
         yield f"{up}_YOUNGEST", least, "samples, from the spec"
@@ -204,6 +219,8 @@ def _checks(limits: MonitorLimits) -> str:
     if limits.command is not None:
         below = "(in->command > -@UP@_MONITOR_COMMAND) && (in->command < @UP@_MONITOR_COMMAND)"
         text += _check(f"!({below})", "SATURATION")
+    if limits.speed is not None:
+        text += _check("!(size_of(in->speed) < @UP@_MONITOR_SPEED)", "SPEED")
     return text
 
 
@@ -215,6 +232,7 @@ def _contact(limits: MonitorLimits) -> str:
     return "@UP@_LEFT_CONTACT" if limits.contact_kept else "@UP@_LEFT_NONE"
 
 
+_SPEED = "    float speed; /* rad/s: root of the sum of squares of all joint speeds */\n"
 _HEADER = """\
 
 #ifndef @GUARD@
@@ -236,7 +254,7 @@ typedef struct {
     float angle; /* rad */
     float torque; /* N*m */
     float command; /* of the motor */
-} @OWN@_monitor_input_t;
+@SPEED@} @OWN@_monitor_input_t;
 
 /* What it remembers. */
 typedef struct {

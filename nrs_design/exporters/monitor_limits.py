@@ -36,6 +36,8 @@ class MonitorLimits:
         Largest torque in N m.
     command : Fraction or None
         Where the command saturates; None where the spec does not say.
+    speed : Fraction or None
+        Below which the joint speeds of all axes stay together, in rad/s; None without one.
     age : (int, int) or None
         Smallest and largest age of the force sample, in samples.
     stiffness : tuple
@@ -57,6 +59,7 @@ class MonitorLimits:
     period: Fraction
     torque: Fraction
     command: Fraction | None
+    speed: Fraction | None
     age: tuple[int, int] | None
     stiffness: tuple[tuple[Pair, ...], ...]
     contact_kept: bool
@@ -87,10 +90,12 @@ def limits_of(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
     stiffness = {name: _ranges(spec, name) for name in modes}
     allowed = bounds.transitions
     command = spec.limits.command
+    speed = None if spec.coupling is None else spec.coupling.speed
     return MonitorLimits(
         period=to_float32(period),
         torque=float32_not_above(spec.limits.torque.not_above),
         command=None if command is None else float32_not_above(command.not_above),
+        speed=None if speed is None else float32_not_above(speed.not_above),
         age=record.delay,
         stiffness=tuple(stiffness[name] or () for name in modes),
         contact_kept=not losable,
@@ -138,6 +143,8 @@ def _left_out(
     said = []
     if spec.limits.command is None:
         said.append("Saturation: the spec has no `limits: command`.")
+    if spec.coupling is not None and spec.coupling.speed is None:
+        said.append("Speed over all axes: the spec has no `coupling: speed`, so it is near zero.")
     if record.delay is None:
         said.append("Age of the force sample: the spec has no `sampling`.")
     for name, ranges in stiffness.items():

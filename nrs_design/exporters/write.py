@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nrs_design.errors import OutputError
 from nrs_design.exporters import Format
-from nrs_design.output import check_place, write_output
+from nrs_design.output import check_place, write_outputs
 from nrs_design.ownership import check_name
 
 # Of a file, such as .txt or .h5; a version of a folder, such as .2, is none.
@@ -79,7 +79,7 @@ def check_places(format_: Format, files: Mapping[str, Path], name: str | None = 
 
 
 def write_files(format_: Format, files: Mapping[str, Path], contents: Mapping[str, bytes]) -> None:
-    """Write all files of an export, each whole or not at all.
+    """Write all files of an export, or none.
 
     Parameters
     ----------
@@ -96,5 +96,4 @@ def write_files(format_: Format, files: Mapping[str, Path], contents: Mapping[st
         If a file cannot be written, or something else stands in its place.
     """
     check_places(format_, files)
-    for ending, path in files.items():
-        write_output(path, contents[ending], replaces=format_.files[ending])
+    write_outputs([(path, contents[end], format_.files[end]) for end, path in files.items()])

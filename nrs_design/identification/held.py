@@ -5,6 +5,7 @@ Exact for any steps of time and any delay: a command that acts within a step par
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Self
@@ -106,12 +107,12 @@ class Lags:
         inputs : ndarray, shape (m - 1,)
             Held between the times of the grid.
         """
-        parts = (s * _lag(t, held.steps, inputs)[0] for t, s in self._pairs())
+        parts = (s * _lag(t, held.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)
 
     def angle(self, held: Held, inputs: Array) -> Array:
         """Return the integral of the output, from zero; parameters as for `velocity`."""
-        parts = (s * _lag(t, held.steps, inputs)[1] for t, s in self._pairs())
+        parts = (s * _traveled(t, held.steps, inputs) for t, s in self._pairs())
         return np.asarray(sum(parts).real, float)
 
     def free(self, time: Array, *, angle: bool) -> Array:
@@ -131,15 +132,35 @@ class Lags:
             kept = kept[:2]
         return np.column_stack([np.ones_like(time), *kept] if angle else kept)
 
-    def _pairs(self) -> zip[tuple[complex, complex]]:
-        return zip(self.times, self.shares, strict=True)
+    def _pairs(self) -> Iterator[tuple[complex, complex]]:
+        """Yield times and shares; of two that are conjugate, one with twice its share.
+
+        Only the real part of the sum counts, and it is the same.
+        """
+        if self.times[0].imag:
+            yield self.times[0], 2 * self.shares[0]
+        else:
+            yield from zip(self.times, self.shares, strict=True)
 
 
-def _lag(time_constant: complex, steps: Array, inputs: Array) -> tuple[Any, Any]:
-    """Return output and its integral of one lag from rest, exact for held inputs."""
-    tau = time_constant if np.imag(time_constant) else float(np.real(time_constant))
-    a = np.exp(-steps / tau)
-    inputs = inputs.astype(a.dtype)
-    output = run_first_order(a, (1 - a) * inputs)
-    travel = inputs * steps + tau * (1 - a) * (output[:-1] - inputs)
-    return output, np.concatenate([np.zeros(1, travel.dtype), np.cumsum(travel)])
+def _lag(time_constant: complex, steps: Array, inputs: Array) -> Any:
+    """Return the output of one lag from rest, exact for held inputs."""
+    a = _decay(time_constant, steps)
+    return run_first_order(a, (1 - a) * inputs.astype(a.dtype))
+
+
+def _traveled(time_constant: complex, steps: Array, inputs: Array) -> Any:
+    """Return the integral of the output of one lag from rest, exact for held inputs."""
+    output = _lag(time_constant, steps, inputs)
+    a = _decay(time_constant, steps)
+    travel = inputs * steps + _real(time_constant) * (1 - a) * (output[:-1] - inputs)
+    return np.concatenate([np.zeros(1, travel.dtype), np.cumsum(travel)])
+
+
+def _decay(time_constant: complex, steps: Array) -> Any:
+    return np.exp(-steps / _real(time_constant))
+
+
+def _real(time_constant: complex) -> complex:
+    """Return a real number where it is one, so that arrays stay real."""
+    return time_constant if np.imag(time_constant) else float(np.real(time_constant))

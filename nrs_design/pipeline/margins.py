@@ -164,26 +164,31 @@ def _sampling_margins(
     progress: Progress,
 ) -> tuple[Bracket, Bracket]:
     """Decide the loop at other delays and other periods, without what disturbs it."""
-    from nrs_design.search.certify import certify
+    from nrs_design.search.certify import certify, is_refuted_at_once
     from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
     from nrs_design.spec.sampling import LONGEST_DELAY
 
     known = result.certification.verdict
 
-    def decide(changes: Mapping[str, object], what: str) -> Verdict:
+    def assemble_at(changes: Mapping[str, object], what: str) -> SwitchedSystem:
         progress(what)
         changed = sampling.model_copy(update=changes)
         spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
-        other = replace(designed, spec=spec)
-        system = assemble_spec(result.loaded, other, result.coordinates)
-        return certify(system, limits=limits).verdict
+        return assemble_spec(result.loaded, replace(designed, spec=spec), result.coordinates)
+
+    def decide(changes: Mapping[str, object], what: str) -> Verdict:
+        return certify(assemble_at(changes, what), limits=limits).verdict
+
+    def is_unstable(delay: int) -> bool:
+        system = assemble_at({"delay": (delay, delay)}, f"delay {delay} alone")
+        return is_refuted_at_once(system, limits)
 
     def at_delay(longest: int) -> Verdict:
         if longest == sampling.delay[1]:
             return known
         return decide({"delay": (sampling.delay[0], longest)}, f"delay {longest}")
 
-    def at_period(period: Fraction) -> Verdict | None:
+    def at_period(period: Fraction) -> Verdict | str:
         if period == sampling.period.exact:
             return known
         changes = {
@@ -193,10 +198,10 @@ def _sampling_margins(
         }
         try:
             return decide(changes, f"period {period} s")
-        except NrsDesignError:
-            return None
+        except NrsDesignError as error:
+            return error.message
 
-    delay = find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay)
+    delay = find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, is_unstable)
     return delay, find_longest_period(sampling.period.exact, at_period)
 
 

@@ -7,7 +7,7 @@ from itertools import combinations
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.certification import Result, assemble_spec
-from nrs_design.pipeline.design import Progress, silent
+from nrs_design.pipeline.design import Designed, Progress, silent
 from nrs_design.pipeline.margins import quick_limits
 from nrs_design.proof.noun import dataclass
 from nrs_design.search.certification import Limits
@@ -36,7 +36,8 @@ def are_wanted(result: Result) -> bool:
     """Tell whether a list of what is proved in part belongs to every answer.
 
     That axes act on each other is asked for beside samples or disturbances so that it is proved
-    together; where it is not, the answer is what can be.
+    together; where it is not, the answer is what can be. Disturbances beside two periods are never
+    proved together: the answer is the decay of both, and the bounds of a common period.
 
     Parameters
     ----------
@@ -44,10 +45,25 @@ def are_wanted(result: Result) -> bool:
         Of the spec as it stands.
     """
     spec = None if result.designed is None else result.designed.spec
-    if spec is None or spec.coupling is None:
+    if spec is None:
         return False
+    verdict = result.certification.verdict
+    if has_unbounded_turns(result):
+        return verdict is not Verdict.REFUTED
     beside = spec.sampling is not None or spec.disturbances is not None
-    return beside and result.certification.verdict is Verdict.INCONCLUSIVE
+    return spec.coupling is not None and beside and verdict is Verdict.INCONCLUSIVE
+
+
+def has_unbounded_turns(result: Result) -> bool:
+    """Tell whether a spec has disturbances under which nothing is bounded, for its two periods.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    """
+    system = result.certification.system
+    return system.clock is not None and bool(system.channels)
 
 
 def find_subsets(
@@ -103,9 +119,11 @@ def run_subsets(
     from nrs_design.spec.aspects import aspects_of
 
     designed = result.designed
-    if designed is None or result.certification.verdict is Verdict.PROVED:
+    if designed is None:
         return ()
     quick = quick_limits(result, limits)
+    if result.certification.verdict is Verdict.PROVED:
+        return _bounds_apart(result, designed, quick, progress)
     aspects = aspects_of(designed.spec)
     for count in range(1, len(aspects) + 1):
         found = []
@@ -124,3 +142,27 @@ def run_subsets(
         if found:
             return tuple(found)
     return ()
+
+
+def _bounds_apart(
+    result: Result, designed: Designed, limits: Limits, progress: Progress
+) -> tuple[Subset, ...]:
+    """Find the bounds of a common period where those of two periods are not proved."""
+    from nrs_design.search.certify import certify
+    from nrs_design.spec.aspects import with_common_period
+
+    evidence = result.certification.evidence
+    if not has_unbounded_turns(result) or evidence is None:
+        return ()
+    whole = result.certification.system
+    decay = Subset(("the disturbances",), evidence.claim(whole))
+    progress("with a common period")
+    other = replace(designed, spec=with_common_period(designed.spec))
+    system = assemble_spec(result.loaded, other, result.coordinates)
+    decided = certify(system, limits=limits)
+    bounds = [item for item in decided.statements if item.bound(system) is not None]
+    if decided.verdict is not Verdict.PROVED or not bounds:
+        return (decay,)
+    claims = " ".join(item.claim(system) for item in bounds)
+    needs = tuple(text for text in system.assumptions if text not in whole.assumptions)
+    return decay, Subset(("the outer_period",), claims, needs)

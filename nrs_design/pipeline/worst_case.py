@@ -73,12 +73,8 @@ def run_worst_case(
     DesignError
         If what acts on the loop is not modelled for its controllers, or its rules not searched.
     """
-    from nrs_design.simulation.worst_case import (
-        bounds_of,
-        deflection_of,
-        forces_by_mode,
-        worst_runs,
-    )
+    from nrs_design.simulation.worst_case import worst_runs
+    from nrs_design.simulation.worst_outputs import bounds_of, deflection_of, forces_by_mode
 
     spec = designed.spec
     progress("adversary")

@@ -14,6 +14,8 @@ from nrs_design.proof.system import SwitchedSystem
 def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
     """Return a system with the modes alone that are in force at a step of a round.
 
+    What disturbs it stays: the rows of roundings are over the states and all disturbances.
+
     Parameters
     ----------
     system : SwitchedSystem
@@ -38,13 +40,15 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
         )
         for item in system.roundings
     )
+    channels = (
+        replace(item, columns=tuple(compress(item.columns, kept))) for item in system.channels
+    )
     return replace(
         system,
         modes=tuple(compress(system.modes, kept)),
         contact=contact,
         roundings=tuple(roundings),
-        channels=(),
-        outputs=(),
+        channels=tuple(channels),
         saturation=None,
         clock=None,
     )

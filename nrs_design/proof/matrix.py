@@ -59,11 +59,10 @@ class RationalMatrix:
         TypeError, ValueError, OverflowError
             If an entry is none of these, or not finite.
         """
-        fractions = [[exact_fraction(entry) for entry in row] for row in rows]
-        denominator = lcm(*(entry.denominator for row in fractions for entry in row))
+        ratios = [[_integer_ratio(entry) for entry in row] for row in rows]
+        denominator = lcm(*(below for row in ratios for _, below in row))
         numerators = tuple(
-            tuple(entry.numerator * (denominator // entry.denominator) for entry in row)
-            for row in fractions
+            tuple(above * (denominator // below) for above, below in row) for row in ratios
         )
         return cls(numerators, denominator)
 
@@ -88,8 +87,15 @@ class RationalMatrix:
 
 def exact_fraction(number: Fraction | float) -> Fraction:
     """Return a number as a fraction of Python integers; those of NumPy would overflow."""
-    fraction = Fraction(number)
-    return Fraction(index(fraction.numerator), index(fraction.denominator))
+    return Fraction(*_integer_ratio(number))
+
+
+def _integer_ratio(number: Fraction | float) -> tuple[int, int]:
+    """Return numerator and positive denominator of the reduced fraction, as Python integers."""
+    # Most numbers are fractions already, and reduced.
+    fraction = number if type(number) is Fraction else Fraction(number)
+    numerator, denominator = fraction.as_integer_ratio()
+    return index(numerator), index(denominator)
 
 
 def multiply(left: Rows, right: Rows) -> list[list[Fraction]]:

@@ -21,6 +21,7 @@ from nrs_design.proof.constant import system_at
 from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precision
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.evidence.flow import shifted
+from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -35,19 +36,36 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.unstable_period import UnstablePeriod
     from nrs_design.proof.evidence.unstable_value import UnstableValue
 
+# Half as many bits as are left of the diagonal where a matrix is rounded down.
+SHORT_BITS = 24
 # A matrix and a time, of which the exponential is enclosed.
 Exponent = tuple[RationalMatrix, Fraction]
 
 
-def agrees(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
-    """Tell whether the second opinion, too, is that evidence holds which the check has accepted."""
+def agrees(
+    system: SwitchedSystem,
+    evidence: AbstractEvidence,
+    forms: Sequence[IntegerMatrix] | None = None,
+) -> bool:
+    """Tell whether the second opinion, too, is that evidence holds which the check has accepted.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        That the evidence is about.
+    evidence : AbstractEvidence
+        Of any kind.
+    forms : sequence of integer matrix, optional
+        All forms of the evidence, as the check has made them; by default they are made here.
+    """
     if not all(_is_met(A, time) for A, time in _exponents(system, evidence)):
         return False
-    return _OPINIONS.get(evidence.kind, _has_positive_forms)(system, evidence)
-
-
-def _has_positive_forms(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
-    return all(has_positive_spectrum(_matrix(form)) for _, form in evidence.forms(system))
+    decide = _OPINIONS.get(evidence.kind)
+    # What is rounded at a step enters the forms only.
+    if decide is not None and not evidence.covers_rounding:
+        return decide(system, evidence)
+    made = (form for _, form in evidence.forms(system)) if forms is None else forms
+    return all(map(finds_positive, made))
 
 
 def _is_mode_unstable(system: SwitchedSystem, evidence: UnstableMode) -> bool:
@@ -107,9 +125,7 @@ def _is_met(A: RationalMatrix, time: Fraction) -> bool:
 
 
 def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
-    """Form Q and the decrease in every mode anew, in flint's arithmetic; not where it rounds."""
-    if evidence.roundings:
-        return _has_positive_forms(system, evidence)
+    """Form Q and the decrease in every mode anew, in flint's arithmetic."""
     Q, p, q = _matrix(evidence.Q), evidence.rate.numerator, evidence.rate.denominator
 
     def decrease(A: RationalMatrix) -> Any:
@@ -137,6 +153,23 @@ def _matrix(rows: Sequence[Sequence[int]]) -> Any:
     from flint import fmpz_mat
 
     return fmpz_mat([list(row) for row in rows])
+
+
+def finds_positive(M: IntegerMatrix) -> bool:
+    """Tell whether flint finds a symmetric matrix positive definite, at first from a shorter one.
+
+    With a power of two ``d_i`` for each row, ``M = D (S + R) D`` where S is rounded down to
+    integers, so that the entries of the symmetric R are in [0, 1) and ``R >= -n I``. Where
+    ``S - n I`` is positive definite, M is; where it is not, M itself is asked about.
+    """
+    shifts = [max(0, row[i].bit_length() // 2 - SHORT_BITS) for i, row in enumerate(M)]
+    short = [
+        [entry >> a + b for entry, b in zip(row, shifts, strict=True)]
+        for row, a in zip(M, shifts, strict=True)
+    ]
+    for i, row in enumerate(short):
+        row[i] -= len(M)
+    return has_positive_spectrum(_matrix(short)) or has_positive_spectrum(_matrix(M))
 
 
 def has_positive_spectrum(M: Any) -> bool:

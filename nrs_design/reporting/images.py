@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from nrs_design.output import MAKER, SVG_MARK
 from nrs_design.reporting.document import Illustration, Report
 from nrs_design.reporting.style import THEMED, figure_style
 from nrs_design.reporting.text import drawable
@@ -108,15 +109,16 @@ def _is_numeric(axes: Axes) -> bool:
 
 
 def to_svg_file(figure: Figure) -> str:
-    """Return the text of an SVG file of its own, the same bytes for the same figure."""
-    return _savefig(figure)
+    """Return the text of an SVG file of its own, which says so; the same for the same figure."""
+    declaration, _, rest = _savefig(figure).partition("\n")
+    return f"{declaration}\n{SVG_MARK}{rest}"
 
 
 def to_png(figure: Figure, dpi: int = 200) -> bytes:
-    """Return the figure as a PNG image without date or program name."""
+    """Return the figure as a PNG image that says who made it, without a date."""
     buffer = io.BytesIO()
     with figure_style():
-        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+        figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": MAKER})
     return buffer.getvalue()
 
 

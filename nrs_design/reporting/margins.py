@@ -15,6 +15,7 @@ from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.search.loop_margin import Bracket
     from nrs_design.spec import LoadedSpec
 
 # Makes a text lead to a place of the spec.
@@ -44,13 +45,13 @@ def _box_lines(margins: ProofMargins, at: _At, ranges: str) -> Iterator[Sentence
     box = margins.box
     if box is None:
         return
-    if box.proved is None or box.proof is None:
-        yield Sentence("largest box: not even the nominal values are proved")
-        return
-    beyond: tuple[str, ...] = ()
+    beyond: tuple[str, ...] = (f"; {box.end}",) if box.end else ()
     if box.refuted is not None:
         refuted = at(rounded_up(box.refuted), ranges)
         beyond = ("; scaled by ", refuted, " they are refuted")
+    if box.proved is None or box.proof is None:
+        yield Sentence("largest box: not even the nominal values are proved", *beyond)
+        return
     yield Sentence(
         "largest box: scaled by ",
         at(rounded_down(box.proved), ranges),
@@ -81,10 +82,10 @@ def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
         return
     more = "" if loop.command is None else "; without disturbances, no bound was looked at"
     if loop.delay is not None:
-        said = _said((loop.delay.proved, loop.delay.refuted), "samples", at, "delay")
+        said = _delays(loop.delay, at)
         yield Sentence("longest delay of the force sample: ", *said, more)
     if loop.period is not None:
-        said = _said((loop.period.proved, loop.period.refuted), "s", at, "period")
+        said = _periods(loop.period, at)
         rest = f" (each for itself, nothing is said of those in between{more})"
         yield Sentence("period: ", *said, rest)
     if loop.command is not None:
@@ -109,12 +110,27 @@ def _listed(items: Iterator[tuple[str, ...]]) -> list[str]:
     return list(chain.from_iterable((", ", *item) for item in items))[1:]
 
 
-def _said(
-    ends: tuple[Fraction | None, Fraction | None], unit: str, at: _At, key: str
-) -> tuple[str, ...]:
+def _delays(bracket: Bracket, at: _At) -> tuple[str, ...]:
+    """Say up to which delay a proof reaches, and from which one on there is a refutation."""
     proved, refuted = (
-        None if end is None else at(nearly(end, unit), "sampling", key) for end in ends
+        None if end is None else at(_samples(end), "sampling", "delay")
+        for end in (bracket.proved, bracket.refuted)
+    )
+    said = ("none is proved",) if proved is None else ("proved up to ", proved)
+    end = (bracket.end,) if refuted is None else ("refuted from ", refuted)
+    return (*said, ", ", *end)
+
+
+def _samples(count: Fraction) -> str:
+    return f"{count} sample{'s' * (count != 1)}"
+
+
+def _periods(bracket: Bracket, at: _At) -> tuple[str, ...]:
+    """Say which period is proved, and which one is refuted."""
+    proved, refuted = (
+        None if end is None else at(nearly(end, "s"), "sampling", "period")
+        for end in (bracket.proved, bracket.refuted)
     )
     said = ("none is proved",) if proved is None else (proved, " is proved")
-    none = ("no refutation was found",)
-    return (*said, ", ", *(none if refuted is None else (refuted, " is refuted")))
+    end = (bracket.end,) if refuted is None else (refuted, " is refuted")
+    return (*said, ", ", *end)

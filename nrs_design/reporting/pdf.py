@@ -7,6 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from nrs_design.output import MAKER
 from nrs_design.plotting import load_matplotlib
 from nrs_design.reporting.document import (
     Block,
@@ -89,7 +90,7 @@ def _content(report: Report) -> dict[str, Any]:
         "title": drawable(report.title),
         "verdict": report.verdict,
         "tint": _TINT[report.verdict],
-        "keywords": [f"sha256:{facts[_SPEC]}"] if _SPEC in facts else [],
+        "keywords": [MAKER, *([f"sha256:{facts[_SPEC]}"] if _SPEC in facts else [])],
         "date": day and {"year": day.year, "month": day.month, "day": day.day},
         "claim": drawable(report.claim),
         "summary": [_said(sentence, report) for sentence in report.summary],

@@ -12,6 +12,7 @@ import numpy as np
 from nrs_design import __version__
 from nrs_design.errors import NrsDesignError
 from nrs_design.models.robot import (
+    DEPTH_SINES,
     TABLE_3_5,
     correct_separately,
     correction_coefficients,
@@ -22,7 +23,7 @@ from nrs_design.models.robot import (
     survey_workspace,
     thesis_grid,
     thesis_tilts,
-    tilt_table,
+    tilt_tables,
 )
 from nrs_design.models.robot.robot import LEGS
 from nrs_design.reporting.document import (
@@ -215,8 +216,7 @@ def _dynamics(robot: Robot) -> Section:
 
 def _correction(robot: Robot) -> Section:
     def drawn() -> tuple[Block, ...]:
-        depth = tilt_table(robot, thesis_tilts())
-        every = tilt_table(robot, thesis_tilts(), TABLE_3_5)
+        depth, every = tilt_tables(robot, thesis_tilts(), DEPTH_SINES, TABLE_3_5)
         apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
         rows = tuple(
             (name, *map(number, row))

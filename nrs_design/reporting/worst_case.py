@@ -14,7 +14,7 @@ from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.release import Panel, draw_release
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
-from nrs_design.simulation.worst_case import DEFLECTION, output_values
+from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -227,5 +227,5 @@ def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | No
         factor * output_values(case.system, output, run.states),
         None if limit is None else factor * limit,
         None if bound is None else np.full(len(run.time), factor * bound),
-        one_sided=case.system.contact is not None and output.name in ("force", DEFLECTION),
+        one_sided=pushes_only(case.system, output),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
@@ -15,6 +15,7 @@ from nrs_design.certificates.certificate import (
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
+from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
@@ -36,6 +37,7 @@ Progress = Callable[[str], None]
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
 SATURATION = "decay under saturation"
+NOT_IN_TURNS = "not looked for: where the loop has two periods, decay is proved, and no bound"
 
 
 def certify(
@@ -113,6 +115,26 @@ def certify(
     return replace(result, system=system, statements=statements, rate_limit=limit)
 
 
+def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> bool:
+    """Tell whether a mode, or a round of two, grows: of those that floating point suspects.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes and their switching.
+    limits : Limits, optional
+        Time and memory for the exact tests.
+    """
+    from nrs_design.search.rounds import search_rounds
+    from nrs_design.search.unstable_mode import examine_suspicious_modes
+
+    limits = limits or Limits()
+    with floats_in_silence():
+        family = Family.of(system, Allowance(limits.budget, limits.memory))
+    search = examine_suspicious_modes if system.clock is None else search_rounds
+    return _take(partial(search, family), system)[0] is not None
+
+
 def _bounds(
     system: SwitchedSystem, allowance: Allowance, progress: Progress
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
@@ -123,13 +145,14 @@ def _bounds(
         pairs += [(channels, output) for channels in alone for output in system.outputs[:1]]
     if not pairs:
         return (), ()
+    if system.clock is not None:
+        return (), tuple(Attempt(_bound_name(*pair), NOT_IN_TURNS, 0.0) for pair in pairs)
     from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 
     found: list[AbstractEvidence] = []
     attempts: list[Attempt] = []
     for count, (channels, output) in enumerate(pairs):
-        under = " and ".join(channel.name for channel in channels)
-        name, start = f"bound on {output.name} under {under}", perf_counter()
+        name, start = _bound_name(channels, output), perf_counter()
         progress(name)
         own = allowance.part(1 / (len(pairs) - count))
         search = partial(search_ellipsoid, system, channels, output, own)
@@ -138,6 +161,10 @@ def _bounds(
         if evidence is not None:
             found.append(evidence)
     return tuple(found), tuple(attempts)
+
+
+def _bound_name(channels: Sequence[Channel], output: Output) -> str:
+    return f"bound on {output.name} under {' and '.join(channel.name for channel in channels)}"
 
 
 def _settling(

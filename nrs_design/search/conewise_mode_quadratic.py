@@ -18,12 +18,8 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseModeQuadratic
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import (
-    LARGEST_MULTIPLIER,
-    Motions,
-    numerators,
-    separating_coordinates,
-)
+from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions, separating_coordinates
+from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, stand_ins
 from nrs_design.search.rounding import claims, digits, rate_at, round_form

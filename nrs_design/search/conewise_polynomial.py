@@ -20,16 +20,14 @@ from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import bisect_position
 from nrs_design.search.family import Family
+from nrs_design.search.lifted import Lift, lift_family, vanishing_in
 from nrs_design.search.polynomial import (
     FEWEST_BITS,
     NEAREST,
-    Lift,
     Solution,
     decrease_blocks,
-    lift_family,
     round_vanishing,
     shown_rate,
-    vanishing_in,
 )
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis

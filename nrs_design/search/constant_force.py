@@ -13,15 +13,15 @@ from nrs_design.proof.evidence import ConstantForce
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import (
+from nrs_design.search.conewise_program import (
     FEWEST_STEPS,
     LARGEST_MULTIPLIER,
     SMALLEST_MARGIN,
     START_FLOOR,
     Motions,
-    numerators,
     separating_coordinates,
 )
+from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.family import Family
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.lmi import time_unit

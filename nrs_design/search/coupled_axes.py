@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import Motions, numerators, separating_coordinates
+from nrs_design.search.conewise_program import Motions, separating_coordinates
+from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.raw import LOADING, PER_PROGRAM

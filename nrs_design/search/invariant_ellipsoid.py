@@ -21,15 +21,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_quadratic import Motions, separating_coordinates
-from nrs_design.search.disturbed import (
-    Found,
-    Problem,
-    balanced,
-    problem_of,
-    roundings,
-    transformed,
-)
+from nrs_design.search.conewise_program import Motions, separating_coordinates
+from nrs_design.search.disturbed import Found, Problem, balanced, problem_of, roundings, transformed
 from nrs_design.search.family import Family
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
 

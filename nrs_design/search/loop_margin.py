@@ -8,12 +8,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.bounds import nearly
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.abstract import Bound
 
 # A period is multiplied or divided by two so often, and then bisected.
 DOUBLINGS, STEPS = 4, 4
+# An exact test of a mode with more samples on their way takes too long.
+FARTHEST_DELAY = 32
 
 
 @dataclass(frozen=True)
@@ -24,10 +27,13 @@ class Bracket:
     ----------
     proved, refuted : Fraction or None
         Delays in samples, periods in s.
+    end : str
+        Where the search for a refutation ended, and why there, if it found none.
     """
 
     proved: Fraction | None
     refuted: Fraction | None
+    end: str = ""
 
 
 @dataclass(frozen=True)
@@ -67,12 +73,17 @@ class LoopMargins:
 
 
 def find_longest_delay(
-    shortest: int, declared: int, longest: int, decide: Callable[[int], Verdict]
+    shortest: int,
+    declared: int,
+    longest: int,
+    decide: Callable[[int], Verdict],
+    is_unstable: Callable[[int], bool],
 ) -> Bracket:
     """Find the longest delay with a proof, and the shortest that is refuted, in samples.
 
     The modes of a range of delays are those of every shorter range, and more: a proof for one is a
-    proof for those, and a refutation one for every longer range.
+    proof for those, and a refutation one for every longer range. So beyond the delays that are
+    decided, one that is unstable by itself refutes all ranges that reach it.
 
     Parameters
     ----------
@@ -81,9 +92,11 @@ def find_longest_delay(
     declared : int
         Largest one in the spec.
     longest : int
-        That is looked at.
+        That is decided.
     decide : callable
         Gives the verdict on a largest age.
+    is_unstable : callable
+        Tells whether the loop is refuted where all samples have one age, by a test that is quick.
     """
     proved: int | None = None
     refuted: int | None = None
@@ -100,10 +113,35 @@ def find_longest_delay(
         if verdict is Verdict.PROVED:
             proved = delay
         refuted = delay if verdict is Verdict.REFUTED else None
-    return Bracket(*(None if end is None else Fraction(end) for end in (proved, refuted)))
+    if refuted is None:
+        refuted = _first_unstable(longest, is_unstable)
+    end = (
+        ""
+        if refuted is not None
+        else f"none is refuted: no delay of up to {FARTHEST_DELAY} samples is shown to be unstable "
+        "by itself, and an exact test of longer ones would take too long"
+    )
+    ends = [None if delay is None else Fraction(delay) for delay in (proved, refuted)]
+    return Bracket(ends[0], ends[1], end)
 
 
-def find_longest_period(period: Fraction, decide: Callable[[Fraction], Verdict | None]) -> Bracket:
+def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | None:
+    """Return a short delay that is unstable, beyond one that is not: by doubling and bisecting."""
+    unstable = stable
+    while not is_unstable(unstable):
+        if unstable == FARTHEST_DELAY:
+            return None
+        stable, unstable = unstable, min(2 * unstable, FARTHEST_DELAY)
+    while unstable - stable > 1:
+        middle = (stable + unstable) // 2
+        if is_unstable(middle):
+            unstable = middle
+        else:
+            stable = middle
+    return unstable
+
+
+def find_longest_period(period: Fraction, decide: Callable[[Fraction], Verdict | str]) -> Bracket:
     """Find a long period with a proof and a short one that is refuted, each for itself.
 
     Other periods make other systems: nothing follows from one for the ones in between.
@@ -113,30 +151,42 @@ def find_longest_period(period: Fraction, decide: Callable[[Fraction], Verdict |
     period : Fraction
         Of the spec, in s.
     decide : callable
-        Gives the verdict on a period; None where it makes no system.
+        Gives the verdict on a period, or says why it makes no system.
     """
-    tried = {period: decide(period)}
+    tried: dict[Fraction, Verdict | str] = {period: decide(period)}
 
-    def attempt(value: Fraction) -> Verdict | None:
+    def attempt(value: Fraction) -> Verdict | str:
         if value not in tried:
             tried[value] = decide(value)
         return tried[value]
 
-    factor = 2 if tried[period] is Verdict.PROVED else Fraction(1, 2)
-    end = Verdict.PROVED if factor < 1 else Verdict.REFUTED
-    value = period
-    for _ in range(DOUBLINGS):
-        value *= factor
-        if attempt(value) in (end, None):
-            break
+    def double(factor: Fraction, end: Verdict) -> None:
+        value = period
+        for _ in range(DOUBLINGS):
+            value *= factor
+            if attempt(value) is end or not isinstance(tried[value], Verdict):
+                break
+
+    if tried[period] is not Verdict.PROVED:
+        double(Fraction(1, 2), Verdict.PROVED)
+    if Verdict.REFUTED not in tried.values():
+        double(Fraction(2), Verdict.REFUTED)
     proved = _bisect(attempt, tried, Verdict.PROVED)
     refuted = _bisect(attempt, tried, Verdict.REFUTED)
-    return Bracket(proved, refuted)
+    return Bracket(proved, refuted, "" if refuted is not None else _end_of_periods(tried))
+
+
+def _end_of_periods(tried: Mapping[Fraction, Verdict | str]) -> str:
+    """Say where periods that are not refuted end, and why there."""
+    longest = max(value for value, found in tried.items() if isinstance(found, Verdict))
+    faults = [found for value, found in sorted(tried.items()) if value > longest]
+    why = f"a longer one makes no loop ({faults[0]})" if faults else "the search ends there"
+    return f"none of up to {nearly(longest, 's')} is refuted: {why}"
 
 
 def _bisect(
-    attempt: Callable[[Fraction], Verdict | None],
-    tried: Mapping[Fraction, Verdict | None],
+    attempt: Callable[[Fraction], Verdict | str],
+    tried: Mapping[Fraction, Verdict | str],
     verdict: Verdict,
 ) -> Fraction | None:
     """Sharpen the largest period that is proved, or the smallest that is refuted."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
+from nrs_design.proof.bounds import nearly
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.switching import LONGEST_DWELL
 
@@ -43,11 +44,14 @@ class BoxMargin:
         between the two is undecided.
     proof : Certification or None
         At the scale `proved`.
+    end : str
+        Where the search for a refutation ended, and why there, if it found none.
     """
 
     proved: Fraction | None
     refuted: Fraction | None
     proof: Certification | None
+    end: str = ""
 
 
 def find_margin(
@@ -68,34 +72,55 @@ def find_margin(
     known : Certification, optional
         What was found at scale 1, perhaps by a longer search: no worse is reported.
     """
-    tried = _Tried(lambda scale: _try(scale, assemble, certify))
+    faults: dict[Fraction, str] = {}
+    tried = _Tried(lambda scale: _try(scale, assemble, certify, faults))
     if known is not None:
         tried.remember(Fraction(1), known)
     if not tried.that_are(Verdict.PROVED) and not tried.is_proved(Fraction(0)):
-        return BoxMargin(None, Fraction(0) if tried.is_refuted(Fraction(0)) else None, None)
+        refuted = _smallest_refuted(tried, assemble, faults)
+        return BoxMargin(None, refuted, None, _end(tried, faults, refuted))
     high = Fraction(1)
     while high <= LARGEST_SCALE and tried.is_proved(high):
         high *= 2
-    if high > LARGEST_SCALE:
-        low = high / 2
-        return BoxMargin(low, None, tried.certification(low))
-    low = _sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
-    return BoxMargin(low, _smallest_refuted(tried), tried.certification(low))
+    if high <= LARGEST_SCALE:
+        _sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
+    refuted = _smallest_refuted(tried, assemble, faults)
+    low = max(tried.that_are(Verdict.PROVED))
+    return BoxMargin(low, refuted, tried.certification(low), _end(tried, faults, refuted))
 
 
-def _smallest_refuted(tried: _Tried) -> Fraction | None:
+def _end(tried: _Tried, faults: Mapping[Fraction, str], refuted: Fraction | None) -> str:
+    """Say where scales that are not refuted end, and why there; nothing if one is refuted."""
+    if refuted is not None:
+        return ""
+    longest = max(scale for scale in tried.all() if not tried.makes_no_system(scale))
+    beyond = [faults[scale] for scale in sorted(faults) if scale > longest]
+    why = f"wider ones make no system ({beyond[0]})" if beyond else "the search ends there"
+    return f"none scaled by up to {nearly(longest)} is refuted: {why}"
+
+
+def _smallest_refuted(
+    tried: _Tried, assemble: Assemble, faults: dict[Fraction, str]
+) -> Fraction | None:
     """Return the smallest scale found to be refuted: from what was tried, or beyond it."""
-    high = tried.largest()
+    high = max(tried.largest(), Fraction(1))
     for _ in range(DOUBLINGS):
         if tried.that_are(Verdict.REFUTED) or tried.makes_no_system(high):
             break
         high *= 2
         tried.is_refuted(high)
+    if not tried.that_are(Verdict.REFUTED) and tried.makes_no_system(high):
+        widest = max(scale for scale in tried.all() if not tried.makes_no_system(scale))
+
+        def makes_system(scale: Fraction) -> bool:
+            return _assembled(scale, assemble, faults) is not None
+
+        tried.is_refuted(_sharpen(widest, high, STEPS, makes_system))
     refuted = min(tried.that_are(Verdict.REFUTED), default=None)
-    if refuted is None:
-        return None
-    below = max(scale for scale in tried.all() if scale < refuted)
-    return _sharpen(refuted, below, REFUTED_STEPS, tried.is_refuted)
+    below = [scale for scale in tried.all() if refuted is not None and scale < refuted]
+    if refuted is None or not below:
+        return refuted
+    return _sharpen(refuted, max(below), REFUTED_STEPS, tried.is_refuted)
 
 
 def _sharpen(
@@ -148,11 +173,23 @@ class _Tried:
         return [number for number, found in self._outcomes.items() if found[0] is verdict]
 
 
-def _try(scale: Fraction, assemble: Assemble, certify: Certify) -> Outcome:
-    """Return the verdict at a scale; None if the scale makes no system."""
+def _assembled(
+    scale: Fraction, assemble: Assemble, faults: dict[Fraction, str]
+) -> SwitchedSystem | None:
+    """Return the system at a scale, or note why the scale makes none."""
     try:
-        system = assemble(scale)
-    except AssemblyError:
+        return assemble(scale)
+    except AssemblyError as error:
+        faults[scale] = error.message
+        return None
+
+
+def _try(
+    scale: Fraction, assemble: Assemble, certify: Certify, faults: dict[Fraction, str]
+) -> Outcome:
+    """Return the verdict at a scale; None if the scale makes no system."""
+    system = _assembled(scale, assemble, faults)
+    if system is None:
         return None, None
     certification = certify(system)
     return certification.verdict, certification

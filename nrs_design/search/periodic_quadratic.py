@@ -21,12 +21,11 @@ from nrs_design.proof.switching import Clock
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import own_norm, scale
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions
 from nrs_design.search.conewise_quadratic import (
-    LARGEST_MULTIPLIER,
     LOST,
     WITH_ERRORS,
     Errors,
-    Motions,
     in_numerators,
     multiplied,
     numerators,

@@ -11,7 +11,8 @@ from nrs_design.simulation.mujoco_body import MujocoBody
 from nrs_design.simulation.processor import Body, Motors, Tell, run_axes, silent
 from nrs_design.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, MAX_STEPS, Deviation, Run
-from nrs_design.simulation.sampled import SampledAxis, sampled_axis
+from nrs_design.simulation.sampled import sampled_axis
+from nrs_design.simulation.sampled_axis import SampledAxis
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
 

@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from nrs_design.controllers.threshold_logic import ThresholdLogic
 from nrs_design.errors import DataError
 from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractContactLaw, Element
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.scenario import (
-    COMMAND,
-    DEPTH,
-    TORQUE,
-    Condition,
-    Control,
-    Errors,
-    Profile,
-    Scenario,
-    Surface,
-    Switch,
-)
+from nrs_design.simulation.build_control import build_control
+from nrs_design.simulation.scenario import Errors, Profile, Scenario, Surface
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.interval import Interval
@@ -34,7 +23,6 @@ from nrs_design.spec.scenarios import (
     AXES,
     LONGEST,
     CommandProfileSpec,
-    ControlSpec,
     ErrorsSpec,
     ScenarioSpec,
     SurfaceSpec,
@@ -83,7 +71,7 @@ def build_scenario(
         profile,
         length,
         surfaces,
-        _control(spec, scenario.control, surfaces),
+        build_control(spec, scenario.control, surfaces),
         0.0 if scenario.start is None else scenario.start.si,
         wanted.si,
         _errors(scenario.errors),
@@ -186,7 +174,7 @@ def default_scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
     at = largest * _AWAY
     surfaces = tuple(_touched(spec, plant, name, at, 1, "nominal") for name in touched[:1])
     profile = Profile.through(times, shares * largest)
-    control, wanted = _control(spec, None, surfaces), spec.limits.torque.si
+    control, wanted = build_control(spec, None, surfaces), spec.limits.torque.si
     return Scenario(DEFAULT, profile, float(times[-1]), surfaces, control, wanted_torque=wanted)
 
 
@@ -296,113 +284,6 @@ def _law(
         return HuntCrossley.through(k, b, pick(exponent), about), None
     law = environment.law(*(pick(interval) for interval in environment.ranges))
     return law, law.element
-
-
-def _control(
-    spec: InteractionDesignSpec, written: ControlSpec | None, surfaces: tuple[Surface, ...]
-) -> Control:
-    first = next(iter(spec.controllers))
-    thresholds = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
-    if written is None:
-        return by_logic(spec) if thresholds else _usual(spec, first)
-    if written.fixed is not None:
-        return Control(written.fixed)
-    if written.schedule is not None:
-        times = [(time.si, name) for time, name in written.schedule]
-        return Control(times[0][1], schedule=tuple(times[1:]))
-    if written.sign is not None:
-        return by_sign(written.sign.insertion, written.sign.withdrawal)
-    if written.threshold is not None:
-        given = written.threshold
-        return by_threshold(given.position, given.force, given.torque.si)
-    if written.contact is not None:
-        switches = tuple(_by_contact(written.contact, surfaces))
-        return Control(next(iter(written.contact.values())), switches)
-    return by_logic(spec)
-
-
-def _usual(spec: InteractionDesignSpec, first: str) -> Control:
-    """Return what fits names and kinds: signs, the threshold of the torque, or one controller."""
-    controllers = spec.controllers.items()
-    if {"insertion", "withdrawal"} <= spec.controllers.keys():
-        return by_sign("insertion", "withdrawal")
-    position = next((n for n, c in controllers if c.type == "position"), None)
-    force = next((n for n, c in controllers if c.holds_force), None)
-    if position and force:
-        return by_threshold(position, force, spec.limits.torque.si)
-    return Control(first)
-
-
-def by_sign(insertion: str, withdrawal: str) -> Control:
-    """Return insertion and withdrawal by the signs of command and torque (thesis 6.3.2).
-
-    Parameters
-    ----------
-    insertion, withdrawal : str
-        Controllers.
-    """
-    pushes_out = (Condition(COMMAND, high=-_TINY), Condition(TORQUE, low=_TINY))
-    back = (Condition(COMMAND, low=_TINY),)
-    lost = (Condition(TORQUE, high=0.0),)
-    return Control(
-        insertion,
-        (
-            Switch(insertion, withdrawal, pushes_out),
-            Switch(withdrawal, insertion, back),
-            Switch(withdrawal, insertion, lost),
-        ),
-    )
-
-
-def by_threshold(position: str, force: str, torque: float) -> Control:
-    """Return position control up to a torque in N m, force control beyond it (thesis 6.3.3).
-
-    Parameters
-    ----------
-    position, force : str
-        Controllers.
-    torque : float
-        The threshold.
-    """
-    reached = (Condition(TORQUE, low=torque), Condition(COMMAND, low=_TINY))
-    return Control(
-        position,
-        (
-            Switch(position, force, reached),
-            Switch(force, position, (Condition(COMMAND, high=-_TINY),)),
-        ),
-    )
-
-
-# The sign of a signal is told beyond this, in rad/s and N m: not from rounding.
-_TINY = 1e-9
-
-
-def _by_contact(contacts: Mapping[str, str], surfaces: Sequence[Surface]) -> Iterator[Switch]:
-    """Yield a switch into the controller of what is met; what is listed later comes first."""
-    listed = list(contacts)
-    for place, (environment, target) in enumerate(contacts.items()):
-        later = tuple(
-            Condition(f"{DEPTH}{i}", high=0.0)
-            for i, surface in enumerate(surfaces)
-            if surface.environment in listed[place + 1 :]
-        )
-        for source in dict.fromkeys(contacts.values()):
-            for i, surface in enumerate(surfaces):
-                if source != target and surface.environment == environment:
-                    yield Switch(source, target, (Condition(f"{DEPTH}{i}", low=0.0), *later))
-
-
-def by_logic(spec: InteractionDesignSpec) -> Control:
-    """Return the thresholds and timers of the mode logic of a spec."""
-    assert spec.mode_logic is not None
-    assert spec.mode_logic.type == "thresholds"
-    logic = ThresholdLogic.of(spec.mode_logic)
-    switches = (
-        Switch(source, target, tuple(Condition(signal, *ends) for signal, ends in bounds.items()))
-        for source, target, bounds in logic.conditions()
-    )
-    return Control(logic.initial, tuple(switches), logic.stays, ships=True)
 
 
 def _errors(written: ErrorsSpec | None) -> Errors:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.build_scenario import by_logic
+from nrs_design.simulation.build_control import by_logic
 from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, Run
 from nrs_design.simulation.scenario import Errors, Scenario
 from nrs_design.spec import InteractionDesignSpec
@@ -120,7 +120,7 @@ def _differences(
 ) -> Iterator[str]:
     """Yield what sets a run apart from all that a proof is about, whatever it shows."""
     angles = None if spec.disturbances is None else spec.disturbances.largest_angle
-    if any(controller.type != "impedance" for controller in spec.controllers.values()):
+    if any(controller.commands != "velocity" for controller in spec.controllers.values()):
         yield "the run is not one of impedance control alone"
     if run.engine == "mujoco":
         yield "MuJoCo moves the mechanics, with errors of its own"

@@ -16,7 +16,7 @@ import numpy as np
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.flow import CHUNK, Flow
-from nrs_design.simulation.loop import Loop, Mode
+from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.run import (
     ERRORS_LEFT_OUT,
     EVENT_STEPS,
@@ -28,13 +28,9 @@ from nrs_design.simulation.run import (
 )
 from nrs_design.simulation.scenario import Array, Errors, Scenario
 from nrs_design.simulation.time_response import Signal, TimeResponse
+from nrs_design.simulation.way import TOLERANCE, Way, make_way
 from nrs_design.spec import InteractionDesignSpec
 
-# A depth, a torque and a velocity are on the other side of a threshold when they are so far beyond
-# it, in rad, N m and rad/s: contact neither chatters from rounding, nor does the logic.
-TOLERANCE = 1e-12
-# Points of a run, at least.
-POINTS = 2000
 # Steps after which it is told how far the run is.
 _OFTEN = 20_000
 # Events at one instant, one after the other, after which a run does not come on.
@@ -89,38 +85,6 @@ def simulate_exactly(
     return _Engine(Loop(spec, plant, design, scenario), max_steps, tell).run()
 
 
-@dataclass(frozen=True)
-class _Way:
-    """A controller in force and what is touched: the loop, and the signals that may end it.
-
-    Parameters
-    ----------
-    index : int
-        In the order in which ways are taken.
-    controller : str
-        In force.
-    mode : Mode
-        The loop.
-    flow : Flow
-        Watches the depths below all surfaces, the pushes of those that it is in and that have
-        damping, and then the bounds of conditions.
-    damped : tuple of int
-        Indices of the surfaces whose pushes are watched.
-    pushes : ndarray, shape (surfaces, n)
-        Rows of all pushes.
-    bounds : tuple of (int, int, int)
-        Of which switch and condition it is the lower (0) or the upper (1) bound.
-    """
-
-    index: int
-    controller: str
-    mode: Mode
-    flow: Flow
-    damped: tuple[int, ...]
-    pushes: Array
-    bounds: tuple[tuple[int, int, int], ...]
-
-
 @dataclass
 class _Engine:
     """A run that is under way."""
@@ -128,7 +92,7 @@ class _Engine:
     loop: Loop
     max_steps: int
     tell: Tell
-    ways: dict[tuple[object, ...], _Way] = field(default_factory=dict)
+    ways: dict[tuple[object, ...], Way] = field(default_factory=dict)
     switches: list[tuple[float, str]] = field(default_factory=list)
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)
     steps: int = 0
@@ -227,39 +191,21 @@ class _Engine:
             self.z[-3:-1] = piece.value, piece.slope
         self._settle()
 
-    def _way(self) -> _Way:
+    def _way(self) -> Way:
         """Return the way that the loop is in now."""
         key = (self.controller, *self.inside, *self.pushing, self.direction)
         if key not in self.ways:
-            self.ways[key] = self._make_way(len(self.ways))
+            self.ways[key] = make_way(
+                self.loop,
+                self.controller,
+                self.inside,
+                self._touched(),
+                self.direction,
+                len(self.ways),
+            )
         return self.ways[key]
 
-    def _make_way(self, index: int) -> _Way:
-        loop, scenario = self.loop, self.loop.scenario
-        mode, one = loop.mode(self.controller, self._touched()), loop.row("one")
-        each = range(len(scenario.surfaces))
-        pushes = np.array([loop.push(j, mode) for j in each]).reshape(-1, len(one))
-        damped = tuple(j for j in each if self.inside[j] and loop.is_damped(j))
-        rows = [*(loop.depth(j, mode) for j in each), *(pushes[j] for j in damped)]
-        bounds = []
-        for i, switch in enumerate(scenario.control.switches):
-            for k, condition in enumerate(switch.conditions):
-                if switch.source != self.controller:
-                    continue
-                signal = loop.signal(condition.signal, mode, self.direction)
-                if np.isfinite(condition.low):
-                    rows.append(signal - condition.low * one)
-                    bounds.append((i, k, 0))
-                if np.isfinite(condition.high):
-                    rows.append(condition.high * one - signal)
-                    bounds.append((i, k, 1))
-        # A flow ends where a signal is clearly across, so that it counts so then.
-        across = np.full(len(rows), 2 * TOLERANCE)
-        step = scenario.duration / POINTS
-        flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)
-        return _Way(index, self.controller, mode, flow, damped, pushes, tuple(bounds))
-
-    def _sides(self, way: _Way) -> Array:
+    def _sides(self, way: Way) -> Array:
         """Return on which side every signal of a way counts as being."""
         flags = (
             *self.inside,

@@ -20,7 +20,7 @@ from nrs_design.models.plant import Plant
 from nrs_design.models.robot import DRIVEN, robot_model, tree_angles
 from nrs_design.models.robot.vectors import Array
 from nrs_design.simulation.robot_body import FASTEST, Arm, drive_torques, place, runs_away
-from nrs_design.simulation.sampled import SampledAxis
+from nrs_design.simulation.sampled_axis import SampledAxis
 
 # Longest step of MuJoCo in s.
 STEP = 1e-4

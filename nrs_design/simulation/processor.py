@@ -4,18 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Protocol
 
 from nrs_design.errors import PoseError
+from nrs_design.simulation.fate import Fate
 from nrs_design.simulation.run import Run
-from nrs_design.simulation.scenario import Array, Scenario
-
-if TYPE_CHECKING:
-    from nrs_design.simulation.sampled import SampledAxis
+from nrs_design.simulation.sampled_axis import SampledAxis
 
 # Samples after which it is told how far the run is.
 _OFTEN = 20_000
@@ -24,46 +18,6 @@ Tell = Callable[[str], None]
 
 def silent(step: str) -> None:
     """Report no progress."""
-
-
-@dataclass(frozen=True, slots=True)
-class Fate:
-    """What chance and the surgeon bring, for every sample.
-
-    Parameters
-    ----------
-    times, hand, noise : ndarray, shape (N,)
-        Instants in s, commanded velocities in rad/s, errors of the torque in N m.
-    ages : ndarray of int, shape (N,)
-        Of the force samples.
-    """
-
-    times: Array
-    hand: Array
-    noise: Array
-    ages: NDArray[np.int64]
-
-    @classmethod
-    def of(cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int) -> Fate:
-        """Draw it from the seed of the scenario.
-
-        Parameters
-        ----------
-        scenario : Scenario
-            With its errors.
-        period : float
-            In s.
-        delay : tuple of (int, int)
-            Smallest and largest age.
-        count : int
-            Number of samples N.
-        """
-        rng = np.random.default_rng(scenario.seed)
-        late = scenario.errors.jitter * period * rng.random(count)
-        noise = scenario.errors.force_noise * rng.standard_normal(count)
-        ages = rng.integers(delay[0], delay[1] + 1, count)
-        times = period * np.arange(count) + late
-        return cls(times, scenario.profile.at(times), noise, ages)
 
 
 class Body(Protocol):

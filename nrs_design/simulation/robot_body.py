@@ -17,7 +17,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.models.robot import Robot, gravity_torque, inverse_kinematics
 from nrs_design.models.robot.vectors import Array
-from nrs_design.simulation.sampled import PARTS, SampledAxis
+from nrs_design.simulation.sampled_axis import PARTS, SampledAxis
 from nrs_design.simulation.tracking import DriveArrays, JointState, Mechanism, Stepper
 
 # No robot moves so fast, in rad/s.

@@ -6,18 +6,13 @@ bound says that it is at most so large. What is found is no bound.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.certificates.bounds import bound_on
-from nrs_design.models.contact.environment import Environment
-from nrs_design.proof.bounds import upper_float
 from nrs_design.proof.channels import Output
-from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY
@@ -29,11 +24,11 @@ from nrs_design.simulation.adversary import (
     misjudged_signals,
     random_signals,
 )
-from nrs_design.simulation.contact import deflected
 from nrs_design.simulation.game import Aim, Game, Signals, free_modes, play
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.rules import Indices, fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
+from nrs_design.simulation.worst_outputs import pushes_only
 
 # Starts for each quantity, most sweeps from each, and rounds in which the best are changed.
 STARTS, SWEEPS, ROUNDS = 24, 15, 8
@@ -51,8 +46,6 @@ _BOUNCING = 3
 _CLOSER = 16
 # Against a bound, a run is as long as its set needs to fill up to a thousandth, if steps are few.
 _FILLED, _LONGEST, _DRAWN, _TURNS = 7.0, 800, 8, 6
-DEFLECTION = "deflection"
-_PUSHED = ("force", DEFLECTION)
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,27 +189,6 @@ def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
     return _run(free, game, bound.output, signals, unit, float(values[0]), first)
 
 
-def output_values(system: SwitchedSystem, output: Output, states: Array) -> Array:
-    """Return an output along a run for every row of it; shape (K + 1, r).
-
-    Tissue that can be lost pushes and never pulls.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That the output is of.
-    output : Output
-        One of its outputs, or other rows over its state.
-    states : ndarray, shape (K + 1, n)
-        Of the run.
-    """
-    rows = np.array([row.floats()[0] for row in output.rows])
-    if system.contact is None:
-        return np.asarray(states @ rows.T)
-    values = np.asarray(deflected(states) @ rows.T)
-    return np.maximum(values, 0.0) if output.name in _PUSHED else values
-
-
 def _lengthened(game: Game, aim: Aim, signals: Signals, values: Array) -> tuple[Signals, Array]:
     """Give the best runs more time before, as long as that is worth it."""
     for _ in range(_DOUBLED):
@@ -284,75 +256,6 @@ def _beside(parts: Sequence[Signals]) -> Signals:
     return first
 
 
-def deflection_of(system: SwitchedSystem) -> Output | None:
-    """Return the deflection as an output; None where it is no state.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Of an interaction design.
-    """
-    from nrs_design.proof.matrix import RationalMatrix
-
-    if "delta [rad]" not in system.states:
-        return None
-    row = [int(state == "delta [rad]") for state in system.states]
-    return Output(DEFLECTION, "rad", (RationalMatrix.from_rows([row]),))
-
-
-def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> NDArray[np.bool_]:
-    """Tell which rows of the force belong to the contact and its corner in each mode.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Whose modes are named after controller, contact and corner.
-    touched : sequence of Environment
-        All contacts, in the order of the rows.
-
-    Returns
-    -------
-    ndarray of bool, shape (m, r)
-        A mode that names no contact may have any of them.
-    """
-    labels = [
-        {environment.name, *(f"{p}-{end}" for p, (end, _) in zip(names, ends, strict=True) if end)}
-        for environment in touched
-        for names in (environment.law.parameters(),)
-        for ends in product(*(interval.ends for interval in environment.ranges))
-    ]
-    found = np.array(
-        [[label <= set(mode.name.split("/")) for label in labels] for mode in system.modes]
-    )
-    return np.asarray(found | ~found.any(axis=1, keepdims=True))
-
-
-def bounds_of(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> dict[str, float]:
-    """Return what is certified about every output, not below it, and about the deflection.
-
-    Where the force is a stiffness times the deflection, the bound holds for every stiffness in its
-    range, so also for the highest.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the statements are about.
-    statements : iterable of AbstractEvidence
-        Checked; bounds under all disturbances at once count.
-    """
-    found: dict[str, float] = {}
-    checked = tuple(statements)
-    for output in system.outputs:
-        bound = bound_on(system, checked, output.name)
-        if bound is None:
-            continue
-        found[output.name] = upper_float(bound.level)
-        rows = [row.fractions()[0] for row in output.rows]
-        if output.name == "force" and not any(any(row[:-1]) for row in rows):
-            found[DEFLECTION] = upper_float(bound.level / max(abs(row[-1]) for row in rows))
-    return found
-
-
 def _is_free(system: SwitchedSystem) -> bool:
     """Tell whether any mode may follow any mode at any time."""
     return system.switching.is_arbitrary and system.clock is None
@@ -395,9 +298,11 @@ def _aim(system: SwitchedSystem, output: Output, allowed: Mapping[str, NDArray[n
     every = np.ones((len(system.modes), len(rows)), dtype=np.bool_)
     # Under free switching, any mode may take over at the very end.
     given = None if _is_free(system) else allowed.get(output.name)
-    # Tissue that can be lost pushes and never pulls.
-    pushes = system.contact is not None and output.name in _PUSHED
-    return Aim(rows[None], (every if given is None else given)[None], np.array([pushes]))
+    return Aim(
+        rows[None],
+        (every if given is None else given)[None],
+        np.array([pushes_only(system, output)]),
+    )
 
 
 def _joined(aims: Sequence[Aim]) -> Aim:

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from nrs_design.spec.exact import parse_exact
     from nrs_design.spec.gain_fields import GainSpec
     from nrs_design.spec.goals import GoalsSpec
-    from nrs_design.spec.interaction import DesignSpec, InteractionDesignSpec
+    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.interaction_parts import DesignSpec
     from nrs_design.spec.load import LoadedSpec, Spec, load_spec, parse_spec, read_spec
     from nrs_design.spec.motion import (
         ActuatorIntervals,
@@ -113,7 +114,8 @@ _HOMES = {
         "exact": "parse_exact",
         "gain_fields": "GainSpec",
         "goals": "GoalsSpec",
-        "interaction": "DesignSpec InteractionDesignSpec",
+        "interaction": "InteractionDesignSpec",
+        "interaction_parts": "DesignSpec",
         "load": "LoadedSpec load_spec parse_spec read_spec",
         "motion": "ActuatorIntervals ActuatorSpec LimitsSpec MotionLoopSpec TransferFunctionSpec",
         "parameters": "ParameterSpec",

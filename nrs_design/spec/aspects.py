@@ -1,7 +1,8 @@
 """What makes an interaction design hard to prove, part by part, and the spec without a part.
 
 A spec without a part allows for less, so what is proved of it is a part of what was asked for; but
-for the sampling: without it, the law is taken to act at every moment.
+for the sampling: without it, the law is taken to act at every moment, and without a period of its
+own, the outer loop runs at every sample of the motion loop.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ def aspects_of(spec: InteractionDesignSpec) -> dict[str, Weakening]:
         found["the ranges of gains"] = _nominal_gains
     if spec.sampling is not None and spec.sampling.delay[0] < spec.sampling.delay[1]:
         found["ages of the force sample beyond the shortest"] = _shortest_delay
+    if spec.sampling is not None and spec.sampling.round > 1:
+        found["the outer_period"] = with_common_period
     if spec.coupling is not None:
         found["what the axes do to each other"] = _without_coupling
         if spec.sampling is not None and all(
@@ -35,6 +38,21 @@ def aspects_of(spec: InteractionDesignSpec) -> dict[str, Weakening]:
         ):
             found["the sampling"] = _without_sampling
     return found
+
+
+def with_common_period(spec: InteractionDesignSpec) -> InteractionDesignSpec:
+    """Return the spec with the period of the motion loop for the outer loop, too.
+
+    A delay that counted samples of the outer loop then counts these.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With sampling.
+    """
+    assert spec.sampling is not None
+    changed = spec.sampling.model_copy(update={"outer_period": None})
+    return spec.model_copy(update={"sampling": changed})
 
 
 def _without_sampling(spec: InteractionDesignSpec) -> InteractionDesignSpec:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from nrs_design.spec.faults import fault
 
 if TYPE_CHECKING:
-    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 _AT = ("goals", "constant_force")
 
 
-def check_constant_force(spec: InteractionDesignSpec) -> None:
+def check_constant_force(spec: AbstractInteractionSpec) -> None:
     """Report a fault if the goal `constant_force` is set where nothing can be claimed about it.
 
     The loop must rest at one deflection under every controller, where the force alone moves the
@@ -20,7 +20,7 @@ def check_constant_force(spec: InteractionDesignSpec) -> None:
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
+    spec : AbstractInteractionSpec
         With its goals.
     """
     if spec.goals is None or spec.goals.constant_force is None:

@@ -113,10 +113,16 @@ class AbstractControllerSpec(SpecModel):
     commands: ClassVar[Command]
     # Whether it is modelled as a processor computes it.
     sampled: ClassVar[bool] = True
-    # Whether it holds a force against what it touches.
+    # Whether it holds a force against what it touches, or a position whatever it touches.
     holds_force: ClassVar[bool] = False
+    holds_position: ClassVar[bool] = False
     # Whether it keeps a state that stays in the command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
+
+    @property
+    def own_offset(self) -> Offset | None:
+        """Where it takes an offset of its command from; None where there is no such offset."""
+        return None
 
     def gains(self) -> dict[str, GainSpec]:
         """Return the gains that the design may choose, or that may be retuned, by name."""
@@ -219,6 +225,11 @@ class ForceControllerSpec(AbstractControllerSpec):
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 
+    @property
+    def own_offset(self) -> Offset:
+        """As `offset` says."""
+        return self.offset
+
     @model_validator(mode="after")
     def _check_one_gain(self) -> ForceControllerSpec:
         if self.proportional_gain is None and self.damping_ratio is None:
@@ -314,6 +325,7 @@ class PositionControllerSpec(AbstractControllerSpec):
     """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
 
     commands: ClassVar[Command] = "position"
+    holds_position: ClassVar[bool] = True
     environment: ClassVar[str | None] = None
     contacts: ClassVar[tuple[Contact, ...]] = ()
     goals: ClassVar[GoalsSpec | None] = None

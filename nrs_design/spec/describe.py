@@ -13,7 +13,7 @@ from nrs_design.spec.controllers import (
     ImpedanceControllerSpec,
     contact_names,
 )
-from nrs_design.spec.environment import EnvironmentSpec, HuntCrossleySpec, unit_at_pivot
+from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
@@ -197,11 +197,15 @@ def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Line]:
 def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     yield Line(f"{name}.model", environment.model, "", "")
     turned = environment.at_pivot()
-    for key, written in environment.parameters().items():
+    parameters = environment.parameters()
+    for key, written in parameters.items():
         unit = unit_at_pivot(written.nominal)
         yield from _ranged(f"{name}.{key}", written, turned[key], unit)
-    if environment.model == "hunt-crossley":
-        yield from _preload(name, environment)
+    for key in type(environment).model_fields:
+        if key not in parameters and key not in AbstractEnvironmentSpec.model_fields:
+            yield from describe_model(getattr(environment, key), f"{name}.{key}")
+    if environment.preloaded:
+        yield from _over_preload(name, environment)
     if environment.lever_arm is not None:
         yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
     if environment.range_covers is not None:
@@ -212,11 +216,8 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
     yield from _provenance(name, environment)
 
 
-def _preload(name: str, environment: HuntCrossleySpec) -> Iterator[Line]:
-    """List the preload of a power law, and where stiffness and damping are then at the pivot."""
-    yield from describe_model(environment.exponent, f"{name}.exponent")
-    yield from describe_model(environment.about, f"{name}.about")
-    yield from describe_model(environment.preload, f"{name}.preload")
+def _over_preload(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
+    """List where stiffness and damping of a power law are over its preload, at the pivot."""
     for key, interval in environment.linear_at_pivot().items():
         unit = unit_at_pivot(getattr(environment, key).nominal)
         value = f"[{_text(float(interval.low))}, {_text(float(interval.high))}]"

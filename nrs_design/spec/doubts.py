@@ -57,6 +57,8 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     yield from _doubt_units(spec)
     yield from _doubt_thresholds(spec)
     yield from _doubt_command(spec)
+    yield from _doubt_bounds(spec)
+    yield from _doubt_continuous(spec)
 
 
 def _doubt_units(spec: InteractionDesignSpec) -> Iterator[Doubt]:
@@ -108,4 +110,46 @@ def _doubt_command(spec: InteractionDesignSpec) -> Iterator[Doubt]:
             f"{rounded_up(reached)} rad/s at most, below limits.velocity of "
             f"{limits.velocity.text}: the axis cannot follow a command at that limit (raise "
             "limits.command, or lower limits.velocity)",
+        )
+
+
+def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield disturbances under which no bound will be proved."""
+    two = spec.sampling is not None and spec.sampling.round > 1
+    if two and spec.disturbances is not None:
+        yield Doubt(
+            ("disturbances",),
+            "beside an outer_period, the decay of the undisturbed loop is proved, and no bound "
+            "under disturbances (bounds of the loop without outer_period are listed; or remove "
+            "disturbances)",
+        )
+
+
+def _doubt_continuous(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield what can be designed, but not proved, where there is no sampling."""
+    if spec.sampling is not None:
+        return
+    others = [name for name, c in spec.controllers.items() if c.commands != "velocity"]
+    memories = sorted(name for name in spec.touched if spec.environments[name].remembers)
+    sprung = [name for name, c in spec.controllers.items() if "Kt" in c.gains()]
+    end = "so certify-switching refuses this spec"
+    if spec.contact == "losable" and (beside := (*others, *memories)):
+        yield Doubt(
+            ("contact",),
+            f"in continuous time, loss of contact is not modelled beside {beside[0]}, {end} (use "
+            "`contact: kept`; for position and force controllers, add sampling)",
+        )
+    commanded = spec.disturbances is not None and spec.disturbances.command is not None
+    if commanded and (beside := (*others, *memories, *sprung)):
+        yield Doubt(
+            ("disturbances", "command"),
+            f"a bound under a velocity command is not modelled beside {beside[0]}, {end} (leave "
+            "command out)",
+        )
+    restless = [name for name in memories if not spec.environments[name].has_rest]
+    if sprung and restless:
+        yield Doubt(
+            ("environments", restless[0], "model"),
+            f"{restless[0]} has no rest position, and {sprung[0]} has a spring Kt: not modelled, "
+            f"{end} (leave Kt out, or use another environment)",
         )

@@ -88,6 +88,11 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         return self.is_spring and not self.preloaded
 
     @property
+    def preload_range(self) -> tuple[Quantity, Quantity] | None:
+        """The lowest and highest deflection of the preload, if there is one."""
+        return None
+
+    @property
     def linear_model(self) -> str:
         """The linear law that stands for it."""
         return self.model
@@ -256,6 +261,11 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
                 "preload",
             )
         return self
+
+    @property
+    def preload_range(self) -> tuple[Quantity, Quantity]:
+        """As `preload` says."""
+        return self.preload
 
     @property
     def fixed(self) -> bool:

@@ -31,6 +31,24 @@ _OTHER_NAMES = {
     "voigt": "kelvin-voigt",
     "standard-linear-solid": "kelvin-boltzmann",
 }
+# Other words for keys, in small letters: what similar letters do not tell.
+_OTHER_KEYS = {
+    "period": ("sample_time", "sampling_time", "ts", "dt", "rate", "frequency"),
+    "delay": ("lag", "latency", "age", "dead_time"),
+    "time_constant": ("tau", "t"),
+    "stiffness": ("k", "spring", "elasticity"),
+    "damping": ("d", "viscosity"),
+    "lever_arm": ("arm", "lever", "length"),
+    "damping_ratio": ("zeta", "damping"),
+    "settling_time": ("ts", "settling"),
+    "derivative_gain": ("kd", "derivative"),
+    "velocity": ("speed", "max_velocity", "largest_velocity"),
+    "torque": ("force", "moment", "max_torque", "largest_torque"),
+    "load_inertia": ("inertia", "load"),
+    "gain": ("k", "factor"),
+}
+# What `identify` writes into a section: it is listed after what people write.
+_IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
 # How deep that tag is: below a name, or at once.
 _DEPTH = {"environments": 2, "controllers": 2, "mode_logic": 1}
 _MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
@@ -80,7 +98,12 @@ def all_of(*reads: Callable[[], _T]) -> list[_T]:
     return results
 
 
-def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of") -> str:
+def did_you_mean(
+    word: str,
+    choices: Collection[str],
+    noun: str = "write one of",
+    called: list[str] | tuple[()] = (),
+) -> str:
     """Suggest the nearest choice, and list them all if they are few.
 
     Parameters
@@ -91,11 +114,15 @@ def did_you_mean(word: str, choices: Collection[str], noun: str = "write one of"
         What could be.
     noun : str
         How the list begins.
+    called : sequence of str
+        Choices that are called so elsewhere.
     """
     alike = [choice for choice in choices if choice.lower() == word.lower()]
-    near = alike or difflib.get_close_matches(word, choices, n=1)
+    if not choices:
+        return "there is none yet: add it"
+    near = alike or called or difflib.get_close_matches(word, choices, n=1)
     more = ", ..." * (len(choices) > MAX_LISTED)
-    listing = f"{noun} {', '.join(islice(choices, MAX_LISTED)) or 'nothing'}{more}"
+    listing = f"{noun} {', '.join(islice(choices, MAX_LISTED))}{more}"
     return f"did you mean {near[0]}? {listing}" if near else listing
 
 
@@ -169,8 +196,16 @@ def _genuine(error: ValidationError) -> list[ErrorDetails]:
 
 def _is_mistyped(location: Location, mistyped: dict[Location, list[str]]) -> bool:
     """Whether a missing key is there under a similar name, which is reported itself."""
-    siblings = mistyped.get(location[:-1], [])
-    return bool(difflib.get_close_matches(str(location[-1]), siblings, n=1))
+    siblings, name = mistyped.get(location[:-1], []), str(location[-1])
+    called = any(sibling.lower() in _OTHER_KEYS.get(name, ()) for sibling in siblings)
+    return called or bool(difflib.get_close_matches(name, siblings, n=1))
+
+
+def _of_keys(word: str, fields: Collection[str]) -> str:
+    """Suggest the key that is meant, also by another word for it, and list the keys."""
+    keys = sorted(fields, key=_IDENTIFIED.__contains__)
+    called = [key for key in keys if word.lower() in _OTHER_KEYS.get(key, ())]
+    return did_you_mean(word, keys, "keys here are", called)
 
 
 def _resolve(
@@ -241,7 +276,7 @@ def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) ->
         return f"`{where}` is missing", f"add {name}: {field}"
     if kind == "extra_forbidden":
         fields = fields_at(model, details["loc"][:-1])
-        return f"unknown key `{where}`", did_you_mean(str(location[-1]), fields, "keys here are")
+        return f"unknown key `{where}`", _of_keys(str(location[-1]), fields)
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         return _tag_words(where, _CHOICES[str(location[0])], details)
     value, where = details["input"], where or "the file"
@@ -280,7 +315,9 @@ def _shape(value: object) -> str:
 def _tag_words(where: str, key: str, details: ErrorDetails) -> tuple[str, str]:
     context = details["ctx"]
     if "tag" not in context:
-        return f"`{where}.{key}` is missing", f"add {key}"
+        written = details["input"]
+        other = next((k for k in sorted({*_CHOICES.values(), "kind"}) if k in written), None)
+        return f"`{where}.{key}` is missing", f"write {key} for {other}" if other else f"add {key}"
     expected = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
     tag = details["input"][key]
     if not isinstance(tag, str):

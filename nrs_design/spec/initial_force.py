@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from nrs_design.spec.faults import fault
 
 if TYPE_CHECKING:
-    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 _AT = ("goals", "initial_force")
 
 
-def check_initial_force(spec: InteractionDesignSpec) -> None:
+def check_initial_force(spec: AbstractInteractionSpec) -> None:
     """Report a fault if the goal `initial_force` is set where nothing can be claimed about it.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
+    spec : AbstractInteractionSpec
         With its goals and limits.
     """
     if spec.goals is None or spec.goals.initial_force is None:
@@ -63,7 +63,7 @@ def check_initial_force(spec: InteractionDesignSpec) -> None:
         _check_environment(spec, name)
 
 
-def _check_environment(spec: InteractionDesignSpec, name: str) -> None:
+def _check_environment(spec: AbstractInteractionSpec, name: str) -> None:
     environment = spec.environments[name]
     if environment.model not in ("elastic", "kelvin-voigt"):
         raise fault(

@@ -72,8 +72,8 @@ def check_mixture(
     for contact, environment in environments.items():
         if environment.remembers:
             raise fault(
-                f"{contact!r}, which is {environment.model}, is not modelled for impedance "
-                "controllers beside others",
+                f"{contact!r}, which is {environment.model}, is not modelled beside idle_states: "
+                "where controllers have states that others do not",
                 "use elastic or kelvin-voigt environments, or one kind of controller",
                 "environments",
                 contact,
@@ -92,20 +92,20 @@ def check_offsets(controllers: dict[str, ControllerSpec], idle: IdleStatesSpec |
     """Refuse offsets that differ, and offsets where impedance controllers integrate a reference."""
     first: tuple[str, Offset] | None = None
     for name, controller in controllers.items():
-        if controller.type != "force":
+        if (offset := controller.own_offset) is None:
             continue
         at = ("controllers", name, "offset")
-        if idle is not None and controller.offset != "none":
+        if idle is not None and offset != "none":
             raise fault(
                 "an offset is not modelled for force controllers beside impedance controllers or "
-                f"pi-force controllers ({name!r} has offset {controller.offset})",
+                f"pi-force controllers ({name!r} has offset {offset})",
                 "leave offset out, or write a spec without impedance and pi-force controllers",
                 *at,
             )
-        first = first or (name, controller.offset)
-        if controller.offset != first[1]:
+        first = first or (name, offset)
+        if offset != first[1]:
             raise fault(
-                f"{name!r} has offset {controller.offset}, {first[0]!r} has {first[1]}: one state "
+                f"{name!r} has offset {offset}, {first[0]!r} has {first[1]}: one state "
                 "cannot hold both",
                 f"give all force controllers `offset: {first[1]}`",
                 *at,

@@ -189,6 +189,8 @@ class LimitsSpec(SpecModel):
     bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")
     command: LargestCommand | None = Field(
         default=None,
-        description="largest command that the motor's driver takes, such as rpm: exported code "
-        "saturates there; a bound on the command of a sampled design is held against it",
+        description="largest command that the motor's driver takes, such as rpm, for the error "
+        "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
+        "five times as far as the joint, and the gains are for the joint, a fifth of the "
+        "driver's own; exported code saturates there, and bounds on the command are held to it",
     )

@@ -10,13 +10,13 @@ from nrs_design.spec.faults import all_of, fault
 from nrs_design.spec.sampling import LARGEST_RATIO
 
 if TYPE_CHECKING:
-    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 # Place, what is not modelled, and what to do.
 Refusal = tuple[tuple[str, ...], str, str]
 
 
-def check_sampled(spec: InteractionDesignSpec) -> None:
+def check_sampled(spec: AbstractInteractionSpec) -> None:
     """Refuse what is not modelled beside `sampling`, all of it at once."""
     if spec.sampling is None:
         return
@@ -30,7 +30,7 @@ def _refuse(at: tuple[str, ...], what: str, remedy: str) -> None:
     raise fault(f"in the sampled loop, {what}: not modelled", remedy, *at)
 
 
-def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _not_modelled(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     yield from _controllers(spec)
     if spec.sampling is not None and spec.sampling.round > 1:
         yield from _two_periods(spec)
@@ -47,7 +47,7 @@ def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
     rounds = spec.disturbances is not None and spec.disturbances.largest_angle is not None
     if rounds and spec.idle_states is not None:
         # The position is added to the reference at every sample, which rounds an angle once more.
-        what = "the rounding of angles under impedance controllers beside others"
+        what = "the rounding of angles beside idle_states"
         yield ("disturbances", "largest_angle"), what, "leave largest_angle out"
     # Rules about controllers in one contact each are refused as a whole elsewhere.
     times = () if spec.switching.names_contacts else spec.switching.dwell_times()
@@ -56,29 +56,26 @@ def _not_modelled(spec: InteractionDesignSpec) -> Iterator[Refusal]:
         yield ("switching", *at), what, "leave them out, or sampling"
 
 
-def _two_periods(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _two_periods(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     """Refuse what is not modelled where the outer loop has a period of its own."""
     at = ("sampling", "outer_period")
     others = [name for name, c in spec.controllers.items() if c.commands != "velocity"]
     if others:
         what = f"an outer_period beside {others[0]}, which is no impedance controller"
         yield at, what, "leave outer_period out"
-    if spec.disturbances is not None:
-        what = "disturbances beside an outer_period"
-        yield ("disturbances",), what, "leave disturbances or outer_period out"
     if not spec.switching.is_arbitrary:
         what = "rules of switching beside an outer_period"
         yield ("switching",), what, "use `switching: arbitrary`, which allows for more"
 
 
-def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _controllers(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     commanded = spec.disturbances is not None and spec.disturbances.command is not None
     for name, controller in spec.controllers.items():
         at = ("controllers", name)
         if not controller.sampled:
             remedy = "use impedance, position and force controllers, or leave sampling out"
             yield (*at, "type"), f"{name} is a {controller.type} controller", remedy
-        if spec.offset != "none" and "offset" in type(controller).model_fields:
+        if spec.offset != "none" and controller.own_offset is not None:
             what = f"the offset of {name}, which leaves a mode at rest anywhere"
             yield (*at, "offset"), what, "use `offset: none`, or leave sampling out"
         if commanded and controller.commands == "position":
@@ -89,7 +86,7 @@ def _controllers(spec: InteractionDesignSpec) -> Iterator[Refusal]:
             yield ("disturbances", "command"), what, "leave command out, or Kt"
 
 
-def _loss_of_contact(spec: InteractionDesignSpec) -> Iterator[Refusal]:
+def _loss_of_contact(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     if spec.contact != "losable":
         return
     bleeding = next((name for name, c in spec.controllers.items() if c.bleeds), None)

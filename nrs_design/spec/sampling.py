@@ -249,6 +249,14 @@ def check_motor(
                 "actuator",
                 name,
             )
+        if sampling is None and others and among_axes and name in loaded:
+            raise fault(
+                "in continuous time, axes that act on each other are modelled for impedance "
+                f"controllers alone, and {others[0]!r} is none",
+                "prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`; or remove "
+                "coupling and load_inertia, or use impedance controllers",
+                "coupling",
+            )
         if sampling is None and others:
             raise fault(
                 f"{what}, which is modelled for impedance controllers alone, and {others[0]!r} is "

@@ -85,7 +85,7 @@ def _check_axis(
             if name not in environments:
                 remedy = did_you_mean(name, environments)
                 raise fault(f"there is no environment {name!r}", remedy, *at, "surfaces", i, *part)
-            if surface.beside and environments[name].model == "hunt-crossley":
+            if surface.beside and environments[name].preloaded:
                 raise fault(
                     f"{name} is not linear, and environments of one body are",
                     "leave beside out, or name linear environments",

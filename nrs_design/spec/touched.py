@@ -11,7 +11,7 @@ from nrs_design.spec.environment import EnvironmentSpec
 from nrs_design.spec.faults import all_of, did_you_mean, fault
 
 if TYPE_CHECKING:
-    from nrs_design.spec.interaction import InteractionDesignSpec
+    from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 # The contact in the names of the modes of free motion.
 FREE = "free"
@@ -204,7 +204,7 @@ def check_at_once(
                 )
 
 
-def check_hands(spec: InteractionDesignSpec) -> None:
+def check_hands(spec: AbstractInteractionSpec) -> None:
     """Refuse what is not modelled about a hand, whose mass moves with the contact."""
     touched = sorted(spec.touched & spec.environments.keys())
     hands = [name for name in touched if spec.environments[name].has_mass]
@@ -221,7 +221,7 @@ def check_hands(spec: InteractionDesignSpec) -> None:
     for present, key, what in beside:
         if present:
             raise fault(
-                f"{hands[0]!r} is a hand with a mass, and {what} is not modelled with it",
+                f"{hands[0]!r} is a hand with a mass, which is not modelled beside {what}",
                 f"remove {key}, or use a kelvin-voigt environment, which has no mass",
                 key,
             )

@@ -135,12 +135,6 @@ def assemble(
         If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
-    from nrs_design.switched.close_loop import close_loop
-    from nrs_design.switched.commanded import check_memory, with_command
-    from nrs_design.switched.constant_force import with_constant_force
-    from nrs_design.switched.coupled import couple_axes
-    from nrs_design.switched.gain_box import gain_boxes
-    from nrs_design.switched.joint import Joint
     from nrs_design.switched.logic_assumptions import logic_texts
     from nrs_design.switched.sensor_assumptions import sensor_texts
 
@@ -148,38 +142,7 @@ def assemble(
     if spec.sampling is not None:
         system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
     elif coordinates in ("deflection", "force"):
-        plant = plant.scaled(scale, spec.touched)
-        loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-        system = close_loop(
-            spec.name,
-            plant,
-            loop,
-            design,
-            coordinates,
-            spec.switching,
-            gain_boxes(spec, design, scale),
-            spec.idle_states,
-            spec.contact,
-            spec.offset,
-        )
-        if spec.disturbances is not None:
-            touched = plant.among(design.contacts)
-            if coordinates != "deflection":
-                raise AssemblyError(
-                    "bounds on what disturbs do not apply to force coordinates",
-                    remedy="use coordinates: deflection",
-                )
-            check_memory(touched)
-            joint = Joint.of(plant, design.motion)
-            system = with_command(system, spec, spec.disturbances, loop, joint, touched)
-        if (coupling := _coupling_of(spec, plant, scale)) is not None:
-            system = couple_axes(system, coupling)
-        if spec.goals is not None and spec.goals.constant_force is not None:
-            system = with_constant_force(system)
-        if spec.goals is not None and spec.goals.initial_force is not None:
-            from nrs_design.switched.saturation import with_saturation
-
-            system = with_saturation(system, spec, plant, loop, design)
+        system = _assemble_continuous(spec, plant, design, coordinates, scale)
     else:
         raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
     period = None if spec.sampling is None else spec.sampling.outer
@@ -195,6 +158,58 @@ def assemble(
         *scale_texts(scale),
     )
     return replace(system, assumptions=texts)
+
+
+def _assemble_continuous(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    coordinates: str,
+    scale: Fraction,
+) -> SwitchedSystem:
+    from nrs_design.switched.close_loop import close_loop
+    from nrs_design.switched.gain_box import gain_boxes
+
+    plant = plant.scaled(scale, spec.touched)
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
+    system = close_loop(
+        spec.name,
+        plant,
+        loop,
+        design,
+        coordinates,
+        spec.switching,
+        gain_boxes(spec, design, scale),
+        spec.idle_states,
+        spec.contact,
+        spec.offset,
+    )
+    if spec.disturbances is not None:
+        touched = plant.among(design.contacts)
+        if coordinates != "deflection":
+            raise AssemblyError(
+                "bounds on what disturbs do not apply to force coordinates",
+                remedy="use coordinates: deflection",
+            )
+        from nrs_design.switched.commanded import check_memory, with_command
+        from nrs_design.switched.joint import Joint
+
+        check_memory(touched)
+        joint = Joint.of(plant, design.motion)
+        system = with_command(system, spec, spec.disturbances, loop, joint, touched)
+    if (coupling := _coupling_of(spec, plant, scale)) is not None:
+        from nrs_design.switched.coupled import couple_axes
+
+        system = couple_axes(system, coupling)
+    if spec.goals is not None and spec.goals.constant_force is not None:
+        from nrs_design.switched.constant_force import with_constant_force
+
+        system = with_constant_force(system)
+    if spec.goals is not None and spec.goals.initial_force is not None:
+        from nrs_design.switched.saturation import with_saturation
+
+        system = with_saturation(system, spec, plant, loop, design)
+    return system
 
 
 def _assemble_sampled(

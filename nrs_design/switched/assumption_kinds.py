@@ -68,9 +68,16 @@ UNCOUPLED = AssumptionKind(
 )
 LINKS = AssumptionKind(
     "links stay within their bounds",
-    "inertia, speed and torques that are declared",
+    "inertia and torques that are declared",
     "Axes may drive each other further than the proof allows.",
-    "nrs-design robot at the poses that are used, and a log of joint speeds",
+    "nrs-design robot at the poses that are used",
+)
+JOINT_SPEED = AssumptionKind(
+    "joint speeds stay below their bound",
+    "the speed up to which Coriolis torques are counted",
+    "Coriolis torques may be larger than the proof allows.",
+    "log the joint speeds; of a sampled loop, `nrs-design export --format monitor` checks them "
+    "while it runs",
 )
 GRAVITY = AssumptionKind(
     "gravity is compensated",

@@ -244,9 +244,9 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assu
         By how much their ranges are stretched: less than declared do not cover the law.
     """
     for name, environment in spec.environments.items():
-        if environment.model != "hunt-crossley" or name not in spec.touched:
+        if environment.preload_range is None or name not in spec.touched:
             continue
-        low, high = (end.text for end in environment.preload)
+        low, high = (end.text for end in environment.preload_range)
         if scale < 1:
             yield kinds.PRELOAD.says(
                 f"{name} is a Hunt-Crossley law, and with ranges scaled below 1 that law is not "

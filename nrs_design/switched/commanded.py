@@ -58,7 +58,7 @@ def with_command(
     AssemblyError
         If it is not modelled for these controllers, environments or coordinates.
     """
-    plain = all(controller.type == "impedance" for controller in spec.controllers.values())
+    plain = all(controller.commands == "velocity" for controller in spec.controllers.values())
     if not plain or spec.coordinates != "deflection" or not touched:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something, in "

@@ -7,7 +7,7 @@ docs/certificates/coupled-axes.md derives what is made of them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
@@ -15,6 +15,7 @@ from nrs_design.proof.bounds import upper
 from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec
@@ -327,7 +328,9 @@ def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
         f"eigenvalues of M(q) in [{low}, {high}] kg*m^2",
     )
     if coupling.coriolis is None:
-        yield kinds.LINKS.says("Coriolis and centrifugal torques are left out.", "speeds near zero")
+        yield kinds.JOINT_SPEED.says(
+            "Coriolis and centrifugal torques are left out.", "speeds near zero"
+        )
     else:
         also = ""
         if disturbed:
@@ -335,7 +338,7 @@ def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
                 ", nor that the disturbances leave it there: a bound, also that on the velocity, "
                 "holds as long as they do"
             )
-        yield kinds.LINKS.says(
+        yield kinds.JOINT_SPEED.says(
             "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
             f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
             f"({_shortly(coupling)}), and the speed stays below {coupling.speed}, which is not "

@@ -9,15 +9,18 @@ The weights are products of such shares: not negative, with sum one, the same fo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import product, starmap
 
 from nrs_design.errors import InternalError
+from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
 RowsAt = Callable[[Mapping[str, Fraction]], Rows]
+
+# Between the ends of a range, which are labelled as `Interval.ends` does.
+MIDDLE = "middle"
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,17 +84,15 @@ class Box:
         InternalError
             If the matrix is not affine along each axis.
         """
-        names, corners = [], {}
-        for ends in product(*(interval.ends for interval in self.ranges.values())):
-            at = tuple(value for _, value in ends)
-            pairs = zip(self.ranges, ends, strict=True)
-            names.append("/".join([name, *(f"{s}-{end}" for s, (end, _) in pairs if end)]))
-            corners[at] = rows_at(dict(zip(self.ranges, at, strict=True)))
+        values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
+        corners = {at: rows_at(_values(values, at)) for at in product(*values.values())}
         self._check_corners_suffice(rows_at, corners, name)
-        yield from zip(names, corners.values(), strict=True)
+        for at, rows in corners.items():
+            pairs = zip(values, at, strict=True)
+            yield "/".join([name, *(f"{symbol}-{end}" for symbol, end in pairs if end)]), rows
 
     def _check_corners_suffice(
-        self, rows_at: RowsAt, corners: Mapping[tuple[Fraction, ...], Rows], name: str
+        self, rows_at: RowsAt, corners: Mapping[tuple[str, ...], Rows], name: str
     ) -> None:
         """Check exactly that a matrix is affine along each axis, the others being held.
 
@@ -101,31 +102,39 @@ class Box:
         in the middle; so it is the mean of the corners around it. For entries of a degree of at
         most two in each coordinate this decides it.
         """
-        symbols, known = tuple(self.ranges), dict(corners)
-        around = product(*map(_neighbors, self.ranges.values()))
+        known = dict(corners)
+        values = {symbol: self._grid(symbol) for symbol in self.ranges}
+        # Rows that are the same objects are compared once; kept here, no other gets their ids.
+        compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
         # Neighbors are in the middle on one axis less, so they come first.
-        for ends in sorted(around, key=lambda values: sum(len(value) - 1 for value in values)):
-            middles = [i for i, values in enumerate(ends) if len(values) > 1]
-            if not middles:
+        for at in sorted(product(*values.values()), key=lambda at: at.count(MIDDLE)):
+            if MIDDLE not in at:
                 continue
-            pairs = zip(symbols, ends, strict=True)
-            at = [self.middle(s) if len(values) > 1 else values[0] for s, values in pairs]
-            axis = middles[0]
-            low, high = (known[*at[:axis], end, *at[axis + 1 :]] for end in ends[axis])
-            found = known[tuple(at)] = rows_at(dict(zip(symbols, at, strict=True)))
-            if not all(_is_mean(*rows) for rows in zip(found, low, high, strict=True)):
+            axis = at.index(MIDDLE)
+            low, high = (known[*at[:axis], end, *at[axis + 1 :]] for end in ("min", "max"))
+            found = known[at] = rows_at(_values(values, at))
+            triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
+            if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
+            compared |= triples
+
+    def _grid(self, symbol: str) -> dict[str, Fraction]:
+        """Return the labelled ends of a range, and the middle between two."""
+        ends = dict(self.ranges[symbol].ends)
+        return ends | ({MIDDLE: self.middle(symbol)} if len(ends) > 1 else {})
+
+
+def _values(values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]) -> dict[str, Fraction]:
+    """Return the values of all symbols where the labels of a point say."""
+    return {symbol: values[symbol][label] for symbol, label in zip(values, at, strict=True)}
 
 
 def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:
     """Tell whether a row is the mean of two; most rows do not change at all along an axis."""
-    if row == a == b:
-        return True
-    triples = zip(row, a, b, strict=True)
-    return all(entry == x if x == y else 2 * entry == x + y for entry, x, y in triples)
+    return row == a == b or all(starmap(_is_middle, zip(row, a, b, strict=True)))
 
 
-def _neighbors(interval: Interval) -> list[tuple[Fraction, ...]]:
-    """Return each end, and if they differ both for the middle between them."""
-    ends = tuple(value for _, value in interval.ends)
-    return [(end,) for end in ends] + ([ends] if len(ends) > 1 else [])
+def _is_middle(entry: Fraction, x: Fraction, y: Fraction) -> bool:
+    """Tell whether an entry is halfway between two, without reducing fractions on the way."""
+    (n, d), (p, q), (r, s) = (number.as_integer_ratio() for number in (entry, x, y))
+    return 2 * n * q * s == (p * s + r * q) * d

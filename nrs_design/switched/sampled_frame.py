@@ -14,7 +14,6 @@ that is held stands after e_before.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
@@ -28,7 +27,8 @@ from nrs_design.controllers.sampled import (
 from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.controllers.step_law import numbers_of
 from nrs_design.controllers.step_parts import StepFrame
-from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
+from nrs_design.proof.noun import dataclass
 from nrs_design.switched.sampled_law import (
     ERROR,
     IDLE_REFERENCE,
@@ -209,26 +209,26 @@ class Frame:
         turn : Turn
             What is computed; the rest holds what it had.
         """
-        shares, at = _beginning(self)
-        k, b = values.get("k", Fraction(0)), values.get("b", Fraction(0))
-        made = _sample(self, self.listed, law, delay, k, b, turn, retuned="a" in values)
-        speed, moved, slip = self._move(made.drive, at, values)
-        delta, reference = combine((ONE, at.delta), (ONE, moved)), made.reference
-        if self.integrates and self.idle is None:
-            reference = combine((ONE, reference), (-ONE, delta))
-        nothing = zero(len(at.delta))
+        contact = values.get("k", ZERO), values.get("b", ZERO)
+        # An older sample is a state, whatever is touched now.
+        seen = contact if delay == 0 else (ZERO, ZERO)
+        made = _sample(self, self.listed, law, delay, seen, turn, retuned="a" in values)
+        ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
+        Km, E, tau = values["Km"], values["E"], self.time_constant
+        s = values["s"] if tau is None else tau * (1 - E)
+        reference, delta = _place(made, Km, s)
         return [
             *([reference] if self.integrates else []),
-            speed,
+            _speed(made, Km, E),
             made.seen,
             *([made.drive] if self.holds else []),
             *made.velocity,
             *made.integral,
             *made.lags,
-            *made.ages[: self.longest_delay],
+            *ages[: self.longest_delay],
             delta,
-            *(made.sizes.get(name, nothing) for name in shares),
-            slip,
+            *made.sizes,
+            _slip(made, Km),
         ]
 
     def command(self, law: SampledLaw) -> tuple[LinearForm, Sequence[LinearForm]]:
@@ -273,30 +273,24 @@ class Frame:
         given |= {} if moves else {"position": at.reference_rounding}
         return SampledStep.of(self.listed, law, numbers, given, at.rounded, shares)
 
-    def _move(
-        self, drive: LinearForm, at: _Signals, values: Mapping[str, Fraction]
-    ) -> tuple[LinearForm, LinearForm, LinearForm]:
-        """Return speed and way of the motor under a command, less friction, and the slip."""
-        Km, E, tau = values["Km"], values["E"], self.time_constant
-        s = values["s"] if tau is None else tau * (1 - E)
-        taken = combine((ONE, drive), (ONE, at.friction))
-        moved = combine((s, at.omega), (Km * (self.period - s), taken))
-        speed = combine((E, at.omega), (Km * (1 - E), taken))
-        return speed, moved, combine((ONE, at.omega), (-Km, taken))
-
 
 @dataclass(frozen=True, slots=True)
 class _Sample:
     """What a sample makes of a state, before the motor moves; and how large roundings are."""
 
+    # Each is made once.
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
+    frame: Frame
     reference: LinearForm
     seen: LinearForm
     drive: LinearForm
     velocity: Sequence[LinearForm]
     integral: Sequence[LinearForm]
     lags: Sequence[LinearForm]
-    ages: Sequence[LinearForm]
-    sizes: Mapping[str, LinearForm]
+    sizes: Sequence[LinearForm]
+    at: _Signals
+    taken: LinearForm
 
 
 # Corners of the motor's ranges share what the law makes of one stiffness.
@@ -306,16 +300,15 @@ def _sample(
     listed: ListedLaw,
     law: SampledLaw,
     delay: int,
-    k: Fraction,
-    b: Fraction,
+    contact: tuple[Fraction, Fraction],
     turn: Turn,
     *,
     retuned: bool,
 ) -> _Sample:
     """Return what `Frame.rows_and_slip` knows before the motor's parameters."""
     shares, at = _beginning(frame)
-    ages = [combine((k, at.delta), (b, at.omega), (ONE, at.sensor)), *at.samples]
-    step = frame._step(law, at, ages[delay], shares)
+    force = at.samples[delay - 1] if delay else _force(frame, *contact)
+    step = frame._step(law, at, force, shares)
     following, nothing = listed.following, zero(len(at.delta))
     lags, velocity = [*at.lags], [at.velocity] if frame.has_inertia else []
     integral = [at.integral] if frame.gathers else []
@@ -325,9 +318,7 @@ def _sample(
         seen = step.result(following["error_before"], nothing)
         drive = step.command(nothing)
         sizes |= step.motion_sizes()
-    if turn is Turn.MOTION:
-        ages = [*at.samples]
-    else:
+    if turn is not Turn.MOTION:
         after = {name: step.result(made, nothing) for name, made in following.items()}
         lags = [after[f"filtered_{i}"] for i in range(1, len(lags) + 1)]
         velocity = [after["velocity"] for _ in velocity]
@@ -336,7 +327,47 @@ def _sample(
         reference = after.get("reference", after.get("offset", nothing))
         reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
         sizes |= step.other_sizes(retuned=retuned)
-    return _Sample(reference, seen, drive, velocity, integral, lags, ages, sizes)
+    return _Sample(
+        frame,
+        reference,
+        seen,
+        drive,
+        velocity,
+        integral,
+        lags,
+        [sizes.get(name, nothing) for name in shares],
+        at,
+        combine((ONE, drive), (ONE, at.friction)),
+    )
+
+
+@lru_cache(maxsize=64)
+def _force(frame: Frame, k: Fraction, b: Fraction) -> LinearForm:
+    """Return the force sample of a spring and a damper beside it."""
+    _, at = _beginning(frame)
+    return combine((k, at.delta), (b, at.omega), (ONE, at.sensor))
+
+
+# What the motor makes of the command less friction. Corners share what does not depend on all of
+# its numbers: as one object, so that they are known to be alike.
+@lru_cache(maxsize=256)
+def _speed(made: _Sample, Km: Fraction, E: Fraction) -> LinearForm:
+    return combine((E, made.at.omega), (Km * (1 - E), made.taken))
+
+
+@lru_cache(maxsize=256)
+def _place(made: _Sample, Km: Fraction, s: Fraction) -> tuple[LinearForm, LinearForm]:
+    """Return the reference, or the error of it, and the deflection after the way of the motor."""
+    frame, at = made.frame, made.at
+    delta = combine((ONE, at.delta), (s, at.omega), (Km * (frame.period - s), made.taken))
+    if frame.integrates and frame.idle is None:
+        return combine((ONE, made.reference), (-ONE, delta)), delta
+    return made.reference, delta
+
+
+@lru_cache(maxsize=64)
+def _slip(made: _Sample, Km: Fraction) -> LinearForm:
+    return combine((ONE, made.at.omega), (-Km, made.taken))
 
 
 # The inputs, as their forms are called below.

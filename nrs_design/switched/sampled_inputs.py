@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from nrs_design.controllers.sampled import rounding_share
@@ -12,6 +11,7 @@ from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
+from nrs_design.proof.noun import dataclass
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import DisturbancesSpec
@@ -21,13 +21,13 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """One mode, the columns of inputs and roundings, the rows that bound these, and the slip.
+    """One mode, the rows that move its states, those that bound roundings, and the slip.
 
     Of two periods, it says whether it is in force where a round begins.
     """
 
     mode: Mode
-    columns: tuple[RationalMatrix, ...]
+    moves: tuple[LinearForm, ...]
     sizes: tuple[LinearForm, ...]
     slip: LinearForm
     begins: bool = True
@@ -48,11 +48,12 @@ class Motion:
             As for the class.
         """
         *rows, slip = rows
-        moves, width = rows[:n], len(rows[0])
-        columns = ([[row[i]] for row in moves] for i in range(n, width))
-        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in moves]))
-        parts = tuple(map(RationalMatrix.from_rows, columns)), tuple(rows[n:])
-        return cls(mode, *parts, slip, begins)
+        mode = Mode(name, RationalMatrix.from_rows([row[:n] for row in rows[:n]]))
+        return cls(mode, tuple(rows[:n]), tuple(rows[n:]), slip, begins)
+
+    def column(self, i: int) -> RationalMatrix:
+        """Return what the i-th of inputs and, after them, roundings does to the states."""
+        return RationalMatrix.from_rows([[row[len(self.moves) + i]] for row in self.moves])
 
 
 def channels_of(
@@ -77,7 +78,7 @@ def channels_of(
     for i, name in enumerate(INPUTS):
         if name in bounds:
             bound, unit = bounds[name]
-            yield Channel(name, unit, bound, tuple(motion.columns[i] for motion in motions))
+            yield Channel(name, unit, bound, tuple(motion.column(i) for motion in motions))
 
 
 def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, str]]:
@@ -105,9 +106,18 @@ def roundings_of(
     """
     kept = known_entries(frame, channels)
     for j, name in enumerate(frame.roundings):
-        rows = ([[motion.sizes[j][i] for i in kept]] for motion in motions)
-        columns = (motion.columns[len(INPUTS) + j] for motion in motions)
-        yield Rounding(name, tuple(columns), tuple(map(RationalMatrix.from_rows, rows)))
+        rows = _rows_over(kept, (motion.sizes[j] for motion in motions))
+        columns = (motion.column(len(INPUTS) + j) for motion in motions)
+        yield Rounding(name, tuple(columns), tuple(rows))
+
+
+def _rows_over(kept: Sequence[int], forms: Iterable[LinearForm]) -> Iterator[RationalMatrix]:
+    """Yield some entries of forms as rows; where corners share a form, it is one row."""
+    made: dict[int, RationalMatrix] = {}
+    for form in forms:
+        if id(form) not in made:
+            made[id(form)] = RationalMatrix.from_rows([[form[i] for i in kept]])
+        yield made[id(form)]
 
 
 def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:

@@ -7,7 +7,7 @@ a loop has, whatever their numbers; what each term is, from the numbers of the l
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 
@@ -24,6 +24,7 @@ from nrs_design.controllers.step_law import build_law
 from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.errors import InternalError
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
+from nrs_design.proof.noun import dataclass
 
 ONE = Fraction(1)
 # Not in the loop of a proof: what is commanded is zero, and angles count from there.
@@ -63,7 +64,7 @@ class Kinds:
     gathers: bool = False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class ListedLaw:
     """The list of operations of some kinds of laws; `list_law` makes each once.
 
@@ -74,6 +75,8 @@ class ListedLaw:
     counts : mapping of str to mapping
         For each mode and result, how often each of its terms is rounded, by name.
     """
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     law: StepLaw
     counts: Mapping[str, Mapping[str, Mapping[str, int]]]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import chain, product
@@ -14,7 +13,6 @@ from nrs_design.controllers.sampled import (
     SampledAdmittance,
     SampledForce,
     SampledLaw,
-    SampledMotion,
 )
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.actuator import ActuatorRanges
@@ -25,6 +23,7 @@ from nrs_design.proof.channels import Coupling
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
+from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
@@ -206,7 +205,7 @@ def _frame(
     idle = None if spec.idle_states is None else idle_share(spec.idle_states, outer)
     return Frame(
         sampling.step,
-        SampledMotion.of(design.motion, sampling.period.exact),
+        design.motion.sampled(sampling.period.exact),
         _have_inertia(admittances),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,

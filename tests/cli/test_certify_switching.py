@@ -274,6 +274,7 @@ def test_shortest_dwell_time(tmp_path):
     assert (dwell["unit"], dwell["method"]) == ("s", "mode quadratic")
 
 
+@pytest.mark.slow
 def test_shortest_dwell_time_of_a_pair_that_is_proved_at_30_s(tmp_path):
     """Never less than the verdict above it, nor a number that is rounded the wrong way."""
     (tmp_path / "pair.nrs.yaml").write_text(

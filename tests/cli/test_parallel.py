@@ -39,6 +39,7 @@ def test_an_integral_alone_is_refuted_where_routh_says_so(tmp_path):
     assert high > 104.7
 
 
+@pytest.mark.slow
 def test_tune_and_report(tmp_path):
     result = run("tune", PARALLEL, cwd=tmp_path)
     assert result.returncode == 0

@@ -52,6 +52,7 @@ def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch):
     assert Path("reports/commuting.html").read_bytes() == page
 
 
+@pytest.mark.slow
 def test_the_page_of_another_spec_is_not_overwritten_by_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("a.nrs.yaml", "b.nrs.yaml"):

@@ -127,6 +127,7 @@ def test_balance(tmp_path):
     assert max(found["with_balance"]["rms"]) < min(found["without_balance"]["rms"]) / 4
 
 
+@pytest.mark.slow
 def test_correction_table_replaces_tables_only(tmp_path):
     record = tmp_path / "record.csv"
     record.write_text("time,force")

@@ -19,7 +19,7 @@ LAW = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))
 
 def test_the_backward_difference_of_the_thesis_robot():
     """Kd = 2060 rpm s/rad over 2 ms is a single-precision number by itself."""
-    motion = SampledMotion.of(ProportionalDerivative(Fraction(117359), Fraction(2060)), PERIOD)
+    motion = ProportionalDerivative(Fraction(117359), Fraction(2060)).sampled(PERIOD)
     assert motion == SampledMotion(Fraction(117359), Fraction(1_030_000))
 
 

@@ -38,9 +38,7 @@ def cases(seed, count=60):
         method = str(rng.choice(["exact", "euler"]))
         inert, sprung = bool(rng.integers(0, 2)), bool(rng.integers(0, 2))
         order, longest = int(rng.integers(0, 3)), int(rng.integers(0, 4))
-        motion = SampledMotion.of(
-            ProportionalDerivative(number(rng, 1e3, 2e5), number(rng, 1, 4e3)), period
-        )
+        motion = ProportionalDerivative(number(rng, 1e3, 2e5), number(rng, 1, 4e3)).sampled(period)
         laws = {
             name: Admittance(
                 number(rng, 0.1, 1) if inert else Fraction(0),

@@ -105,6 +105,7 @@ def optimum_of(name):
 EACH = [pytest.param(name, marks=[] if name == "several" else pytest.mark.slow) for name in GOALS]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EACH)
 def test_no_point_of_a_dense_scan_is_better(name):
     goals = GOALS[name]
@@ -180,6 +181,7 @@ def test_a_goal_out_of_reach_is_named_with_the_best_value():
     assert meets(reachable, *_gains(optimize_with_goals(problem(), reachable)))
 
 
+@pytest.mark.slow
 def test_goals_that_exclude_each_other_are_said_to():
     both = requirement(((SENSITIVITY_PEAK, 1.3), (IMPEDANCE_ERROR, 1.2)))
     with pytest.raises(DesignError, match="cannot be met together") as caught:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.design.measures import CREEP, CREEP_ANGLE
 from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
@@ -112,7 +111,7 @@ def test_simulated_and_bounded(tmp_path, spring):
     item = run_analysis(found).impedance[1]
     period, law = Fraction(1, 500), found.design.controllers[1].law
     low_pass = found.design.sensor.filter.sampled(period)
-    motion = SampledMotion.of(found.design.motion, period)
+    motion = found.design.motion.sampled(period)
     frame = Frame(period, motion, True, 1, Fraction("0.0351"), low_pass, spring is not None)
     E = Fraction(float(np.exp(-0.002 / 0.0351)))
     rows = frame.rows(law.sampled(period, "exact"), 1, {"Km": Fraction("4.8417e-4"), "E": E})

@@ -112,6 +112,7 @@ def test_admittances_of_table_7_1_and_a_hand_that_changes_its_grip(tmp_path, mas
     assert ("Repeating the signal" in result.stdout) == (code == 1)
 
 
+@pytest.mark.slow
 def test_a_hand_that_lets_go_is_proved(tmp_path):
     result = run("certify-switching", HANDS_ON, "--out", "ours.json", cwd=tmp_path)
     assert result.returncode == 0

@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.contour import QuadContourSet
 
-from nrs_design.design.impedance import stabilizes
+from nrs_design.design.impedance import characteristic_basis, stabilizes
 from nrs_design.design.impedance_optimum import impedance_cost
 from nrs_design.design.landscape import alternatives, delay_borne, map_cost
 from nrs_design.design.margins import loop_margins
 from nrs_design.pipeline import run_analysis, run_design
+from nrs_design.reporting.figures.landscape import draw_cost
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
 
@@ -35,6 +37,30 @@ def test_the_border_is_that_of_stability(insertion):
     Mt, Bt = np.meshgrid(found.Mt, found.Bt)
     assert (np.isfinite(found.cost) == stabilizes(insertion.problem.loop, Mt, Bt)).all()
     assert np.isnan(found.cost).any()
+
+
+def test_the_drawn_border_is_where_a_pole_is_on_the_axis(insertion):
+    """D-decomposition: Mt s + Bt = -N(s) / D(s) has one admittance for each s = j w."""
+    found = map_cost(insertion.problem, insertion.Mt, insertion.Bt)
+    mass, damping, rest = characteristic_basis(insertion.problem.loop)
+    assert (mass[:-1] == damping[1:]).all()
+    s = 1j * np.geomspace(0.1, 1e3, 20000)
+    exact = -np.polyval(rest, s) / np.polyval(damping, s)
+    Bt, Mt = exact.real, (exact / s).real
+    inside = (found.Mt[0] < Mt) & (Mt < found.Mt[-1]) & (found.Bt[0] < Bt) & (Bt < found.Bt[-1])
+    curve = np.log(np.column_stack([Mt[inside], Bt[inside]]))
+    figure = draw_cost(insertion, found)
+    (border,) = (
+        item
+        for item in figure.axes[0].collections
+        if isinstance(item, QuadContourSet) and item.get_linewidth()[0] == 2.0
+    )
+    drawn = np.log(np.concatenate([path.vertices for path in border.get_paths()]))
+    assert len(drawn) > 20
+    apart = np.linalg.norm(drawn[:, None] - curve[None], axis=2).min(axis=1)
+    step = np.log(found.Mt[1] / found.Mt[0])
+    # Steps of the grid were up to half of it away; so near, no eye sees a difference.
+    assert apart.max() < 0.05 * step
 
 
 def test_each_alternative_is_the_best_at_what_it_is_named_for(insertion):

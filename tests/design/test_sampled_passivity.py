@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.design.passivity import passive_band
 from nrs_design.design.sampled_passivity import sampled_bands
 from nrs_design.models.actuator import Actuator
@@ -30,7 +29,7 @@ def law_of(Mt, Bt, period=PERIOD, Kt=0):
 def real_part(omega, law, period, age):
     """Return Re V by the formula in floating point, from the matrices that a proof is about."""
     E = Fraction(float(np.exp(-float(period / MOTOR.time_constant))))
-    motion = SampledMotion.of(MOTION, period)
+    motion = MOTION.sampled(period)
     frame = Frame(period, motion, law.a is not None, age, MOTOR.time_constant)
     rows = frame.rows(law, age, {"Km": MOTOR.gain, "E": E})
     n = len(frame.states)
@@ -113,7 +112,7 @@ def test_a_force_between_samples_takes_any_amount():
 def _work(law, T, age, force, samples, settled=2000):
     """Return the energy that a force puts into the robot within the last samples of a run."""
     Km, tau, parts = float(MOTOR.gain), float(MOTOR.time_constant), 20
-    Kp, D = float(MOTION.Kp), float(SampledMotion.of(MOTION, Fraction(T).limit_denominator(1000)).D)
+    Kp, D = float(MOTION.Kp), float(MOTION.sampled(Fraction(T).limit_denominator(1000)).D)
     theta = omega = before = reference = velocity = work = 0.0
     late = [0.0] * age
     fine = np.arange(parts) / parts * T + T / parts / 2
@@ -133,6 +132,7 @@ def _work(law, T, age, force, samples, settled=2000):
     return work
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=15)
 @given(
     Mt=st.fractions(0, 3, max_denominator=100),

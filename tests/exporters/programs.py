@@ -8,7 +8,7 @@ from pathlib import Path
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sampled import SampledForce, SampledMotion
+from nrs_design.controllers.sampled import SampledForce
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
 from nrs_design.controllers.step_parts import StepFrame, StepLimits
@@ -29,7 +29,7 @@ SEMIHOSTING = ("-semihosting-config", "enable=on,target=native")
 
 def frame(low_pass=None, limits=None) -> StepFrame:
     """Return what all laws here have in common."""
-    return StepFrame(SampledMotion.of(MOTION, PERIOD), low_pass, limits or StepLimits())
+    return StepFrame(MOTION.sampled(PERIOD), low_pass, limits or StepLimits())
 
 
 def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> StepLaw:

@@ -76,6 +76,7 @@ def written(folder, program, count):
     assert 0.2 < np.mean(rows[:, 7]) < 0.98
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("count", "levels"),
     [(500, ("-O2",)), pytest.param(COUNT, ("-O0", "-O2", "-O3"), marks=pytest.mark.slow)],

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -12,6 +13,7 @@ from nrs_design.exporters.export import export_design
 from nrs_design.exporters.json_record import render as render_json
 from nrs_design.exporters.monitor import render as render_monitor
 from nrs_design.spec import read_spec
+from nrs_design.spec.coupling import CouplingSpec
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, ends_soon
 
 
@@ -237,6 +239,26 @@ def test_a_monitor_is_that_of_the_certificate(differences, sampled_export):
         assert len(differences(source.replace(old, new, 1), "law_monitor.c")) == 1
     assert differences(source + "\n#undef NAN\n", "law_monitor.c")
     assert differences(source.replace("//", "/").replace(";", "; // \\\n", 1), "law_monitor.c")
+
+
+def test_a_monitor_of_coupled_axes_keeps_their_speed(sampled, sampled_export, tmp_path):
+    numbers = {"inertia": ["0.003 kg*m^2", "0.3 kg*m^2"], "coriolis": "1 N*m*s/rad"}
+    coupling = CouplingSpec.model_validate(numbers | {"speed": "8 deg/s"})
+    spec = sampled.spec.model_copy(update={"coupling": coupling})
+    files = render_monitor(replace(sampled_export, spec=spec))
+
+    def differences(ending, old="", new=""):
+        text = files[ending].decode()
+        assert old in text
+        (tmp_path / f"law{ending}").write_text(text.replace(old, new))
+        return find_differences(tmp_path / f"law{ending}", spec, sampled_export.certificate)
+
+    assert differences("_monitor.h") == differences("_monitor.c") == []
+    (line,) = (n for n in files["_monitor.h"].decode().splitlines() if "MONITOR_SPEED" in n)
+    (found,) = differences("_monitor.h", line, f"{line.split('_SPEED')[0]}_SPEED 0x1.0p-2F")
+    assert "MONITOR_SPEED" in found
+    for old, new in (("in->speed", "in->step"), ("_MONITOR_SPEED)", "_MONITOR_TORQUE)")):
+        assert len(differences("_monitor.c", old, new)) == 1
 
 
 def test_a_law_in_code_is_not_read_as_numbers(differences, sampled_export):

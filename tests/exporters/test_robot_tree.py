@@ -13,6 +13,7 @@ from nrs_design.models.robot import inverse_kinematics, joint_names, links_of, t
 from tests.exporters.robots import POSES
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robot", ["crooked"], indirect=True)
 @pytest.mark.parametrize("name", ROBOT_FORMATS)
 def test_every_format_begins_as_the_table_says(name, robot, loaded):

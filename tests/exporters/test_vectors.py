@@ -115,6 +115,7 @@ def test_json_and_csv_hold_the_same():
     assert struct.pack(">I", vectors.rows[0, 1]).hex() == angle
 
 
+@pytest.mark.slow
 def test_exported_tests_pass_as_they_are(tmp_path, sampled_export):
     """Pytest finds the C beside them, compiles and runs it."""
     compiler("cc")

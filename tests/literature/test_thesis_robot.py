@@ -30,6 +30,7 @@ def test_stable_without_a_quadratic_function(name):
     assert 2 * evidence.degree == known(name).degree
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [pytest.param("tissue-x-withdrawal", marks=pytest.mark.slow), "hand-no-mass"]
 )

@@ -71,6 +71,7 @@ def counting(calls, name, function):
     return counted
 
 
+@pytest.mark.slow
 def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch):
     """Its page, too, shows what is at hand."""
     calls = calls_of(

@@ -76,6 +76,41 @@ def test_axes_in_the_sampled_loop_are_proved_without_one_or_the_other(tmp_path):
     assert nothing.startswith("nothing is proved")
 
 
+LINKS = "coupling: {inertia: [0 kg*m^2, 1.5 kg*m^2], axes: 3}\n"
+TURNS = HEAVY.replace("delay: 1}", "outer_period: 4 ms, delay: 0}")
+
+
+def test_bounds_beside_two_periods_are_those_of_a_common_one(tmp_path):
+    """Decay is proved for both periods; that no bound is looked for is said, with what holds."""
+    path = tmp_path / "turns.nrs.yaml"
+    path.write_text(TURNS.replace(LINKS, "").replace(", load_inertia: 1.213 kg*m^2", ""))
+    result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
+    assert result.certification.verdict is Verdict.PROVED
+    (statement,) = result.certification.statements
+    assert statement.covers_rounding
+    missing = [a.outcome for a in result.certification.attempts if a.step.startswith("bound on")]
+    assert len(missing) == 2
+    assert all("two periods, decay is proved, and no bound" in outcome for outcome in missing)
+    decay, bounds = find_subsets(result)
+    assert decay.left_out == ("the disturbances",)
+    assert bounds.left_out == ("the outer_period",)
+    assert "from rest, |force| at a step never exceeds" in bounds.claim
+    assert any(text.startswith("The law runs every 0.002 s") for text in bounds.needs)
+    file = tmp_path / "turns.cert.json"
+    file.write_text(dump(result.certificate))
+    assert run_verification(file, result).fault is None
+
+
+def test_two_periods_beside_axes_are_proved_without_one_or_the_other(tmp_path):
+    path = tmp_path / "turns.nrs.yaml"
+    path.write_text(TURNS.replace("1.5 kg*m^2", "0.1 kg*m^2"))
+    result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
+    assert result.certification.verdict is Verdict.INCONCLUSIVE
+    left_out = [subset.left_out for subset in find_subsets(result)]
+    assert ("the outer_period",) in left_out
+    assert ("what the axes do to each other",) in left_out
+
+
 def test_no_list_is_made_where_nobody_asked():
     assert find_subsets(run_certification(read_spec(SOFT_TISSUE))) is None
 

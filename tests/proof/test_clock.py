@@ -11,7 +11,7 @@ from nrs_design.proof.clock import keeps_turns, on_turn
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.evidence import CommonQuadratic, UnstableMode, UnstablePeriod
 from nrs_design.proof.switching import Clock
-from tests.proof.systems import bouncing_in_turns, doubled_in_turns, pushed
+from tests.proof.systems import bouncing_in_turns, doubled_in_turns, matrix, pushed
 
 ROUND = Clock(3, ("a", "b"))
 
@@ -62,6 +62,10 @@ def test_against_every_step_written_down(steps, length):
 
 def test_what_is_in_force_at_a_step():
     system = pushed(bouncing_in_turns(1, rounded=True))
+    # What a push makes the arithmetic round, too: its entry must not be taken for a rounding's.
+    (item,) = system.roundings
+    wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
+    system = replace(system, roundings=(replace(item, rows=wide),))
     first, other = (on_turn(system, system.clock, step) for step in (0, 1))
     assert [mode.name for mode in first.modes] == ["push 1", "push 2"]
     assert [mode.name for mode in first.contact.free] == ["fall"]
@@ -70,7 +74,9 @@ def test_what_is_in_force_at_a_step():
     assert on_turn(system, system.clock, 7) == other
     for part, count in ((first, 3), (other, 2)):
         assert part.clock is None
-        assert part.channels == () == part.outputs
+        assert part.outputs == system.outputs
+        assert [len(channel.columns) for channel in part.channels] == [count]
+        assert {row.shape for row in part.roundings[0].rows} == {(1, 3)}
         assert part.contact.pulls == system.contact.pulls
         assert len(part.roundings[0].columns) == len(part.roundings[0].rows) == count
         assert find_contradiction(part) is None

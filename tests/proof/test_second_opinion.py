@@ -20,7 +20,7 @@ from nrs_design.proof.evidence import (
 )
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Time
-from nrs_design.proof.second_opinion import agrees, has_positive_spectrum
+from nrs_design.proof.second_opinion import agrees, finds_positive, has_positive_spectrum
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.proof.taylor import exponential_nearly
 from nrs_design.search.certify import certify
@@ -42,6 +42,33 @@ def test_descartes_agrees_with_bareiss(entries):
         for i in range(n)
     ]
     assert has_positive_spectrum(flint.fmpz_mat(M)) == is_positive_definite(M)
+    # Long numbers are rounded down at first; what is just definite is not lost, nor gained.
+    units = [3 ** (40 * i) for i in range(n)]
+    long = [
+        [a * b * e << 99 for b, e in zip(units, row, strict=True)]
+        for a, row in zip(units, M, strict=True)
+    ]
+    assert finds_positive(long) == is_positive_definite(M)
+    assert finds_positive(M) == is_positive_definite(M)
+
+
+@pytest.mark.parametrize("off", [-1, 0, 1])
+def test_a_matrix_that_is_nearly_singular(off):
+    """What rounding would hide is decided from the matrix itself."""
+    large = 2**200
+    M = [[large, large], [large, large + off]]
+    assert finds_positive(M) == is_positive_definite(M) == (off > 0)
+
+
+def test_what_rounding_down_would_make_positive():
+    """Rounded down to multiples of 2^152, the entries beside the diagonal lose nearly one."""
+    large, unit = 2**199, 2**152
+    beside = large + unit - 1
+    M = [[large, beside], [beside, large + unit]]
+    short = [[large // unit, beside // unit], [beside // unit, large // unit + 1]]
+    assert is_positive_definite(short)
+    assert not is_positive_definite(M)
+    assert not finds_positive(M)
 
 
 def test_no_proof_without_flint(monkeypatch):

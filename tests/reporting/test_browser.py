@@ -9,6 +9,10 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
+from nrs_design.reproduction.gallery.figures import draw_counterparts
+from nrs_design.reproduction.gallery.page import gallery_page
+from nrs_design.reproduction.page import render_page
+from nrs_design.reproduction.table import reproduce
 from tests.reporting.conftest import KINDS
 from tests.support import program_named
 
@@ -199,13 +203,36 @@ def axe():
     return Path(path).read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("case", ["proved", "refuted", "inconclusive", "dwell", "discrete"])
-def test_no_serious_fault_of_accessibility(browser, axe, page, tmp_path, case, scheme):
-    open_page(browser, page(case), tmp_path, 1280, scheme)
+def faults_of(browser, axe):
+    """Serious faults of the page that is open."""
     browser.execute_script(axe)
     found = browser.execute_async_script(
         "axe.run().then(r => arguments[0](r.violations.map("
         "v => [v.impact, v.id, v.nodes.map(n => n.target + ': ' + n.failureSummary)])))"
     )
-    assert [fault for fault in found if fault[0] in ("serious", "critical")] == []
+    return [fault for fault in found if fault[0] in ("serious", "critical")]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("case", ["proved", "refuted", "inconclusive", "dwell", "discrete"])
+def test_no_serious_fault_of_accessibility(browser, axe, page, tmp_path, case, scheme):
+    open_page(browser, page(case), tmp_path, 1280, scheme)
+    assert faults_of(browser, axe) == []
+
+
+@pytest.fixture(scope="module")
+def reproduced(axe):
+    """The pages of `reproduce`: the figures, and the numbers with a link to them."""
+    return {
+        "figures": gallery_page(draw_counterparts()),
+        "numbers": render_page(reproduce(), "figures.html"),
+    }
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["figures", "numbers"])
+def test_no_serious_fault_of_accessibility_in_reproduced(
+    browser, axe, reproduced, tmp_path, name, scheme
+):
+    open_page(browser, reproduced[name], tmp_path, 1280, scheme)
+    assert faults_of(browser, axe) == []

@@ -9,7 +9,8 @@ from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.datasets import read_actuator, read_tissue
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.reporting import render_html, render_pdf, render_png
-from nrs_design.reporting.identification import actuator_report, tissue_report
+from nrs_design.reporting.actuator import actuator_report
+from nrs_design.reporting.tissue import tissue_report
 from tests.identification.support import MOTOR
 from tests.support import ROOT
 
@@ -64,6 +65,7 @@ def test_same_bytes_and_unique_ids(actuator):
     assert len(ids) == len(set(ids))
 
 
+@pytest.mark.slow
 def test_names_of_records_are_text(tmp_path):
     """Not formulas, not markup, not marks that turn the direction of writing."""
     names = ["a$\\frac{$", 'b<i>&"$x$', "c\u202efdp", "a%\\frac{%", "שלום 中"]

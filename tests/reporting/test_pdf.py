@@ -95,7 +95,7 @@ def test_same_report_gives_the_same_bytes_in_any_environment(report, monkeypatch
     metadata = PdfReader(io.BytesIO(first)).metadata
     assert metadata.creation_date is None
     (sha256,) = (value for label, value in report("refuted").facts if label.startswith("SHA-256"))
-    assert metadata["/Keywords"] == f"sha256:{sha256}"
+    assert metadata["/Keywords"] == f"nrs-design, sha256:{sha256}"
 
 
 def test_a_given_date_is_on_the_page_and_in_the_file(report):

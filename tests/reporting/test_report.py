@@ -140,6 +140,7 @@ def test_published_values(report, case, section, label, published, tolerance):
     assert [float(cell) for cell in row[1:]] == pytest.approx(published, abs=tolerance)
 
 
+@pytest.mark.slow
 def test_worst_values_stand_beside_the_goals(tmp_path):
     text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
     goals = "goals: {max_sensitivity_peak: 2, min_delay_margin: 5 ms}\nswitching:"

@@ -406,6 +406,7 @@ class TestMethods:
         )
         assert settle(dayawansa_martin(10), limits=Limits(max_degree=8)).evidence.degree == 4
 
+    @pytest.mark.slow
     def test_blocks_share_the_budget(self):
         """What one block cannot use up is left for the other, which refutes."""
         hard = dayawansa_martin("11.26").modes

@@ -34,6 +34,7 @@ def test_two_equal_axes_that_are_pushed_by_their_acceleration():
         assert rate(leaning(system, c)) == pytest.approx(expected, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_more_coupling_takes_of_the_rate():
     rates = [rate(leaning(bouncing(), share)) for share in ("0", "1/8", "1/4")]
     assert rates[0] > rates[1] > rates[2] > 0

@@ -184,6 +184,7 @@ def test_what_it_finds_in_any_coordinates_is_for_the_modes(coordinates):
         assert holds(system, found.evidence)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("matrices", "time"), [(PAIR, Time.CONTINUOUS), (EASY_STEPS, Time.DISCRETE)]
 )

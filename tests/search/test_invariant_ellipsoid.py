@@ -17,7 +17,8 @@ from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.simulation.game import Game, Signals, free_modes, play
-from nrs_design.simulation.worst_case import output_values, worst_against
+from nrs_design.simulation.worst_case import worst_against
+from nrs_design.simulation.worst_outputs import output_values
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,

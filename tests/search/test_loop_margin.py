@@ -18,28 +18,33 @@ P, R, N = Verdict.PROVED, Verdict.REFUTED, Verdict.INCONCLUSIVE
 
 
 @pytest.mark.parametrize(
-    ("verdicts", "shortest", "declared", "expected"),
+    ("verdicts", "shortest", "declared", "unstable", "expected"),
     [
-        ("PPIR", 0, 1, (1, 3)),
-        ("PPPP", 0, 1, (3, None)),
-        ("PPII", 0, 1, (1, None)),
-        ("PPIP", 0, 1, (3, None)),
-        ("PRRR", 0, 2, (0, 1)),
-        ("PIRR", 0, 2, (0, 2)),
-        ("RRRR", 0, 0, (None, 0)),
-        ("IIII", 1, 2, (None, None)),
-        ("IIIR", 1, 2, (None, 3)),
+        ("PPIR", 0, 1, 99, (1, 3)),
+        ("PPPP", 0, 1, 99, (3, None)),
+        ("PPPP", 0, 1, 21, (3, 21)),
+        ("PPPP", 0, 1, 32, (3, 32)),
+        ("PPII", 0, 1, 4, (1, 4)),
+        ("PPII", 0, 1, 3, (1, 3)),
+        ("PPIP", 0, 1, 33, (3, None)),
+        ("PRRR", 0, 2, 99, (0, 1)),
+        ("PIRR", 0, 2, 99, (0, 2)),
+        ("RRRR", 0, 0, 99, (None, 0)),
+        ("IIII", 1, 2, 99, (None, None)),
+        ("IIIR", 1, 2, 99, (None, 3)),
     ],
 )
-def test_the_longest_delay(verdicts, shortest, declared, expected):
+def test_the_longest_delay(verdicts, shortest, declared, unstable, expected):
+    """Beyond three samples, those from `unstable` on are refuted by a quick test alone."""
     asked = []
 
     def decide(delay: int) -> Verdict:
         asked.append(delay)
         return {"P": P, "R": R, "I": N}[verdicts[delay]]
 
-    found = find_longest_delay(shortest, declared, 3, decide)
+    found = find_longest_delay(shortest, declared, 3, decide, lambda delay: delay >= unstable)
     assert (found.proved, found.refuted) == expected
+    assert ("up to 32 samples" in found.end) == (found.refuted is None)
     # Nothing is asked twice, and nothing below what is declared is possible.
     assert len(set(asked)) == len(asked)
     assert min(asked) >= shortest
@@ -57,13 +62,18 @@ def test_the_longest_period():
     below = find_longest_period(Fraction(8), decide)
     assert Fraction(5, 2) < below.proved <= 3
     assert 5 <= below.refuted < Fraction(55, 10)
+    # From a period that is not decided, both sides are looked for.
+    between = find_longest_period(Fraction(4), decide)
+    assert Fraction(5, 2) < between.proved <= 3
+    assert 5 <= between.refuted < Fraction(55, 10)
 
 
-def test_periods_that_make_no_system_are_not_verdicts():
-    found = find_longest_period(Fraction(1), lambda period: P if period == 1 else None)
-    assert found == Bracket(Fraction(1), None)
+def test_where_no_period_is_refuted_the_end_is_named():
+    found = find_longest_period(Fraction(1), lambda period: P if period == 1 else "too long")
+    assert (found.proved, found.refuted) == (1, None)
+    assert found.end == "none of up to 1 s is refuted: a longer one makes no loop (too long)"
     nothing = find_longest_period(Fraction(1), lambda period: N)
-    assert nothing == Bracket(None, None)
+    assert nothing == Bracket(None, None, "none of up to 16 s is refuted: the search ends there")
 
 
 def test_disturbances_that_keep_the_limit():

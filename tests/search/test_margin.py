@@ -20,7 +20,6 @@ from nrs_design.search.margin import (
     LARGEST_SCALE,
     REFUTED_STEPS,
     STEPS,
-    BoxMargin,
     DwellMargin,
     find_margin,
     find_shortest_dwell,
@@ -93,6 +92,7 @@ def between(proved, refuted):
 
 
 class TestBox:
+    @pytest.mark.slow
     def test_published_limit_of_the_oscillator(self):
         """Zelentsovsky 1994: 6.98513; by quadratic functions alone 1 + 2 sqrt(2)."""
         box = find_margin(oscillator, quick)
@@ -127,8 +127,19 @@ class TestBox:
     def test_not_even_the_nominal_values(self):
         for verdict, refuted in ((Verdict.REFUTED, 0), (Verdict.INCONCLUSIVE, None)):
             assemble, decide, seen = deciding_by(lambda stretch, verdict=verdict: verdict)
-            assert find_margin(assemble, decide) == BoxMargin(None, refuted, None)
-            assert seen == [0]
+            box = find_margin(assemble, decide)
+            assert (box.proved, box.refuted, box.proof) == (None, refuted, None)
+            # What is not decided is looked at in wider boxes, which may be refuted.
+            assert seen == ([0] if refuted == 0 else [0, 1, 2, 4, 8])
+            assert bool(box.end) == (refuted is None)
+
+    def test_refuted_beyond_nominal_values_that_are_not_decided(self):
+        assemble, decide, _ = deciding_by(
+            lambda stretch: Verdict.REFUTED if stretch >= 3 else Verdict.INCONCLUSIVE
+        )
+        box = find_margin(assemble, decide)
+        assert box.proved is None
+        assert 3 <= box.refuted < 3.1
 
     @pytest.mark.parametrize("known", list(Verdict))
     def test_never_contradicts_what_is_known_of_the_declared_ranges(self, known):
@@ -142,8 +153,9 @@ class TestBox:
     def test_no_limit_in_sight(self):
         assemble, decide, seen = deciding_by(lambda stretch: Verdict.PROVED)
         box = find_margin(assemble, decide)
-        assert (box.proved, box.refuted) == (LARGEST_SCALE, None)
-        assert max(seen) == LARGEST_SCALE
+        last = LARGEST_SCALE * 2**DOUBLINGS
+        assert (box.proved, box.refuted, max(seen)) == (last, None, last)
+        assert box.end == f"none scaled by up to {last} is refuted: the search ends there"
 
     def test_never_proved_beyond_what_makes_a_system(self):
         """Stiffness below zero, say: neither proved nor refuted."""
@@ -156,6 +168,20 @@ class TestBox:
 
         box = find_margin(fail_beyond, decide)
         assert (box.proved, box.refuted) == (Fraction(5, 4), None)
+        assert "wider ones make no system (the stiffness is not positive)" in box.end
+
+    def test_refuted_just_within_what_makes_a_system(self):
+        """Doubling leaps over scales that make a system; the widest of them is looked at."""
+        assemble, decide, _ = deciding_by(between(Fraction(1), Fraction(19, 10)))
+
+        def fail_beyond(stretch):
+            if stretch > Fraction(39, 20):
+                raise AssemblyError("the stiffness is not positive")
+            return assemble(stretch)
+
+        box = find_margin(fail_beyond, decide)
+        assert box.proved == 1
+        assert Fraction(19, 10) <= box.refuted <= Fraction(39, 20)
 
     def test_lying_refutations_below_a_proof_are_not_asked_for(self):
         """Only scales above the largest proved one are reported as refuted."""
@@ -166,6 +192,7 @@ class TestBox:
 
 
 class TestDwell:
+    @pytest.mark.slow
     def test_published_bounds(self):
         """Geromel and Colaneri 2006: proofs above 2.75084 s, refuted up to 2.70775 s."""
         dwell = find_shortest_dwell(GEROMEL_COLANERI, quick)
@@ -267,6 +294,7 @@ class TestOfSpecs:
         assert told[0] == "box scaled by 2"
         assert holds(box.proof.system, box.proof.evidence)
 
+    @pytest.mark.slow
     def test_box_that_is_too_large_is_shrunk(self):
         """Ranges that are refuted as declared still have a smaller box with a proof."""
         path = ROOT / "docs" / "examples" / "wide-range.nrs.yaml"

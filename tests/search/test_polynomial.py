@@ -14,13 +14,12 @@ from nrs_design.proof.mode import Time
 from nrs_design.search import polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.lifted import lift_family, products
 from nrs_design.search.polynomial import (
     Solution,
     find_common_polynomial,
     highest_degree,
-    lift_family,
     polynomial_cost,
-    products,
     search_polynomial,
 )
 from tests.proof.systems import ando_shih, dayawansa_martin, family

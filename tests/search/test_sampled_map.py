@@ -42,6 +42,7 @@ def test_the_map_is_reached_on_both_sides(Mt, delay, proved, refuted):
     assert grown.verdict is Verdict.REFUTED
 
 
+@pytest.mark.slow
 def test_two_samples_of_delay_without_inertia_by_one_function_for_each_vertex():
     """A common quadratic function does not exist; the ends of enclosed numbers share theirs."""
     system = loop("0", 2, 53.1)

@@ -77,6 +77,7 @@ def ring(count, gain, **rules):
     return family(*map(step, range(count)), time=Time.DISCRETE, switching=Switching(**rules))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("gain", "grows"), [("1.01", True), ("0.99", False)])
 def test_around_a_ring_of_allowed_switches(gain, grows):
     around = tuple((f"m{k}", f"m{(k + 1) % 5}") for k in range(5))

@@ -62,6 +62,7 @@ def reference(times, v, k, c, Bt, Mt, surface, sign, load=np.inf):
     return theta, np.array([force(w, a) for w, a in zip(omega, theta, strict=True)])
 
 
+@pytest.mark.slow
 @settings(max_examples=5)
 @given(
     k=st.integers(5, 60),

@@ -52,6 +52,7 @@ def largest(runs, others):
     return tuple(max(getattr(d, name) for d in each) for name in ("angle", "velocity", "torque"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("errors", "law"),
     [

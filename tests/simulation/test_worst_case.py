@@ -97,6 +97,7 @@ def farthest(low, high, c):
     return brentq(lambda X: next_peak(X) - X, 1e-3, 1e3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("low", "high"), [("3", "5"), ("4", "6")])
 def test_switched_stiffness(low, high):
     exact = farthest(float(low), float(high), 1.0)
@@ -107,6 +108,7 @@ def test_switched_stiffness(low, high):
     assert run.value == pytest.approx(exact, rel=0.03)
 
 
+@pytest.mark.slow
 def test_rules_are_kept_and_cost_the_adversary():
     free = found(oscillator("3", "5"), rounds=0, starts=6)
     rules = Switching(Fraction(1, 2), stays=(("k-5", Stay(Fraction(1, 2), Fraction(3, 4))),))

@@ -74,3 +74,22 @@ def test_a_size_that_no_surgical_robot_has():
         found = [doubt for doubt in doubts(spoiled(IMPEDANCE, old, new)) if doubt.at == at]
         assert len(found) == 1
         assert "is that its unit?" in str(found[0])
+
+
+def test_bounds_are_not_proved_beside_two_periods():
+    pushed = f"{IMPEDANCE}\ndisturbances: {{command: 8 deg/s}}\nsampling: {{period: 2 ms, delay: 0"
+    assert [d.at for d in doubts(f"{pushed}}}\n")] == [("environments", "hand")]
+    _, doubt = doubts(f"{pushed}, outer_period: 4 ms}}\n")
+    assert doubt.at == ("disturbances",)
+    assert "no bound" in str(doubt)
+
+
+def test_what_is_valid_and_not_proved_in_continuous_time():
+    """`certify-switching` stops at these; that `check` calls them valid is not all that it says."""
+    lost = f"{FORCE}\ncontact: losable\n"
+    assert "loss of contact is not modelled beside" in str(doubts(lost)[-1])
+    assert doubts(f"{lost}sampling: {{period: 2 ms, delay: 0}}\n") == doubts(FORCE)
+    pushed = f"{IMPEDANCE}\ndisturbances: {{command: 8 deg/s}}\n"
+    sprung = spoiled(pushed, "    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:")
+    assert "a velocity command is not modelled beside" in str(doubts(sprung)[-1])
+    assert [doubt.at for doubt in doubts(pushed)] == [("environments", "hand")]

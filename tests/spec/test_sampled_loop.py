@@ -57,13 +57,6 @@ def read(text, *changes):
         (MIXED + LOSABLE, [], "contact", "impedance controllers beside others", "contact: kept"),
         (FORCE + OUTER, [], "sampling.outer_period", "beside position", "leave outer_period"),
         (
-            TEXT + OUTER + "disturbances: {command: 8 deg/s}\n",
-            [],
-            "disturbances",
-            "disturbances beside an outer_period",
-            "or outer_period",
-        ),
-        (
             TEXT + OUTER,
             [("switching: arbitrary", "switching: {transitions: [[insertion, withdrawal]]}")],
             "switching",

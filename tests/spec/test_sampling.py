@@ -123,3 +123,19 @@ def test_the_largest_angle_may_stand_alone():
     spec = sampled("{period: 2 ms, delay: 0}\ndisturbances: {largest_angle: 20 deg}")
     assert spec.disturbances.largest_angle.text == "20 deg"
     assert spec.disturbances.bounds() == {}
+
+
+@pytest.mark.parametrize(
+    ("word", "meant"),
+    [("perod", "period"), ("sample_time", "period"), ("Ts", "period"), ("rate", "period"),
+     ("delays", "delay"), ("lag", "delay"), ("latency", "delay"), ("age", "delay")],
+)  # fmt: skip
+def test_a_wrong_key_is_told_by_the_one_that_is_meant(word, meant):
+    """Once, and not also as a key that is missing; what `identify` writes comes last."""
+    section = "{period: 2 ms, delay: 1}".replace(meant, word)
+    with pytest.raises(SpecError) as caught:
+        sampled(section)
+    message = str(caught.value)
+    assert f"unknown key `sampling.{word}`" in message
+    assert "is missing" not in message
+    assert f"did you mean {meant}? keys here are period, delay, " in message

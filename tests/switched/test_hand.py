@@ -130,7 +130,7 @@ def test_a_mass_that_changes_too_much_is_refuted():
     ],
 )
 def test_what_is_not_modelled_is_refused(section, words):
-    with pytest.raises(SpecError, match=f"hand with a mass, and {words}"):
+    with pytest.raises(SpecError, match=f"hand with a mass, which is not modelled beside {words}"):
         parse_spec(f"{TEXT}\n{section}\n")
 
 

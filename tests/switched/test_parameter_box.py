@@ -1,6 +1,7 @@
 """Corners of a box: enough for the whole box, or the assembly stops."""
 
 from fractions import Fraction
+from functools import cache
 from itertools import product
 
 import pytest
@@ -76,6 +77,24 @@ def test_every_value_in_the_box_is_the_same_average_of_corners(c, s, t):
 def test_anything_else_stops_the_assembly(box, entry):
     with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
         corners(box, entry)
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_rows_that_corners_share_are_compared_too(power):
+    """A row that depends on one parameter alone may be one object along the axis of the other."""
+
+    @cache
+    def shared(x):
+        return [x**power]
+
+    def rows_at(values):
+        return [shared(values["x"]), [values["x"] * values["y"]]]
+
+    if power == 1:
+        assert len(list(BOTH.corners(rows_at, "m"))) == 4
+    else:
+        with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
+            list(BOTH.corners(rows_at, "m"))
 
 
 def test_a_symbol_stands_for_one_parameter():

@@ -87,6 +87,7 @@ def test_a_constant_parameter_is_not_arbitrary_switching():
     assert switching.transitions is None
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(
     st.lists(st.sampled_from(ENTRIES), min_size=4, max_size=4),

@@ -77,7 +77,7 @@ def actuator(
 
 
 def _page(found: ActuatorIdentification) -> Report:
-    from nrs_design.reporting.identification import actuator_report
+    from nrs_design.reporting.actuator import actuator_report
 
     return actuator_report(found)
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
+    from nrs_design.output import Beginning
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -142,10 +143,11 @@ class Outputs:
         Raises
         ------
         OutputError
-            If the page is of no type that can be written.
+            If the page is of no type that can be written, or something else stands in its place.
         SpecError
             If there is something wrong with the spec.
         """
+        from nrs_design.output import check_place
         from nrs_design.spec import read_spec
 
         if report is not None and report.suffix.lower() not in (".html", ".pdf"):
@@ -154,6 +156,8 @@ class Outputs:
                 path=report,
                 remedy="name a file that ends in .html or .pdf",
             )
+        if report is not None:
+            check_place(report, _kind_of(report))
         return cls(None if write is None else read_spec(write), report, date, as_json, quiet)
 
     def deliver(
@@ -199,14 +203,18 @@ class Outputs:
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:
-    from nrs_design.output import PAGE, PDF, write_output
+    from nrs_design.output import write_output
     from nrs_design.reporting import render_html, render_pdf
 
     report = replace(report, date=date.date() if date else None)
-    if path.suffix.lower() == ".pdf":
-        write_output(path, render_pdf(report), replaces=PDF)
-    else:
-        write_output(path, render_html(report), replaces=PAGE)
+    content = render_pdf(report) if path.suffix.lower() == ".pdf" else render_html(report)
+    write_output(path, content, replaces=_kind_of(path))
+
+
+def _kind_of(path: Path) -> Beginning:
+    from nrs_design.output import PAGE, PDF
+
+    return PDF if path.suffix.lower() == ".pdf" else PAGE
 
 
 def _write_spec(path: Path, text: str, *, quiet: bool) -> None:

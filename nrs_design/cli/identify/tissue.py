@@ -120,7 +120,7 @@ def tissue(
 
 
 def _page(found: TissueIdentification, arm: float | None, series: list[Series]) -> Report:
-    from nrs_design.reporting.identification import tissue_report
+    from nrs_design.reporting.tissue import tissue_report
 
     return tissue_report(found, arm, [item.text(rotational=found.rotational) for item in series])
 

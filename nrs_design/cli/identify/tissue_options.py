@@ -8,17 +8,16 @@ from typing import Annotated
 import typer
 
 from nrs_design.cli.identify.common import CoversOption
+from nrs_design.models.contact import LAWS
 
 
 class ModelOption(StrEnum):
-    """Laws by name."""
+    """Laws by name, from their table."""
 
+    _ignore_ = "law"
     AUTO = "auto"
-    ELASTIC = "elastic"
-    KELVIN_VOIGT = "kelvin-voigt"
-    MAXWELL = "maxwell"
-    KELVIN_BOLTZMANN = "kelvin-boltzmann"
-    HUNT_CROSSLEY = "hunt-crossley"
+    for law in LAWS:
+        vars()[law.replace("-", "_").upper()] = law
 
 
 class ContactOption(StrEnum):

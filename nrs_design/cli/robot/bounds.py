@@ -74,22 +74,24 @@ def bounds(
         _check(spec, budget, as_json=as_json, quiet=quiet)
     from nrs_design import __version__
     from nrs_design.models.robot import Space, compute_bounds, to_document
-    from nrs_design.output import BOUNDS, write_output
+    from nrs_design.output import BOUNDS, check_place, write_output
     from nrs_design.pipeline import placed
     from nrs_design.pipeline.robots import run_robot
     from nrs_design.printable import json_text
     from nrs_design.spec.robot_bounds import bounds_file
 
+    file = bounds_file(spec) if write else None
+    if file is not None:
+        check_place(file, BOUNDS)
     loaded, _, robot = run_robot(spec)
     space = _narrowed(Space.of(robot.workspace), phi, psi, depth)
     with placed(loaded), progress(f"bounds of {loaded.spec.name}", quiet=quiet, lines=True) as step:
         found = compute_bounds(robot, space, budget, step)
     document = to_document(loaded.spec.name, loaded.sha256, space, found, __version__)
-    file = bounds_file(spec) if write else None
+    files = _draw(figures, robot, space, found, quiet=quiet) if figures is not None else []
     if file is not None:
         write_output(file, json_text(document) + "\n", replaces=BOUNDS)
         note(f"written to {file}", quiet=quiet)
-    files = _draw(figures, robot, space, found, quiet=quiet) if figures is not None else []
     if as_json:
         content = {key: value for key, value in document.items() if key != "schema"}
         print_json("robot-bounds", content | {"file": file and str(file), "files": files})

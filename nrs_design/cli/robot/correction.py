@@ -33,34 +33,37 @@ def correction(
     Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
     """
     from nrs_design.models.robot import (
+        DEPTH_SINES,
         TABLE_3_5,
         correct_separately,
         correction_coefficients,
         reachable_poses,
         thesis_grid,
         thesis_tilts,
-        tilt_table,
+        tilt_tables,
         to_csv,
     )
-    from nrs_design.output import TABLE, write_output
+    from nrs_design.output import TABLE, check_place, write_output
     from nrs_design.pipeline.robots import run_robot
 
+    if table is not None:
+        check_place(table, TABLE)
     loaded, _, robot = run_robot(spec)
     rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]
-    tilts = tilt_table(robot, thesis_tilts())
+    groups = (DEPTH_SINES,) if figures is None else (DEPTH_SINES, TABLE_3_5)
+    tilts, *with_angles = tilt_tables(robot, thesis_tilts(), *groups)
     apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
     files: list[str] = []
-    if table is not None:
-        write_output(table, to_csv(tilts), replaces=TABLE)
-        files.append(str(table))
-        note(f"table written to {table}", quiet=quiet)
     if figures is not None:
         from nrs_design.reporting.figures.robot import draw_correction, draw_inertia_errors
 
-        with_angles = tilt_table(robot, thesis_tilts(), TABLE_3_5)
-        drawn = draw_correction(tilts, with_angles)
+        drawn = draw_correction(tilts, *with_angles)
         named = {"correction": drawn, "inertia-errors": draw_inertia_errors(apart)}
         files += write_figures(figures, named, quiet=quiet)
+    if table is not None:
+        write_output(table, to_csv(tilts), replaces=TABLE)
+        files.insert(0, str(table))
+        note(f"table written to {table}", quiet=quiet)
     if as_json:
         head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("robot-correction", head | _document(rows, tilts, apart) | {"files": files})

@@ -19,12 +19,13 @@ INCONCLUSIVE = "inconclusive"
 
 
 class RobotFormat(StrEnum):
-    """Formats by name."""
+    """Formats by name, from their table."""
 
+    _ignore_ = "name"
     MJCF = "mjcf"
-    URDF = "urdf"
-    C = "c"
-    VECTORS = "vectors"
+    for name in ROBOT_FORMATS:
+        if name != "mjcf":
+            vars()[name.upper()] = name
 
 
 def export(

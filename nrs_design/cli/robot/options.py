@@ -99,18 +99,15 @@ def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -
     quiet : bool
         Do not say where.
     """
-    from nrs_design.output import PNG, SVG, write_output
+    from nrs_design.output import PNG, SVG, Output, write_outputs
     from nrs_design.reporting.images import to_png, to_svg_file
 
-    files: list[str] = []
+    outputs: list[Output] = []
     for name, figure in figures.items():
-        contents: tuple[tuple[str, str | bytes, bytes], ...] = (
-            ("svg", to_svg_file(figure), SVG),
-            ("png", to_png(figure), PNG),
-        )
-        for suffix, content, beginning in contents:
-            path = folder / f"{name}.{suffix}"
-            write_output(path, content, replaces=beginning)
-            files.append(str(path))
+        outputs += [
+            (folder / f"{name}.svg", to_svg_file(figure), SVG),
+            (folder / f"{name}.png", to_png(figure), PNG),
+        ]
+    write_outputs(outputs)
     note(f"figures written to {folder}", quiet=quiet)
-    return files
+    return [str(path) for path, _, _ in outputs]

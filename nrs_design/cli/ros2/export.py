@@ -88,12 +88,12 @@ def _proof(file: Path) -> Path:
 
 def _check(spec: Path, files: dict[str, Path]) -> None:
     """Refuse what must not be overwritten, before the work."""
-    from nrs_design.output import check_replaceable
+    from nrs_design.output import check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.ros2.export import BEGINNING
 
     for file in files.values():
-        check_replaceable(file, BEGINNING)
+        check_place(file, BEGINNING)
         check_certificate(spec, _proof(file))
 
 

@@ -8,7 +8,9 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
+from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractLaw
+from nrs_design.controllers.sampled import SampledMotion
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,3 +40,13 @@ class ProportionalDerivative(AbstractLaw):
     def zero(self) -> Fraction:
         """The z of ``Kd (s + z)``, in 1/s."""
         return self.Kp / self.Kd
+
+    def sampled(self, period: Fraction) -> SampledMotion:
+        """Return what a processor computes once a period in s.
+
+        Raises
+        ------
+        DesignError
+            If a coefficient is beyond single precision.
+        """
+        return SampledMotion(self.Kp, to_float32(self.Kd / period))

@@ -70,8 +70,9 @@ def find_doubts(
     causes = sorted(_causes(records, found), reverse=True)
     if causes and causes[0][0] >= _EXPLAINS:
         share = causes[0][0]
-        # Between two levels of a command, a limit and an offset do the same.
-        words = ", or ".join(words for other, words in causes if other > share - _ALIKE)
+        # Between two levels of a command, a limit and an offset do the same, but for rounding.
+        alike = sorted((words for other, words in causes if other > share - _ALIKE), reverse=True)
+        words = ", or ".join(alike)
         yield f"likely {words}; it alone would explain {100 * share:.0f} % of what is missed"
 
 

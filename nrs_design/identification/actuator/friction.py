@@ -8,12 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.held import Held
-from nrs_design.models.recursion import run_first_order
 
 Array = NDArray[np.float64]
-
-# Intervals that are solved at once, as long as the motor does not turn; then twice as many.
-_AHEAD = 32
 
 
 def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:
@@ -35,40 +31,36 @@ def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Arra
         In units of the command.
     """
     decays = np.exp(-held.steps / tau)
-    command, steps = held.command, held.steps
-    shape = np.empty(len(steps))
-    velocity, at, ahead = 0.0, 0, _AHEAD
-    while at < len(steps):
-        if velocity == 0.0 and abs(command[at]) <= friction:
-            until = _next(np.abs(command[at : at + ahead]) > friction, at)
-            shape[at:until] = command[at:until] / friction
-            at, ahead = until, 2 * ahead
+    factor = (1 - decays) * gain
+    steps = zip(
+        held.steps.tolist(),
+        held.command.tolist(),
+        decays.tolist(),
+        (factor * (held.command - friction)).tolist(),
+        (factor * (held.command + friction)).tolist(),
+        strict=True,
+    )
+    shape = []
+    velocity, direction = 0.0, 1.0
+    # A loop: where the motor turns back, which it does often, is known only on the way there.
+    for step, command, decay, forward, backward in steps:
+        if velocity == 0.0:
+            if abs(command) <= friction:
+                shape.append(command / friction)
+                continue
+            direction = math.copysign(1.0, command)
+        before = velocity
+        velocity = decay * before + (forward if direction > 0.0 else backward)
+        if velocity * direction >= 0.0:
+            shape.append(direction)
             continue
-        direction = math.copysign(1.0, velocity or float(command[at]))
-        part = slice(at, at + ahead)
-        inputs = (1 - decays[part]) * gain * (command[part] - friction * direction)
-        inputs[0] += decays[at] * velocity
-        course = run_first_order(decays[part], inputs)[1:]
-        until = _next(course * direction < 0.0, at)
-        shape[at:until] = direction
-        before = float(course[until - at - 1]) if until > at else velocity
-        if until == min(at + ahead, len(steps)):
-            velocity, at, ahead = before, until, 2 * ahead
-            continue
-        value, step = float(command[until]), float(steps[until])
-        target = gain * (value - friction * direction)
+        target = gain * (command - friction * direction)
         stop = -tau * math.log(target / (target - before))
-        if abs(value) <= friction:
-            velocity, after = 0.0, value / friction
+        if abs(command) <= friction:
+            velocity, after = 0.0, command / friction
         else:
-            turned = gain * (value + friction * direction)
+            turned = gain * (command + friction * direction)
             velocity, after = turned * -math.expm1((stop - step) / tau), -direction
-        shape[until] = (stop * direction + (step - stop) * after) / step
-        at, ahead = until + 1, _AHEAD
-    return shape
-
-
-def _next(flags: NDArray[np.bool_], at: int) -> int:
-    """Return the index of the first true flag, counted from ``at``; the end if there is none."""
-    first = int(np.argmax(flags))
-    return at + (first if flags[first] else len(flags))
+        shape.append((stop * direction + (step - stop) * after) / step)
+        direction = -direction
+    return np.array(shape)

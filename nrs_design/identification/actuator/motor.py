@@ -101,7 +101,15 @@ class Motor:
         return np.asarray(forced + free @ start, float)
 
     def linearize(self, record: ActuatorRecord) -> tuple[Array, Array]:
-        """Return derivatives and errors of a record without what its initial state explains.
+        """Return derivatives and errors of a record without what its initial state explains."""
+        return self.derivatives(record), self.errors(record)
+
+    def errors(self, record: ActuatorRecord) -> Array:
+        """Return measured less fitted output, shape (n,)."""
+        return self._beyond_start(record, record.output - self.forced(record, *self.hold(record)))
+
+    def derivatives(self, record: ActuatorRecord) -> Array:
+        """Return the derivatives of the fitted output by the parameters, shape (n, p).
 
         With the parameters, the times move at which the motor turns or sticks: differences of
         whole simulations see it.
@@ -116,7 +124,9 @@ class Motor:
 
         steps = np.diag(sizes)
         columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
+        return self._beyond_start(record, np.column_stack(columns))
+
+    def _beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
+        """Return what no initial state explains."""
         free, _ = np.linalg.qr(self.free(record))
-        both = np.column_stack([*columns, record.output - output(x)])
-        both -= free @ (free.T @ both)
-        return both[:, :-1], both[:, -1]
+        return np.asarray(values - free @ (free.T @ values), float)

@@ -93,9 +93,10 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
         limit = np.full(len(step), _LARGEST_STEP)
         limit[-1] = 2 * usual + motor.time_constant / 4
         step = shortened(step, limit)
-        small = np.abs(step / scale).max() < _CONVERGED
+        if np.abs(step / scale).max() < _CONVERGED:
+            break
         better = _improved(records, motor, step, float(error @ error))
-        if better is None or small:
+        if better is None:
             break
         motor, parts = better
         left = sum(float(part @ part) for _, part in parts)
@@ -116,10 +117,11 @@ def _improved(
     """Return a motor along a step that fits better, or None."""
     for halving in range(_HALVINGS):
         tried = motor.with_parameters(motor.parameters + step / 2**halving)
-        parts = [tried.linearize(record) for record in records]
-        found = sum(float(error @ error) for _, error in parts)
+        errors = [tried.errors(record) for record in records]
+        found = sum(float(error @ error) for error in errors)
         if np.isfinite(found) and found < power:
-            return tried, parts
+            slopes = [tried.derivatives(record) for record in records]
+            return tried, list(zip(slopes, errors, strict=True))
     return None
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +67,7 @@ class TissueRecord:
         return float(self.motion.time[-1] - self.motion.time[0])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ActuatorRecord:
     """Response of the actuator to a command.
 
@@ -97,7 +98,7 @@ class ActuatorRecord:
         """File name without its ending, and the group."""
         return self.source.path.stem + (f"/{self.group}" if self.group else "")
 
-    @property
+    @cached_property
     def step(self) -> float:
         """Usual time between samples in s."""
         return float(np.median(np.diff(self.time)))
@@ -177,7 +178,7 @@ def read_actuator(
     return tuple(_actuator(table, group) for group in table.groups)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SignalRecord:
     """What was sent, and what came of it.
 
@@ -197,7 +198,7 @@ class SignalRecord:
     seen: Array
     names: tuple[str, str]
 
-    @property
+    @cached_property
     def step(self) -> float:
         """Usual time between samples in s."""
         return float(np.median(np.diff(self.time)))

@@ -42,6 +42,8 @@ _NOTABLE = 0.1
 _RELATED = 0.2
 # Model misses so much of the motion, in errors that are not white: that is a doubt.
 _MISSED = 0.02
+# A command whose power is in one frequency, but for so much, has one phase to tell.
+_OTHER = 0.01
 _TIMES = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 _SCANNED = 5000
@@ -151,7 +153,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
         record, fits, chosen, samples.scaled(step), samples, peak, parts, ends,
-        (*_doubts(record, chosen, value, half, parts), *_rivals(record, fits, chosen, half)),
+        (*_rivals(record, fits, chosen, half), *_doubts(record, chosen, value, half, parts)),
     )  # fmt: skip
 
 
@@ -281,6 +283,12 @@ def _rivals(
     record: SignalRecord, fits: Sequence[DelayFit], chosen: DelayFit, half: float
 ) -> Iterator[str]:
     """Yield what explains the record nearly as well with quite another delay."""
+    if _other_than_one_frequency(record) < _OTHER:
+        yield (
+            f"{record.names[0]} has one frequency: a delay and a lag cannot be told apart by it; "
+            "record a motion of several"
+        )
+        return
     for fit in fits:
         samples = (fit.delay - chosen.delay) / record.step
         if fit.bic <= chosen.bic + _CLEARLY and abs(samples) > half + 1:
@@ -289,6 +297,29 @@ def _rivals(
                 "samples explains it nearly as well: a motion of one frequency does not tell a "
                 "delay from a lag"
             )
+
+
+def _other_than_one_frequency(record: SignalRecord) -> float:
+    """Return which part of the command's power no swing of one frequency explains."""
+    from scipy.optimize import minimize_scalar
+
+    sent = record.sent - record.sent.mean()
+    count, even = len(sent), np.linspace(record.time[0], record.time[-1], len(sent))
+    spectrum = np.abs(np.fft.rfft(np.interp(even, record.time, sent)))
+    bin_ = 1 / (count * float(even[1] - even[0]))
+    near = bin_ * max(int(np.argmax(spectrum[1:])) + 1, 1)
+
+    def missed(frequency: float) -> float:
+        phase = 2 * math.pi * frequency * record.time
+        columns = np.column_stack([np.sin(phase), np.cos(phase), np.ones(count)])
+        rest = sent - columns @ np.linalg.lstsq(columns, sent, rcond=None)[0]
+        return float(rest @ rest)
+
+    # A frequency between bins is within one of the largest.
+    found = minimize_scalar(
+        missed, bounds=(max(near - bin_, bin_ / 4), near + bin_), method="bounded"
+    )
+    return float(found.fun) / max(float(sent @ sent), np.finfo(float).tiny)
 
 
 def _doubts(

@@ -50,6 +50,8 @@ class RunBounds:
         Of the processor that the proof is about, in s; None for a proof in continuous time.
     losable : bool
         Whether the spec asks for a proof that holds while contact is lost.
+    command : str
+        Unit of the motor's command.
     proved : bool
         Whether a valid certificate proves the spec; else it is only declared.
     """
@@ -62,6 +64,7 @@ class RunBounds:
     lever_arm: float | None
     period: float | None
     losable: bool
+    command: str
     proved: bool = False
 
     @property
@@ -122,6 +125,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         lever_arm=arms.pop() if len(arms) == 1 else None,
         period=_period(spec),
         losable=spec.contact == "losable",
+        command=spec.actuator.command,
     )
 
 

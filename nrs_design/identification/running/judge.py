@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from nrs_design.errors import DataError
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import Check, Status
 from nrs_design.identification.running.contact import judge_contact
@@ -58,6 +59,19 @@ class RunJudgement:
         return "inside" if self.bounds.proved and not open_ends else "inconclusive"
 
 
+def _check_unit(log: RunLog, bounds: RunBounds) -> None:
+    """Refuse a command that the motor of the spec does not take."""
+    if log.command_unit in ("", bounds.command):
+        return
+    raise DataError(
+        f"its command is read in {log.command_unit}, and the motor of the spec takes "
+        f"{bounds.command}",
+        path=log.source.path,
+        remedy=f"name the column that the motor is sent command_{bounds.command} in its header, "
+        "or leave the other out",
+    )
+
+
 def judge_run(
     log: RunLog,
     bounds: RunBounds,
@@ -83,7 +97,13 @@ def judge_run(
         Length of the windows of stiffness in s.
     command_limit : float, optional
         Where the driver saturates, in units of the command.
+
+    Raises
+    ------
+    DataError
+        If the command of the log is of another kind than that of the spec.
     """
+    _check_unit(log, bounds)
     bounds = replace(bounds, proved=proved)
     stiffness, contact, windows = judge_contact(
         log, bounds, window, losable=losable if proved else bounds.losable

@@ -39,12 +39,12 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
         return Check("delay", Status.NOT_JUDGED, error.message, "", "")
     low, high = found.delay.low, found.delay.high
     words = f"{found.delay.value:.3g} [{low:.3g}, {high:.3g}] s"
+    length = float(log.time[-1] - log.time[0])
+    if high - low > length:
+        words = f"not told by this record: its interval is longer than the {length:.3g} s"
     if found.doubts:
         return Check("delay", Status.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", "")
     if bounds.delay is None:
-        length = float(log.time[-1] - log.time[0])
-        if high - low > length:
-            words = f"not told by this record: its interval is longer than the {length:.3g} s"
         return Check("delay", Status.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
     status = Status.UNDECIDED if high >= bounds.delay else Status.INSIDE
     first = None

@@ -9,6 +9,7 @@ from nrs_design.models.robot.balance import (
     spring_torque,
 )
 from nrs_design.models.robot.correction import (
+    DEPTH_SINES,
     TABLE_3_5,
     Correction,
     Sine,
@@ -16,6 +17,7 @@ from nrs_design.models.robot.correction import (
     correction_coefficients,
     thesis_tilts,
     tilt_table,
+    tilt_tables,
     to_csv,
 )
 from nrs_design.models.robot.dynamics import (
@@ -78,6 +80,7 @@ from nrs_design.models.robot.workspace import (
 )
 
 __all__ = [
+    "DEPTH_SINES",
     "DRIVEN",
     "LEAST",
     "TABLE_3_5",
@@ -143,6 +146,7 @@ __all__ = [
     "thesis_grid",
     "thesis_tilts",
     "tilt_table",
+    "tilt_tables",
     "to_csv",
     "to_document",
     "torque_shares",

@@ -166,12 +166,36 @@ def tilt_table(
     sines : sequence of Sine
         Motions for which the coefficients are fitted; by default three in depth alone.
     """
+    return tilt_tables(robot, tilts, sines)[0]
+
+
+def tilt_tables(
+    robot: Robot, tilts: Iterable[float], *groups: Sequence[Sine]
+) -> tuple[TiltTable, ...]:
+    """Return a table for each of several groups of motions; those that they share count once.
+
+    Parameters
+    ----------
+    robot : Robot
+        The mechanism.
+    tilts : iterable of float
+        In rad.
+    *groups : sequence of Sine
+        Motions for which the coefficients of a table are fitted.
+    """
     chosen = np.array(list(tilts), dtype=np.float64)
-    rows = [correction_coefficients(robot.tilted(float(tilt)), sines) for tilt in chosen]
-    return TiltTable(
-        chosen,
-        np.array([row.mean_ratio for row in rows]),
-        np.array([row.least_squares for row in rows]),
+    tilted = [robot.tilted(float(tilt)) for tilt in chosen]
+    fits = {
+        sine: [correction_coefficients(each, sine) for each in tilted]
+        for sine in dict.fromkeys(sine for group in groups for sine in group)
+    }
+    return tuple(
+        TiltTable(
+            chosen,
+            np.mean([[fit.mean_ratio for fit in fits[sine]] for sine in group], axis=0),
+            np.mean([[fit.least_squares for fit in fits[sine]] for sine in group], axis=0),
+        )
+        for group in groups
     )
 
 

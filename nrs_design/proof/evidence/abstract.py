@@ -208,10 +208,20 @@ class AbstractEvidence(ABC):
         """
         return self
 
-    def find_fault(self, system: SwitchedSystem) -> str | None:
-        """TRUSTED: say why the evidence does not hold for the system, or None if it holds."""
+    def find_fault(
+        self, system: SwitchedSystem, made: list[IntegerMatrix] | None = None
+    ) -> str | None:
+        """TRUSTED: say why the evidence does not hold for the system, or None if it holds.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            That it is about.
+        made : list, optional
+            Every form that is decided is put into it, for a second opinion.
+        """
         unfit = self.find_unfit(system)
-        return find_indefinite(self.forms(system)) if unfit is None else unfit
+        return find_indefinite(self.forms(system), made) if unfit is None else unfit
 
     def find_unfit(self, system: SwitchedSystem) -> str | None:
         """TRUSTED: say what, other than a form, keeps the evidence from holding, or None."""
@@ -252,9 +262,13 @@ def _in_seconds(rate: Fraction, step: Fraction) -> str:
     return f"A step takes {exact_text(step)} s, so that is exp(-alpha t) with alpha {alpha}."
 
 
-def find_indefinite(forms: Iterable[tuple[str, IntegerMatrix]]) -> str | None:
+def find_indefinite(
+    forms: Iterable[tuple[str, IntegerMatrix]], made: list[IntegerMatrix] | None = None
+) -> str | None:
     """TRUSTED: name the failure of the first form that is not positive definite, or None."""
     for failure, form in forms:
+        if made is not None:
+            made.append(form)
         if is_too_large(form):
             return f"{failure}, or it does but its numbers are too large to check"
         if not is_symmetric(form) or not is_positive_definite(form):

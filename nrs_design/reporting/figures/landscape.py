@@ -97,12 +97,12 @@ def _keep_apart(labels: Iterable[Text]) -> None:
 
 
 def _draw_border(axes: Axes, found: CostMap) -> None:
-    unstable = np.isnan(found.cost).astype(float)
-    if not unstable.any() or unstable.all():
+    fastest = float(found.abscissa.max())
+    if not float(found.abscissa.min()) < 0 < fastest:
         return
-    grid = (found.Mt, found.Bt, unstable)
-    axes.contourf(*grid, levels=[0.5, 1.5], colors=[VERMILLION], alpha=0.15)
-    axes.contour(*grid, levels=[0.5], colors=VERMILLION, linewidths=2.0)
+    grid = (found.Mt, found.Bt, found.abscissa)
+    axes.contourf(*grid, levels=[0.0, fastest], colors=[VERMILLION], alpha=0.15)
+    axes.contour(*grid, levels=[0.0], colors=VERMILLION, linewidths=2.0)
     axes.plot(
         [], [], color=VERMILLION, linewidth=2.0, label="border of stability (unstable: shaded)"
     )

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 # A limit or bound that is so many times farther than the largest peak is named, not drawn.
 _FAR = 1.5
 _BINS = 40
+# The axis reaches so far to both sides at least, as a part of what it shows.
+_NARROW = 0.02
 # Lines are seen in front of the bars.
 _PALE = 0.45
 
@@ -75,7 +77,8 @@ def _draw(axes: Axes, spread: Spread) -> None:
     far = [line for line in lines if line[0] > _FAR * largest]
     near = max([largest, *(line[0] for line in lines if line not in far)])
     low = min(float(spread.peaks.min()), near)
-    margin = 0.04 * (near - low) or 0.05 * near or 1.0
+    # Peaks that differ in their last digits alone are at one place, with ticks that can be read.
+    margin = max(0.04 * (near - low), _NARROW * near - (near - low) / 2) or 1.0
     edges = np.linspace(low - margin, near + margin, _BINS + 1).tolist()
     axes.hist(spread.peaks, bins=edges, color=BLUE, alpha=_PALE)
     for line in lines:

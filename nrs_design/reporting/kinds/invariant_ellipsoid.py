@@ -16,7 +16,8 @@ from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.run import simulated
-from nrs_design.simulation.worst_case import WorstRun, output_values, worst_against
+from nrs_design.simulation.worst_case import WorstRun, worst_against
+from nrs_design.simulation.worst_outputs import output_values
 
 _DECIDED = (
     "Q holds integers over a power of two, and exact arithmetic decides that no motion leaves the "

@@ -22,6 +22,7 @@ _ASSUMED: dict[AssumptionKind, At] = {
     kinds.INPUTS: ("disturbances",),
     kinds.FRICTION: ("disturbances",),
     kinds.LINKS: ("coupling",),
+    kinds.JOINT_SPEED: ("coupling",),
     kinds.GRAVITY: ("coupling",),
     kinds.TISSUE: ("environments",),
     kinds.PRELOAD: ("environments",),

@@ -37,7 +37,7 @@ def remedies_section(
     blocks: list[Block] = []
     if relief := find_relief(result):
         blocks.append(Bullets("Gains that would hold", relief))
-    if subsets is not None and result.certification.verdict is not Verdict.PROVED:
+    if subsets or (subsets is not None and result.certification.verdict is not Verdict.PROVED):
         parts = tuple(f"{line[0].upper()}{line[1:]}" for line in subset_lines(subsets))
         blocks.append(Bullets("Not proved together; the strongest parts that are", parts))
     if margins is not None and (lines := tuple(margin_lines(margins, result.loaded))):

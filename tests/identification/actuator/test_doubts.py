@@ -21,6 +21,7 @@ def test_saturation(kind):
     assert "likely saturation: commands act as if cut" in text
 
 
+@pytest.mark.slow
 def test_backlash():
     text = doubts(motors.record("multisine", 1, play=0.03))
     assert "likely backlash: the output loses some 0.02" in text

@@ -68,6 +68,7 @@ def test_a_motor_without_friction_or_dead_time():
     assert fit.dead_time.high < 2e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("is_angle", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_square_wave_without_friction(is_angle):
     # A coarse scan sees friction here: with it, the search ended far from the least errors.

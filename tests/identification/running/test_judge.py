@@ -267,6 +267,7 @@ def test_wrong_logs(tmp_path, text, message):
     assert caught.value.remedy
 
 
+@pytest.mark.slow
 def test_a_delay_that_the_record_does_not_tell(tmp_path):
     """One slow swing fits any delay: no number is shown."""
     t = 0.001 * np.arange(8000)
@@ -277,3 +278,43 @@ def test_a_delay_that_the_record_does_not_tell(tmp_path):
     found = check(judged(log(tmp_path, text=text)), "delay")
     assert "[" not in found.measured
     assert found.measured.startswith("not told by this record")
+
+
+def following(frequencies, noise=0.001):
+    """A log of a loop that follows its command as a first-order lag of 50 ms, 10 ms late."""
+    random = np.random.default_rng(4)
+    t = runs.run()[0]
+    swings = [(w := 2 * np.pi * f, np.arctan(w / 20), np.hypot(1, w / 20)) for f in frequencies]
+    command = sum(1000 * np.sin(w * t) for w, _, _ in swings)
+    angle = sum(0.004 / size * np.sin(w * (t - 0.01) - late) for w, late, size in swings)
+    angle = angle + noise * 0.004 * random.normal(size=len(t))
+    return t, angle, 43.0 * angle, command, np.full(len(t), "insertion")
+
+
+def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
+    """Its lag of phase is that of a longer delay, too, and that is no violation."""
+    asked = replace(SOFT, delay=0.03)
+    found = check(judged(log(tmp_path, following([1.3])), asked), "delay")
+    assert (str(found.status), found.first) == ("not judged", None)
+    assert "cannot be told apart" in found.measured
+    several = check(judged(log(tmp_path, following([1.3, 3.7, 7.1])), asked), "delay")
+    assert str(several.status) == "inside"
+
+
+@pytest.mark.parametrize("unit", ["V", "mA", "counts"])
+def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path, unit):
+    text = runs.text(*runs.run()).replace("command_rpm", f"command_{unit}")
+    with pytest.raises(DataError, match="the motor of the spec takes rpm") as caught:
+        judged(log(tmp_path, text=text))
+    assert "command_rpm" in caught.value.remedy
+    volts = replace(SOFT, command="V")
+    with pytest.raises(DataError, match="read in rpm, and the motor of the spec takes V"):
+        judged(log(tmp_path), volts)
+    if unit == "V":
+        assert judged(log(tmp_path, text=text), volts).checks
+
+
+def test_a_command_of_another_unit_of_its_kind_is_converted(tmp_path):
+    text = runs.text(*runs.run()).replace("command_rpm", "command_deg_s")
+    found = check(judged(log(tmp_path, text=text), command_limit=3000.0), "saturation")
+    assert "largest command 333.33 rpm" in found.measured

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import fit_record, identify_tissue
@@ -44,6 +45,7 @@ def test_creep():
     assert covered(fit, LAW) == [True] * 3
 
 
+@pytest.mark.slow
 def test_ramps_at_several_speeds():
     law = KelvinVoigt(400.0, 20.0)
     data = []

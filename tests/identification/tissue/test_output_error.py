@@ -51,7 +51,13 @@ def test_exact_without_noise(law):
     assert fit.law.values == pytest.approx(law.values, rel=1e-5)
 
 
-@pytest.mark.parametrize("kind", list(LAWS.values()))
+@pytest.mark.parametrize(
+    "kind",
+    [
+        KelvinBoltzmann,
+        *(pytest.param(k, marks=pytest.mark.slow) for k in LAWS.values() if k != KelvinBoltzmann),
+    ],
+)
 def test_no_better_parameters_nearby(kind):
     data = record(synthetic.NOSE, slow(2), 0.01, 2)
     fit = fit_record(kind, data)

@@ -60,6 +60,7 @@ def specimens(count):
     return [record(Elastic(750 * f), quick(i), 0.1, i) for i, f in enumerate(factors)]
 
 
+@pytest.mark.slow
 def test_each_kind_of_range_is_wider_than_the_last():
     data = specimens(5)
     mean, next_, most = (

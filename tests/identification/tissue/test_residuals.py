@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import fit_record
@@ -49,6 +50,7 @@ def test_noise_that_hides_the_force():
     assert "% of the range of the force" in said
 
 
+@pytest.mark.slow
 def test_a_tissue_that_relaxes_is_not_taken_for_one_that_pulls():
     """At its largest deflection it has its least force."""
     time = np.arange(4000) / 20

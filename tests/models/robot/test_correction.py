@@ -7,9 +7,11 @@ from hypothesis import strategies as st
 
 from nrs_design.models.robot import (
     Sine,
+    correction,
     correction_coefficients,
     thesis_tilts,
     tilt_table,
+    tilt_tables,
 )
 from nrs_design.models.robot.correction import (
     DEPTH_SINES,
@@ -104,3 +106,19 @@ def test_least_squares_leaves_the_least_error():
         other = np.sqrt(np.mean((T - (found.least_squares + step) * t) ** 2, axis=0))
         assert np.all(found.least_squares_error < other)
     assert np.all(found.least_squares_error <= found.mean_ratio_error)
+
+
+def test_tables_of_several_groups_of_motions_are_those_of_each(robot, monkeypatch):
+    """To the last bit, and a motion that is in both is moved once."""
+    tilts = np.radians([-40.0, 0.0])
+    apart = [tilt_table(robot, tilts, group) for group in (DEPTH_SINES, TABLE_3_5)]
+    moved = []
+    torques = correction._torques
+    monkeypatch.setattr(correction, "_torques", lambda *at: moved.append(at) or torques(*at))
+    together = tilt_tables(robot, tilts, DEPTH_SINES, TABLE_3_5)
+    for one, other in zip(together, apart, strict=True):
+        assert (one.mean_ratio == other.mean_ratio).all()
+        assert (one.least_squares == other.least_squares).all()
+    assert len(moved) == len(tilts) * len({*DEPTH_SINES, *TABLE_3_5})
+    row = correction_coefficients(robot.tilted(tilts[0]), TABLE_3_5)
+    assert (together[1].mean_ratio[0] == row.mean_ratio).all()

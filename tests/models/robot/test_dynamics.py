@@ -68,6 +68,7 @@ def test_potential_is_that_of_the_centers_of_mass(robot, pose):
     assert potential_energy(bare, pose) == pytest.approx(0.7972 * 9.81 * height, rel=1e-12)
 
 
+@pytest.mark.slow
 @settings(max_examples=3)
 @given(pose=poses, velocity=rates)
 def test_energy_of_a_free_motion_is_kept(robot, pose, velocity):

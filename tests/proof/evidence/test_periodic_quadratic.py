@@ -22,6 +22,7 @@ from tests.proof.systems import (
     family,
     genuine,
     matrix,
+    pushed,
 )
 from tests.proof.truth import holds
 from tests.support import is_definite_by_ldl
@@ -201,6 +202,21 @@ TURNS = PeriodicQuadratic(
 )
 def test_misfits(changes, fault):
     assert fault in replace(TURNS, **changes).find_fault(bouncing_in_turns(rounded=True))
+
+
+def test_what_disturbs_is_not_taken_for_a_rounding():
+    """Rows of roundings go over the state and what disturbs it, which decay says nothing of."""
+    system = bouncing_in_turns(rounded=True)
+    (item,) = system.roundings
+    wide = tuple(matrix([[*row.fractions()[0], 7]]) for row in item.rows)
+    disturbed = pushed(replace(system, roundings=(replace(item, rows=wide),)))
+    assert disturbed.find_contradiction() is None
+    evidence = replace(TURNS, roundings=((1,), (1,)))
+    assert [*evidence.forms(disturbed)] == [*evidence.forms(system)]
+    # A rounding that grows with the state is still held against.
+    large = tuple(matrix([[100, *row.fractions()[0][1:], 7]]) for row in item.rows)
+    worse = pushed(replace(system, roundings=(replace(item, rows=large),)))
+    assert evidence.find_fault(worse) is not None
 
 
 def test_a_multiplier_may_be_zero():

@@ -83,6 +83,7 @@ def test_without_feed_forward_the_weight_deflects_the_joints(spec, robot, smooth
     assert np.abs(end.position - start.position).max() > 1e-3
 
 
+@pytest.mark.slow
 def test_exact_feed_forward_leaves_no_error(spec, robot, smooth):
     mechanism = Mechanism(robot)
     law = design_independent_joint(spec, LoadModel(robot, smooth.encoder_ratio, None))

@@ -70,6 +70,7 @@ def test_a_quantity_that_is_zero_is_bounded(robot):
     assert shown.bound < 1e-9
 
 
+@pytest.mark.slow
 def test_the_pose_of_the_largest_value_does_not_hang_on_rounding(robot, monkeypatch):
     """Mirrored poses are equal but for rounding."""
     plain = find_largest(robot, Inertia(), SPACE.workspace)
@@ -144,6 +145,7 @@ def test_inertia_over_a_small_workspace(robot):
     assert largest <= shown.found * (1 + 1e-9) <= shown.bound < 1.06 * largest
 
 
+@pytest.mark.slow
 def test_time_that_is_over_shows_nothing(robot):
     shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: found, budget=0.0)
     assert not shown.cover.reached
@@ -158,6 +160,7 @@ def test_a_workspace_that_cannot_be_reached_is_refused(robot):
         compute_bounds(robot, Space.of(robot.workspace))
 
 
+@pytest.mark.slow
 def test_a_box_with_a_stretched_leg_has_no_bound(robot):
     wide = replace(SPACE, d=("150", "330")).workspace
     shown = enclose(robot, VelocityTorques(), wide, lambda found: 2 * found, budget=0.0)

@@ -1,0 +1,228 @@
+"""What a rung of the ladder is, and the facts of a system that decide which rungs apply."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from math import inf
+
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
+from nrs_design.proof.mode import Time
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.search.candidates import Candidates, Search
+from nrs_design.search.certification import Limits
+from nrs_design.search.family import Family
+from nrs_design.search.method import Method
+
+# Degrees that are tried before the rungs below, which are quicker than higher ones.
+FIRST_DEGREES = 2
+
+Step = tuple[str, Search]
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What decides which rungs apply.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes and their switching.
+    leaves_stable : bool
+        The modes that must be left are stable, too, as far as the exact test goes.
+    """
+
+    system: SwitchedSystem
+    leaves_stable: bool
+
+    @classmethod
+    def of(cls, system: SwitchedSystem) -> Facts:
+        """Look at a system, exactly."""
+        lasting = {mode.name for mode in system.lasting_modes()}
+        left = affordable(mode for mode in system.modes if mode.name not in lasting)
+        return cls(system, all(fits and is_stable(mode.A, system.time) for mode, fits in left))
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether time is continuous."""
+        return self.system.time is Time.CONTINUOUS
+
+    @property
+    def is_arbitrary(self) -> bool:
+        """Whether switching follows no rule."""
+        return self.system.switching.is_arbitrary
+
+    @property
+    def may_share_a_function(self) -> bool:
+        """Whether one function for all modes could prove anything."""
+        system = self.system
+        return system.is_uniform and not system.switching.resets and self.leaves_stable
+
+    @property
+    def may_share_an_ellipsoid(self) -> bool:
+        """Whether a common quadratic function has to be searched for."""
+        return self.may_share_a_function and self.system.order > 1
+
+    @property
+    def may_lose_contact(self) -> bool:
+        """Whether the system says how contact is lost."""
+        return self.system.contact is not None
+
+    @property
+    def rounds(self) -> bool:
+        """Whether the system says what its arithmetic rounds."""
+        return bool(self.system.roundings)
+
+    @property
+    def is_coupled(self) -> bool:
+        """Whether the system says what axes do to each other."""
+        return bool(self.system.couplings)
+
+    @property
+    def takes_turns(self) -> bool:
+        """Whether its modes take turns."""
+        return self.system.clock is not None
+
+    @property
+    def may_bounce(self) -> bool:
+        """Whether functions could be for lost contact with springs."""
+        contact = self.system.contact
+        springs = contact is not None and not contact.pulls
+        return self.may_share_an_ellipsoid and springs
+
+    @property
+    def has_rules(self) -> bool:
+        """Whether there are rules for switching, and no parameter is constant."""
+        return not (self.is_arbitrary or self.has_constant)
+
+    @property
+    def has_constant(self) -> bool:
+        """Whether a parameter is unknown but constant."""
+        return bool(self.system.switching.fixed_ends)
+
+    @property
+    def has_values(self) -> bool:
+        """Whether the modes at the values of a constant parameter can be looked at."""
+        return self.has_constant and self.system.is_uniform and self.leaves_stable
+
+
+def _always(facts: Facts) -> bool:
+    """Say yes."""
+    return True
+
+
+@dataclass(frozen=True, slots=True)
+class Rung:
+    """One row of the ladder.
+
+    Parameters
+    ----------
+    name : str
+        What the reader is told.
+    method : Method or None
+        What asks for it alone; None for what is tried whatever is asked for.
+    applies : callable
+        Tells whether it can decide a system.
+    search : callable
+        Yields candidates for a family, and for a degree if it rises.
+    cost : callable or None
+        Predicts what a degree takes, for a rung that is tried with ever higher ones.
+    in_auto : callable
+        Tells whether it is worth trying where it was not asked for alone.
+    only_quadratic : bool
+        Left out once it is known that there is no common quadratic function.
+    first : float
+        A degree that is predicted to take more seconds is tried with the higher ones, at last.
+    coupled : bool
+        What it finds of one axis says something about all axes that act on each other; other rungs
+        are not tried where they do.
+    clocked : bool
+        It is for modes that take turns, and for no others.
+    """
+
+    name: str
+    method: Method | None
+    applies: Callable[[Facts], bool]
+    search: Callable[..., Candidates[AbstractEvidence]]
+    cost: Callable[[SwitchedSystem, int], tuple[Cost, str]] | None = None
+    in_auto: Callable[[Facts], bool] = _always
+    only_quadratic: bool = False
+    first: float = inf
+    coupled: bool = False
+    clocked: bool = False
+
+    def count_first(self, system: SwitchedSystem) -> int:
+        """Return how many steps are made before the rungs below: of the first degrees, the quick.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            The modes.
+        """
+        if self.cost is None or self.first == inf:
+            return FIRST_DEGREES
+        degrees = range(2, 2 + FIRST_DEGREES)
+        return sum(self.cost(system, d)[0].seconds <= self.first for d in degrees)
+
+    def is_wanted(self, facts: Facts, method: Method) -> bool:
+        """Tell whether to try it, given what was asked for."""
+        asked = self.in_auto(facts) if method is Method.AUTO else self.method in {None, method}
+        return asked and self.can_decide(facts)
+
+    def can_decide(self, facts: Facts) -> bool:
+        """Tell whether it can decide a system.
+
+        Parameters
+        ----------
+        facts : Facts
+            Of the system.
+        """
+        if self.clocked != facts.takes_turns:
+            return False
+        return (self.coupled or not facts.is_coupled) and self.applies(facts)
+
+    def steps(self, system: SwitchedSystem, limits: Limits, allowance: Allowance) -> Iterator[Step]:
+        """Yield itself, or searches of rising degree and the reason why there is no higher one.
+
+        Degrees rise while they are predicted to fit into what is left of the budget, so how far
+        they rise does not depend on the machine. In one state, all forms of a degree are alike.
+
+        Parameters
+        ----------
+        system : SwitchedSystem
+            The modes.
+        limits : Limits
+            With the highest degree.
+        allowance : Allowance
+            What is left of the budget.
+        """
+        if self.cost is None:
+            yield self.name, self.search
+            return
+        if system.order == 1:
+            return
+        from nrs_design.search.polynomial import HELD, highest_degree
+
+        for d in range(2, highest_degree(system.order) + 1):
+            step = f"{self.name} of degree {2 * d}"
+            if limits.max_degree is not None and 2 * d > limits.max_degree:
+                yield step, _refuse(f"not tried: --max-degree is {limits.max_degree}")
+                return
+            fits = allowance.affords(self.cost(system, d)[0])
+            yield step, partial(self.search, degree=d)
+            if not fits:
+                return
+        yield f"{self.name} of higher degree", _refuse(f"not tried: {HELD}")
+
+
+def _refuse(reason: str) -> Search:
+    """Return a search that is not made."""
+
+    def search(family: Family) -> Candidates[AbstractEvidence]:
+        yield from ()
+        return reason
+
+    return search

@@ -1,0 +1,275 @@
+"""One axis during a sampled run: the law that ships, in single precision, motor and tissue.
+
+At every sample the law gets the angle, and a torque that may be late, each as coarse and as noisy
+as the scenario says; its command is held until the next one. Between two samples the motor follows
+exactly: ``tau omega' = Km (u - f sign(omega)) - omega``, with the Coulomb friction f in the unit of
+the commands, at rest while ``|u| <= f``. The torque of tissue follows from angle and velocity of
+the moment; where it keeps a damper, or the motor carries it, the step is cut into parts.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.models.plant import Plant
+from nrs_design.simulation.fate import Fate
+from nrs_design.simulation.motor import Motor
+from nrs_design.simulation.run import Run
+from nrs_design.simulation.scenario import (
+    COMMAND,
+    DEPTH,
+    TORQUE,
+    Condition,
+    Scenario,
+)
+from nrs_design.simulation.step_program import StepProgram
+from nrs_design.simulation.time_response import Signal, TimeResponse
+from nrs_design.simulation.tissue import Tissue
+
+# Parts of a step, where tissue moves by itself or loads the motor.
+PARTS = 8
+# What the motion loop keeps from one of its samples to the next; all else is of the outer loop.
+_OF_MOTION = frozenset({"error_before"})
+_OUTPUTS = (
+    Signal("angle", "rad"),
+    Signal("velocity", "rad/s"),
+    Signal("torque", "N*m"),
+    Signal("depth", "rad"),
+)
+_INPUTS = (Signal("hand", "rad/s"),)
+
+
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """Whose turn it is at a sample, where motion loop and outer loop have periods of their own.
+
+    Parameters
+    ----------
+    motion, outer : int
+        Their periods in samples; one of them is 1.
+    """
+
+    motion: int = 1
+    outer: int = 1
+
+
+@dataclass
+class SampledAxis:
+    """One axis during a run: the law, what it senses, and the tissue that it touches.
+
+    Parameters
+    ----------
+    plant : Plant
+        Its motor.
+    design : ControllerDesign
+        Gains that ship.
+    scenario : Scenario
+        What happens to it.
+    program : StepProgram
+        Its law.
+    period : Fraction
+        Between two samples, in s.
+    delay : tuple of (int, int)
+        Smallest and largest age of the force samples, counted in samples of the outer loop.
+    turns : Turns
+        Which samples are those of the motion loop, and of the outer one.
+    """
+
+    plant: Plant
+    design: ControllerDesign
+    scenario: Scenario
+    program: StepProgram
+    period: Fraction
+    delay: tuple[int, int]
+    turns: Turns = Turns()
+
+    def __post_init__(self) -> None:
+        """Begin at rest, free of contact."""
+        scenario, actuator, law = self.scenario, self.plant.actuator, self.program.law
+        gain, tau = float(actuator.gain), float(actuator.time_constant)
+        self.motor = Motor(gain, tau, scenario.errors.friction)
+        load = self.plant.load_inertia
+        # By how much a torque weighs as a command, per N m.
+        self.load = 0.0 if load is None else tau / (float(load) * gain)
+        self.tissue = Tissue(scenario.surfaces)
+        self.parts = PARTS if self.load or self.tissue.creeps else 1
+        self.theta, self.omega, self.commanded = scenario.start, 0.0, scenario.start
+        self.states = [np.float32(scenario.start * s.starts_at_angle) for s in law.states]
+        self.inputs = [value.name for value in law.inputs]
+        self.T = float(self.period)
+        self.buffer = deque([0.0] * (self.delay[1] + 1), self.delay[1] + 1)
+        self.modes = {name: i for i, name in enumerate(law.modes)}
+        self.holds = {c.name: c.law.holds_hand for c in self.design.controllers}
+        self.rules = {name: self._rules(name) for name in law.modes}
+        self.controller, self.held = scenario.control.start, 0
+        # What ships compares in single precision, and counts samples.
+        self.logic = law.logic if scenario.control.ships else None
+        self.schedule = deque(scenario.control.schedule)
+        self.switches: list[tuple[float, str]] = []
+        self.rows: list[tuple[float, ...]] = []
+        self.refused, self.saturated, self.turn, self.command = 0, 0, 0, 0.0
+        self.kept = [state.name in _OF_MOTION for state in law.states]
+        limit = law.coefficient.get("command_limit")
+        self.largest = math.inf if limit is None else float(limit.of(0))
+
+    def _rules(self, source: str) -> list[tuple[str, tuple[tuple[str, int, float, float], ...]]]:
+        """Return the switches from a controller: the target, and bounds on signals."""
+        return [
+            (switch.target, tuple(_bounds(c) for c in switch.conditions))
+            for switch in self.scenario.control.switches
+            if switch.source == source
+        ]
+
+    def finish(self, engine: str, fate: Fate, stopped: str | None) -> Run:
+        """Return the run up to now.
+
+        Parameters
+        ----------
+        engine : str
+            What moved it.
+        fate : Fate
+            What it was given.
+        stopped : str or None
+            Why it ends before its time.
+        """
+        return Run(
+            self.scenario.name,
+            engine,
+            self._response(fate),
+            tuple(self.switches),
+            tuple(self.tissue.contacts),
+            len(self.rows),
+            (float(self.turns.motion * self.period), *self.delay),
+            self.refused,
+            self.saturated,
+            stopped,
+            outer=float(self.turns.outer * self.period),
+        )
+
+    def sample(self, t: float, hand: float, noise: float, age: int) -> float:
+        """Run the law once; return its command.
+
+        Parameters
+        ----------
+        t : float
+            In s.
+        hand, noise : float
+            Commanded velocity in rad/s, and error of the measured torque in N m.
+        age : int
+            Of the force sample.
+        """
+        tissue, errors = self.tissue, self.scenario.errors
+        torque = tissue.torque(self.theta, self.omega)
+        tissue.note(t)
+        depths = tissue.depths(self.theta)
+        outer = self.turn % self.turns.outer == 0
+        if outer:
+            self.buffer.appendleft(_coarse(torque + noise, errors.force_step))
+        felt = self.buffer[age]
+        if outer:
+            self._decide(t, hand, felt, depths)
+        seen = {
+            "angle": _coarse(self.theta, errors.encoder_step),
+            "torque": felt,
+            "velocity_command": hand,
+            "position": self.commanded,
+            "wanted_torque": self.scenario.wanted_torque,
+        }
+        mode, before = self.modes[self.controller], self.states
+        given = [np.float32(seen[name]) for name in self.inputs]
+        outputs, after, valid = self.program.step(mode, [*given, *before])
+        self.refused += not valid
+        motion = self.turn % self.turns.motion == 0
+        if motion:
+            self.command = float(outputs[0])
+            self.saturated += abs(self.command) >= self.largest
+        if motion and outer:
+            self.states = after
+        else:
+            # The loop whose turn it is not keeps what it has.
+            each = zip(self.kept, before, after, strict=True)
+            self.states = [new if of_motion == motion else old for of_motion, old, new in each]
+        self.turn += 1
+        command = self.command
+        now = (self.theta, self.omega, torque, max(0.0, *depths, 0.0), command)
+        self.rows.append((mode, *now, *map(float, before)))
+        if not self.holds[self.controller]:
+            self.commanded += self.T * hand
+        return command
+
+    def _decide(self, t: float, hand: float, felt: float, depths: list[float]) -> None:
+        """Let schedule and mode logic choose, by what they see at this sample."""
+        while self.schedule and self.schedule[0][0] <= t:
+            self._switch(t, self.schedule.popleft()[1])
+        signs = {COMMAND: self.tissue.direction * hand, TORQUE: self.tissue.direction * felt}
+        if self.logic is not None:
+            seen = {name: float(np.float32(value)) for name, value in signs.items()}
+            mode, held = self.logic.step(self.modes[self.controller], self.held, seen)
+            self._switch(t, self.program.law.modes[mode])
+            self.held = held
+            return
+        for target, bounds in self.rules[self.controller]:
+            for signal, j, low, high in bounds:
+                if not low <= (depths[j] if signal == DEPTH else signs[signal]) <= high:
+                    break
+            else:
+                self._switch(t, target)
+                return
+
+    def _switch(self, t: float, target: str) -> None:
+        if target != self.controller:
+            self.controller = target
+            self.switches.append((t, target))
+
+    def glide(self, command: float, width: float) -> None:
+        """Let motor and tissue move for a time in s, as if there were no other axis."""
+        if self.parts == 1:
+            self.theta, self.omega = self.motor.after(self.theta, self.omega, command, width)
+            return
+        part = width / self.parts
+        for _ in range(self.parts):
+            drive = command - self.load * self.tissue.torque(self.theta, self.omega)
+            before = self.tissue.depths(self.theta)
+            self.theta, self.omega = self.motor.after(self.theta, self.omega, drive, part)
+            self.tissue.creep(before, self.tissue.depths(self.theta), part)
+
+    def _response(self, fate: Fate) -> TimeResponse:
+        law, last = self.program.law, len(_OUTPUTS) + 2
+        rows = np.array(self.rows, dtype=float).T
+        count = len(self.rows)
+        return TimeResponse(
+            fate.times[:count],
+            rows[1:last],
+            rows[last:],
+            fate.hand[None, :count],
+            (*_OUTPUTS, Signal("command", self.design.command)),
+            tuple(Signal(_named(value.name), value.unit) for value in law.states),
+            _INPUTS,
+            rows[0].astype(np.int64),
+            law.modes,
+        )
+
+
+def _named(state: str) -> str:
+    """Return the name of a state of the law; none is that of an output."""
+    name = state.replace("_", " ")
+    taken = {signal.name for signal in (*_OUTPUTS, *_INPUTS)} | {"command"}
+    return f"state {name}" if name in taken else name
+
+
+def _bounds(condition: Condition) -> tuple[str, int, float, float]:
+    """Return signal, index of the surface (of a depth), and both bounds of a condition."""
+    if condition.signal.startswith(DEPTH):
+        return DEPTH, int(condition.signal.removeprefix(DEPTH)), condition.low, condition.high
+    return condition.signal, 0, condition.low, condition.high
+
+
+def _coarse(value: float, step: float) -> float:
+    """Return the multiple of a step that is nearest; the value itself, where there is no step."""
+    return round(value / step) * step if step else value

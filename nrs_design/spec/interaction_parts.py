@@ -1,0 +1,214 @@
+"""What the spec of an interaction design says, part by part."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, ValidationInfo, field_validator
+from pydantic_core import PydanticCustomError
+
+from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.controllers import (
+    ControllerSpec,
+    IdleStatesSpec,
+    Offset,
+    contact_name,
+    touched_in,
+)
+from nrs_design.spec.coupling import CouplingSpec
+from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
+from nrs_design.spec.environment import EnvironmentSpec
+from nrs_design.spec.faults import fault
+from nrs_design.spec.fields import Digits, Label, Name, Title
+from nrs_design.spec.goals import GoalsSpec
+from nrs_design.spec.mode_logic import ModeLogicSpec, rules_of
+from nrs_design.spec.model import SpecModel
+from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.sampling import (
+    DisturbancesSpec,
+    SamplingSpec,
+    takes_motor_ranges,
+)
+from nrs_design.spec.scenarios import ScenarioSpec
+from nrs_design.spec.sensor import SensorSpec
+from nrs_design.spec.switching import MODE_LOGIC, LogicalRule
+
+MAX_ENTRIES = 64
+
+
+class DesignSpec(SpecModel):
+    """How gains are written down."""
+
+    significant_digits: Digits = Field(
+        default=4,
+        description="designed gains are rounded to so many digits, 1 to 7, then to float32",
+    )
+
+
+class AbstractInteractionSpec(SpecModel):
+    """The keys of such a spec, and what follows from them."""
+
+    kind: Literal["interaction-design"] = Field(description="what this file describes")
+    name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
+    title: Title = Field(default="", description="one line for people, at most 200 characters")
+    actuator: ActuatorSpec = Field(description="the velocity-controlled motor")
+    motion_loop: MotionLoopSpec = Field(description="the position loop around the motor")
+    limits: LimitsSpec = Field(description="what the interaction must respect")
+    environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = Field(
+        default_factory=dict, description="what the robot touches: name -> environment"
+    )
+    controllers: Annotated[
+        dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
+    ] = Field(description="what the robot switches between: name -> controller")
+    idle_states: IdleStatesSpec | None = Field(
+        default=None,
+        description="what the states of impedance controllers do while a position or force "
+        "controller is active, and the integral of a pi-force controller while another one is; "
+        "required where there are both",
+    )
+    goals: GoalsSpec | None = Field(
+        default=None,
+        description="what every impedance and force controller must achieve; the gate enforces it",
+    )
+    design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
+    sampling: SamplingSpec | None = Field(
+        default=None,
+        description="the processor that runs the law; without it the proof is for continuous time",
+    )
+    disturbances: DisturbancesSpec | None = Field(
+        default=None,
+        description="what acts on the loop from outside; its effect on force and velocity is "
+        "bounded",
+    )
+    coupling: CouplingSpec | None = Field(
+        default=None,
+        description="what the axes do to each other through their links, for a proof about all "
+        "axes at once; without it they are taken not to act on each other",
+    )
+    sensor: SensorSpec | None = Field(
+        default=None,
+        description="the force signal: its filter is a part of the loop, its errors bound the "
+        "creep; without it the force is taken for exact",
+    )
+    contact: Literal["losable", "kept"] | None = Field(
+        default=None,
+        description="whether a proof must hold while contact is lost and made again (losable), or "
+        "takes for granted that it is kept; default: losable where that can be proved",
+    )
+    coordinates: Literal["deflection", "force"] = Field(
+        default="deflection",
+        description="state of the contact: deflection stays continuous when the stiffness "
+        "switches; force is what the thesis uses",
+    )
+    mode_logic: ModeLogicSpec | None = Field(
+        default=None,
+        description="what decides which controller is active; `switching: mode-logic` lets the "
+        "proof be about the switching signals that it can give",
+    )
+    switching: LogicalRule = Field(
+        description="when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
+        "with dwell_time and transitions between controllers, or between controllers in one "
+        "contact each, such as tissue/soft"
+    )
+    scenarios: Annotated[dict[Label, ScenarioSpec], Field(max_length=MAX_ENTRIES)] = Field(
+        default_factory=dict,
+        description="runs for `nrs-design simulate`: name -> scenario; no proof depends on them",
+    )
+    # The default is made without validation, for which a validator of its own would be built.
+    certification: CertificationSpec = Field(
+        default_factory=CertificationSpec.model_construct,
+        description="how far the search for a proof goes",
+    )
+
+    @field_validator("switching", mode="before")
+    @classmethod
+    def _follow_logic(cls, value: object, info: ValidationInfo) -> object:
+        """Put the rules of the mode logic in the place of its name."""
+        if value != MODE_LOGIC or not {"controllers", "environments", "mode_logic"} <= set(
+            info.data
+        ):
+            # Where one of them is faulty, that is reported instead.
+            return "arbitrary" if value == MODE_LOGIC else value
+        if info.data["mode_logic"] is None:
+            raise fault(
+                "there is no mode_logic to take the rules of switching from",
+                "add mode_logic, or write `switching: arbitrary`",
+            )
+        given = (info.data[name] for name in ("mode_logic", "controllers", "environments"))
+        try:
+            return rules_of(*given)
+        except PydanticCustomError:
+            # It does not fit: `check_kept` says so at its place.
+            return "arbitrary"
+
+    @property
+    def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
+        """What may have been identified from records, by the keys that lead to it."""
+        parts: dict[tuple[str, ...], IdentifiedSpec] = {("actuator",): self.actuator}
+        parts.update((("environments", name), item) for name, item in self.environments.items())
+        if self.sampling is not None:
+            parts["sampling",] = self.sampling
+        if self.sensor is not None and self.sensor.tool is not None:
+            parts["sensor", "tool"] = self.sensor.tool
+        return parts
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Every controller in every contact, such as ``tissue/soft``; without one, the former."""
+        return tuple(
+            name if contact is None else f"{name}/{contact_name(contact)}"
+            for name, controller in self.controllers.items()
+            for contact in controller.contacts or (None,)
+        )
+
+    @property
+    def touched(self) -> frozenset[str]:
+        """Names of the environments that some controller touches."""
+        return frozenset(name for c in self.controllers.values() for name in touched_in(c.contacts))
+
+    @property
+    def offset(self) -> Offset:
+        """Where the offset of the force controllers is taken from; they have one in common."""
+        offsets = (controller.own_offset for controller in self.controllers.values())
+        return next((offset for offset in offsets if offset is not None), "none")
+
+    @property
+    def takes_motor_ranges(self) -> bool:
+        """Whether a proof can be about ranges of the actuator."""
+        given = self.motion_loop.transfer_function is not None
+        dwells = any(True for _ in self.switching.dwell_times())
+        return not dwells and takes_motor_ranges(self.sampling, self.controllers, given_loop=given)
+
+    @property
+    def has_ranges(self) -> bool:
+        """Whether the actuator, a touched environment, a gain or the links have a range."""
+        if self.coupling is not None:
+            return True
+        if not (self.actuator.gain.fixed and self.actuator.time_constant.fixed):
+            return True
+        return any(not self.environments[name].fixed for name in self.touched) or any(
+            gain.ranged for c in self.controllers.values() for gain in c.gains().values()
+        )
+
+    @property
+    def flies_like_a_mode(self) -> bool:
+        """Whether free motion is a mode like others, which no rule of switching is about."""
+        return self.contact == "losable" and any(
+            "Kt" in c.gains() for c in self.controllers.values()
+        )
+
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        if self.flies_like_a_mode:
+            return DwellObstacle(
+                "a dwell time and loss of contact exclude each other where an admittance has a "
+                "spring Kt: contact is lost and made again during the dwell time",
+                "use `contact: kept`",
+            )
+        return find_changing_contact(
+            self.actuator,
+            self.controllers,
+            self.environments,
+            by_contact=self.switching.names_contacts,
+        )

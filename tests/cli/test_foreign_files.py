@@ -1,0 +1,112 @@
+"""No command overwrites a file of others where one of its own would stand."""
+
+import io
+
+import matplotlib.pyplot as plt
+import pytest
+
+from tests.support import COMMUTING, ROOT, ends_soon, run
+
+HOLDER = ROOT / "specs/robots/neuroboscope.nrs.yaml"
+ACTUATOR = sorted((ROOT / "specs/data").glob("actuator-?hz.csv"))
+RUNS = ROOT / "docs/examples/scenarios.nrs.yaml"
+SAMPLED = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
+STABLE = """\
+kind: switched-system
+name: small
+time: continuous
+modes: [{name: a, A: [[-1, 1], [-1, -1]]}]
+switching: arbitrary
+"""
+slow = pytest.mark.slow
+COMMANDS = {
+    "certify-switching": ("certify-switching", COMMUTING, "--out", "x.cert.json"),
+    "schema": ("schema", "--out", "x.json"),
+    "gate-junit": ("gate", "small.nrs.yaml", "--format", "junit", "--out", "x"),
+    "report-html": ("report", COMMUTING, "--out", "x.html"),
+    "gate-sarif": ("gate", "small.nrs.yaml", "--format", "sarif", "--out", "x"),
+    "gate-text": ("gate", "small.nrs.yaml", "--format", "text", "--out", "x"),
+    "compare-methods": ("compare-methods", COMMUTING, "--max-updates", 20, "--figure", "x.png"),
+    "kinematics": ("robot", "kinematics", HOLDER, "--figures", "."),
+    "report-pdf": ("report", COMMUTING, "--out", "x.pdf", "--format", "pdf"),
+    "report-png": ("report", COMMUTING, "--out", ".", "--format", "png"),
+    "identify": ("identify", "actuator", *ACTUATOR, "--report", "x.pdf"),
+    "monte-carlo": ("simulate", RUNS, "--monte-carlo", 2, "--out", ".", "--no-bound"),
+    "export": ("export", SAMPLED, "--format", "mat", "--out", "."),
+}
+QUICK = ("certify-switching", "schema", "gate-junit")
+# What takes long is refused before it begins.
+BEFORE = {
+    "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
+    "scenarios.worst-force.png": ("simulate", RUNS, "--worst-case", "--out", "."),
+    "scenarios.monte-carlo.svg": ("simulate", RUNS, "--monte-carlo", 2, "--out", "."),
+    "figures.html": ("reproduce", "--figures", "."),
+    "x.csv": ("robot", "correction", HOLDER, "--table", "x.csv"),
+    "x.pdf": ("identify", "actuator", *ACTUATOR, "--report", "x.pdf"),
+    "x.html": ("report", SAMPLED, "--out", "x.html"),
+    "x.png": ("compare-methods", COMMUTING, "--figure", "x.png"),
+    "soft-tissue-sampled.mat": ("export", SAMPLED, "--format", "mat", "--out", "."),
+}
+
+
+def figure(suffix):
+    """A figure that matplotlib draws for somebody else."""
+    drawn, axes = plt.subplots(figsize=(1, 1))
+    axes.plot([0, 1])
+    buffer = io.BytesIO()
+    drawn.savefig(buffer, format=suffix)
+    plt.close(drawn)
+    return buffer.getvalue()
+
+
+def foreign(path):
+    """What another program may have written under that name."""
+    if path.suffix in (".svg", ".png", ".pdf"):
+        return figure(path.suffix[1:])
+    known = {
+        ".csv": b"time_s,angle_rad,velocity_rad_s,torque_Nm,command_rpm,mode\n0,0,0,0,0,0\n",
+        ".html": b"<!DOCTYPE html>\n<html lang='en'>\n<title>mine</title>\n",
+        ".json": b'{\n  "schema": "mine/1"\n}\n',
+        ".npz": b"PK\x03\x04\x14\x00\x00\x00\x00\x00",
+        ".mat": b"MATLAB 5.0 MAT-file, Platform: GLNXA64",
+    }
+    return known.get(path.suffix, b'<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="m"/>')
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=() if n in QUICK else slow) for n in COMMANDS]
+)
+def test_what_is_ours_is_replaced_and_what_is_not_stays(name, tmp_path):
+    (tmp_path / "small.nrs.yaml").write_text(STABLE)
+    typed = tuple(map(str, COMMANDS[name]))
+    assert run(*typed, cwd=tmp_path).returncode in (0, 1, 3)
+    files = {path for path in tmp_path.rglob("*") if path.is_file()}
+    again = run(*typed, cwd=tmp_path)
+    assert again.returncode in (0, 1, 3), again.stderr
+    # The last of them: those before it could have been replaced by then.
+    named = sorted(p for p in files if not p.name.endswith((".nrs.yaml", ".lock")))
+    path = next((p for p in named if p.stem == "x"), named[-1])
+    path.write_bytes(foreign(path))
+    before = {path: path.read_bytes() for path in files}
+    for kept in files - {path}:
+        before[kept] += b" "
+        kept.write_bytes(before[kept])
+    done = run(*typed, cwd=tmp_path)
+    assert (done.returncode, path.name in done.stderr) == (2, True), done.stderr
+    assert "not overwritten" in done.stderr or "not a certificate" in done.stderr
+    assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == before
+
+
+@pytest.mark.parametrize("link", [False, True])
+@pytest.mark.parametrize("name", BEFORE)
+def test_a_place_that_holds_what_is_not_ours_is_refused_before_the_work(name, link, tmp_path):
+    path = tmp_path / name
+    if link:
+        path.symlink_to(tmp_path / "elsewhere")
+    else:
+        path.write_bytes(foreign(path))
+    with ends_soon():
+        done = run(*map(str, BEFORE[name]), cwd=tmp_path)
+    assert (done.returncode, name in done.stderr) == (2, True), done.stderr
+    assert ("symbolic link" if link else "not overwritten") in done.stderr
+    assert [p.name for p in tmp_path.iterdir()] == [name]

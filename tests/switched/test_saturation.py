@@ -90,8 +90,12 @@ def test_ranges_of_the_motor_and_its_load(tmp_path, text, J):
 
 @pytest.mark.parametrize(
     "text",
-    [TEXT.replace("Mt: 0.01", "Mt: 0"), RANGED, LOADED, TEXT.replace("losable", "kept")],
-    ids=["static", "ranges", "load", "kept"],
+    [
+        pytest.param(TEXT.replace("Mt: 0.01", "Mt: 0"), id="static"),
+        pytest.param(RANGED, marks=pytest.mark.slow, id="ranges"),
+        pytest.param(LOADED, marks=pytest.mark.slow, id="load"),
+        pytest.param(TEXT.replace("losable", "kept"), marks=pytest.mark.slow, id="kept"),
+    ],
 )
 def test_a_region_is_found_for_each(tmp_path, text):
     file = tmp_path / "saturating.nrs.yaml"

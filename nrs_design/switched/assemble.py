@@ -206,6 +206,13 @@ def _assemble_continuous(
 
         system = with_constant_force(system)
     if spec.goals is not None and spec.goals.initial_force is not None:
+        if coordinates != "deflection":
+            raise AssemblyError(
+                "decay although signals saturate is shown in deflection coordinates: a motion "
+                "begins at a deflection",
+                remedy="use coordinates: deflection, or remove the goal",
+                at=("goals", "initial_force"),
+            )
         from nrs_design.switched.saturation import with_saturation
 
         system = with_saturation(system, spec, plant, loop, design)

@@ -17,7 +17,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
-from nrs_design.proof.bounds import rounded_down
+from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
@@ -90,12 +90,12 @@ def with_saturation(
     texts = (modelled.get(text, text) for text in system.assumptions)
     limited = LIMITED.says(
         "Where signals saturate: the velocity command of the admittance is cut off at "
-        f"{rounded_down(velocity_limit, 'rad/s')} before the motion loop takes it, or at any "
+        f"{rounded_up(velocity_limit, 'rad/s')} before the motion loop takes it, or at any "
         "larger value on either side, or nowhere; the command of the motor likewise at "
-        f"{rounded_down(command_limit, spec.actuator.command)}; nothing else is. Nobody commands "
+        f"{rounded_up(command_limit, spec.actuator.command)}; nothing else is. Nobody commands "
         "anything, and nothing disturbs, while the motion decays.",
-        f"{rounded_down(velocity_limit, 'rad/s')} and "
-        f"{rounded_down(command_limit, spec.actuator.command)}, or more",
+        f"{rounded_up(velocity_limit, 'rad/s')} and "
+        f"{rounded_up(command_limit, spec.actuator.command)}, or more",
     )
     return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
 

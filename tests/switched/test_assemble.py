@@ -9,7 +9,7 @@ from nrs_design.pipeline import run_design
 from nrs_design.proof.mode import Time
 from nrs_design.spec import load_spec, parse_spec, read_spec
 from nrs_design.switched.assemble import GIVEN_MATRICES, assemble_from_text
-from tests.support import COMMUTING, FORCE_LIMIT, SOFT_TISSUE
+from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE
 
 GIVEN_LOOP = """motion_loop:
   transfer_function:
@@ -69,6 +69,23 @@ def test_unknown_coordinates(coordinates):
     spec, _, gains = design_of(SOFT_TISSUE)
     with pytest.raises(AssemblyError, match="coordinates"):
         assemble_from_text(spec, gains, coordinates)
+
+
+def test_decay_under_saturation_is_assembled_in_deflection_coordinates_only():
+    """A motion begins at a deflection: in force coordinates, a unit of force were another state."""
+    text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
+    spec = parse_spec(text.replace("contact: losable", "contact: kept"))
+    gains = {
+        "motion": {"Kp": "117359.4375", "Kd": "2060"},
+        "insertion": {"Mt": "0.00999999977648258209228515625", "Bt": "2.150000095367431640625"},
+        "withdrawal": {"Mt": "0.00999999977648258209228515625", "Bt": "1.03999996185302734375"},
+    }
+    system = assemble_from_text(spec, gains, "deflection")
+    assert system.saturation is not None
+    # Limits that are larger than the named ones are covered, so these are rounded up.
+    assert any("cut off at 0.139627 rad/s (rounded up)" in text for text in system.assumptions)
+    with pytest.raises(AssemblyError, match="in deflection coordinates"):
+        assemble_from_text(spec, gains, "force")
 
 
 def test_missing_gains():

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.bounds import rounded_down
+from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
@@ -138,7 +138,7 @@ class SaturatedEllipsoid(AbstractEvidence):
         """State from where motions decay, how fast, and what saturates."""
         assert system.saturation is not None  # find_misfit
         signals, start = system.saturation.signals, system.saturation.start
-        limits = [f"the {s.name} at {rounded_down(s.limit, s.unit)}" for s in signals]
+        limits = [f"the {s.name} at {rounded_up(s.limit, s.unit)}" for s in signals]
         states, lost = "the state,", ""
         if system.contact is not None:
             states = "the states other than the deflection, and it where it is positive,"

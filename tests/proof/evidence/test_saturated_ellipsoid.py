@@ -44,6 +44,15 @@ def test_a_scalar_loop_decays_from_inside_of_its_region():
     assert "contact" not in claim
 
 
+def test_a_limit_that_is_not_short_is_rounded_up():
+    """What is claimed holds at the limit and beyond it: below it, it may not."""
+    system = pushed_away()
+    (signal,) = system.saturation.signals
+    longer = (replace(signal, limit=Fraction(10, 9)),)
+    claim = HELD.claim(replace(system, saturation=replace(system.saturation, signals=longer)))
+    assert "the s at 1.11112 N (rounded up)" in claim
+
+
 def test_the_claim_says_that_contact_may_be_lost():
     system, evidence = genuine("saturated-ellipsoid")
     assert "contact lost and made again at any time" in evidence.claim(system)

@@ -47,6 +47,7 @@ def test_figures_are_the_same_beside_hostile_settings(tmp_path):
     assert pages[0] == pages[1]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with a name")
 def test_a_pipe_is_not_waited_for(tmp_path):
     """Whoever opens it waits until somebody writes; python-control imports matplotlib, too."""

@@ -48,6 +48,7 @@ def test_nothing_shown_is_not_saved(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_figures_and_page(tmp_path):
     decision = nrs.certify(pair(5))
     assert decision.plot().axes

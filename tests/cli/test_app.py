@@ -77,6 +77,7 @@ def test_an_easy_proof_loads_no_solver(tmp_path):
     assert not {"scipy", "clarabel", "control", "cvxpy", "matplotlib"} & set(facts["modules"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["certify-switching", "verify"])
 def test_given_matrices_need_no_model_of_a_design(tmp_path, command):
     run("certify-switching", COMMUTING, "--out", "a.cert.json", cwd=tmp_path)
@@ -163,6 +164,7 @@ def test_a_defect_is_exit_code_4(tmp_path):
     assert "Traceback" in crash(tmp_path, "certify-switching", COMMUTING, "-v").stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["tune", "check", "report"])
 def test_what_a_defect_asks_for_works_with_every_command(tmp_path, command):
     """The message says how to show more, also where the command itself has no -v."""

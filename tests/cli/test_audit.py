@@ -40,6 +40,7 @@ def without_command(tmp_path):
     return path
 
 
+@pytest.mark.slow
 def test_inside(tmp_path, proof):
     spec, certificate = proof
     done = run("audit", without_command(tmp_path), spec, "--certificate", certificate, *LIMIT,

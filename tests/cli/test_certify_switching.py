@@ -142,6 +142,7 @@ def test_two_resets_from_one_mode_to_another(tmp_path):
     assert "reset 2 of 2 to contact" in (tmp_path / "page.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_mode_that_must_be_left(tmp_path):
     path = EXAMPLES / "failing-controller.nrs.yaml"
     result = run("certify-switching", path, cwd=tmp_path)
@@ -225,6 +226,7 @@ def test_method_that_does_not_apply_is_wrong_usage(tmp_path, method, spec):
     assert result.stdout == ""
 
 
+@pytest.mark.slow
 def test_highest_degree(tmp_path):
     """a = 10 needs a polynomial of degree 8."""
     write_spec(tmp_path / "ten.nrs.yaml", [[-1, -1], [1, -1]], [[-1, -10], ["1/10", -1]])
@@ -539,6 +541,7 @@ def test_full_disk(tmp_path, unbuffered):
     assert "the output cannot be written" in errors
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "spec", "closed"),
     [
@@ -677,6 +680,7 @@ def test_tissue_and_tool_touched_at_once(tmp_path):
     assert told["modes"] == ["withdrawal/soft+stiff/k-min", "withdrawal/soft+stiff/k-max"]
 
 
+@pytest.mark.slow
 def test_coupled_axes_that_are_not_proved_are_answered_by_a_list(tmp_path):
     """Axes, samples and a disturbance: `check` takes them, and nobody has to ask for the list."""
     path = tmp_path / "heavy.nrs.yaml"

@@ -37,6 +37,7 @@ def test_default_is_a_page_in_reports(tmp_path, monkeypatch):
     assert page.startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.slow
 def test_the_page_of_another_spec_is_not_overwritten(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("a.nrs.yaml", "b.nrs.yaml"):

@@ -31,6 +31,7 @@ def run(*arguments):
     return CliRunner().invoke(make_app(), ["reproduce", *arguments])
 
 
+@pytest.mark.slow
 def test_the_command_as_typed():
     done = subprocess.run(
         [sys.executable, "-m", "nrs_design", "reproduce", "--json"], capture_output=True, text=True

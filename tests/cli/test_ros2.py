@@ -10,6 +10,7 @@ from tests.support import ROOT, run, typed
 SOFT = ("--stiffness", "200..2000 N/m")
 
 
+@pytest.mark.slow
 def test_proved(tmp_path):
     done = typed(
         "ros2", "check", EXAMPLE, *SOFT, "--age", "0..2", "--lag", "5..20 ms", cwd=tmp_path
@@ -73,6 +74,7 @@ def spec(tmp_path):
 EXPORT = ("ros2", "export", "one-age.nrs.yaml", "--axis", "ry", "--lag", "5..20 ms", "--out", "out")
 
 
+@pytest.mark.slow
 def test_export(spec, tmp_path):
     done = run(*EXPORT, cwd=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import jsonschema
+import pytest
 
 from tests.support import run, typed
 
@@ -19,6 +20,7 @@ def test_no_spec_is_overwritten(tmp_path: Path) -> None:
         assert run("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
 
 
+@pytest.mark.slow
 def test_schema_is_draft_07(tmp_path: Path) -> None:
     assert typed("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
     schema = json.loads((tmp_path / "nrs.schema.json").read_text())

@@ -28,6 +28,7 @@ def spec(tmp_path):
     return write
 
 
+@pytest.mark.slow
 def test_metrics_and_files(spec, tmp_path):
     result = run("simulate", spec(), "--out", "runs", cwd=tmp_path)
     assert result.returncode == 0, result.stderr

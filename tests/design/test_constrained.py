@@ -166,6 +166,7 @@ def test_corners_of_gain_ranges_are_respected():
     assert where == ["soft, k = 44.2466 N*m/rad, Bt = 1.3 N*m*s/rad"]
 
 
+@pytest.mark.slow
 def test_a_goal_out_of_reach_is_named_with_the_best_value():
     tight = requirement(((GAIN_MARGIN, 1.2), (SENSITIVITY_PEAK, 1.01)))
     with pytest.raises(DesignError, match="the goal max_sensitivity_peak, at most") as caught:

@@ -48,6 +48,7 @@ def test_a_workspace_that_the_program_does_not_take_is_refused():
     assert caught.value.at == ("workspace",)
 
 
+@pytest.mark.slow
 def test_a_robot_without_control_has_none():
     spec = parse_spec(TEXT).model_copy(update={"control": None})
     with pytest.raises(DesignError, match="no `control`"):

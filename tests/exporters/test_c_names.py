@@ -16,6 +16,7 @@ from tests.exporters.programs import LAWS
 NAMES = st.from_regex("[a-z0-9][a-z0-9._-]{0,63}", fullmatch=True)
 
 
+@pytest.mark.slow
 @given(NAMES)
 def test_every_name_of_a_spec_gives_identifiers(name):
     names = CNames(name)

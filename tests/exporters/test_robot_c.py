@@ -139,6 +139,7 @@ def test_files_say_that_nothing_is_proved(exported, control_laws):
     assert all(f"{names_of('neuroboscope', law).lower}_step(" in header for law in PURPOSES)
 
 
+@pytest.mark.slow
 def test_a_robot_without_control_has_none_to_export(exported):
     spec = exported.loaded.spec.model_copy(update={"control": None})
     with pytest.raises(DesignError, match="no `control`"):

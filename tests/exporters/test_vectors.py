@@ -126,6 +126,7 @@ def test_exported_tests_pass_as_they_are(tmp_path, sampled_export):
     assert "3 failed" in pytest_in(tmp_path, "exported_c")
 
 
+@pytest.mark.slow
 def test_any_implementation_in_python_can_be_tested(tmp_path, sampled_export, monkeypatch):
     """One in doubles, each operation rounded once; and one that is off by a bit."""
     exported(tmp_path, sampled_export)

@@ -47,6 +47,7 @@ class TestRealization:
 
 
 class TestJointMotion:
+    @pytest.mark.slow
     @given(*[st.fractions("1/50", 50, max_denominator=50)] * 4, st.fractions(-9, 9))
     def test_it_has_the_transfer_function_of_the_closed_loop(self, Kp, Kd, Km, tau, s):
         loop = close_motion_loop(Actuator(Km, tau), Kp, Kd)

@@ -170,6 +170,7 @@ def test_coordinates_can_be_overridden():
         run_certification(read_spec(COMMUTING), coordinates="force")
 
 
+@pytest.mark.slow
 def test_method_and_progress():
     told = []
     result = run_certification(read_spec(COMMUTING), method=Method.GRADIENT, progress=told.append)

@@ -56,6 +56,7 @@ HEAVY = (
 )
 
 
+@pytest.mark.slow
 def test_axes_in_the_sampled_loop_are_proved_without_one_or_the_other(tmp_path):
     """Nobody has to ask for the list: it is the answer, with what each statement needs besides."""
     path = tmp_path / "heavy.nrs.yaml"
@@ -80,6 +81,7 @@ LINKS = "coupling: {inertia: [0 kg*m^2, 1.5 kg*m^2], axes: 3}\n"
 TURNS = HEAVY.replace("delay: 1}", "outer_period: 4 ms, delay: 0}")
 
 
+@pytest.mark.slow
 def test_bounds_beside_two_periods_are_those_of_a_common_one(tmp_path):
     """Decay is proved for both periods; that no bound is looked for is said, with what holds."""
     path = tmp_path / "turns.nrs.yaml"

@@ -179,6 +179,7 @@ def test_without_its_script_the_page_says_all_the_same(browser, page, tmp_path):
         browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
 
 
+@pytest.mark.slow
 def test_printed_pages_are_light_and_numbered(browser, page, tmp_path):
     """A dark screen must not make dark paper."""
     open_page(browser, page("dwell"), tmp_path, 800, "dark")

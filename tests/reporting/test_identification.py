@@ -58,6 +58,7 @@ def test_ready_response_has_a_bode_plot_only():
     assert [item.name for item in report.illustrations] == ["bode"]
 
 
+@pytest.mark.slow
 def test_same_bytes_and_unique_ids(actuator):
     page = render_html(actuator)
     assert page == render_html(actuator)

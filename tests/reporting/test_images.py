@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import pytest
 from matplotlib.figure import Figure
 
 from nrs_design.reporting import render_png
@@ -14,6 +15,7 @@ def test_every_figure_is_a_png_of_full_size(report):
         assert int.from_bytes(data[16:20]) == 1080
 
 
+@pytest.mark.slow
 def test_same_report_gives_the_same_bytes(report):
     assert render_png(report("refuted")) == render_png(report("refuted"))
 

@@ -56,10 +56,12 @@ def test_pdf_has_the_text_of_the_verdict(report, case):
         assert "".join(said.split()) in squeezed
 
 
+@pytest.mark.slow
 def test_hostile_title_is_plain_text(report):
     assert report("discrete").title in text_of(reader_of(report("discrete")))
 
 
+@pytest.mark.slow
 def test_every_part_is_tagged(report):
     case = report("proved")
     reader = reader_of(case)

@@ -25,6 +25,7 @@ SHORT = ["proved", "force", "refuted", "discrete", "polynomial", "dwell", "mixtu
 CASES = [*SHORT, slow("marginal"), *(slow(case) for case in KINDS if case not in SHORT)]
 
 
+@pytest.mark.slow
 def test_same_report_gives_the_same_bytes(report, page):
     assert page("proved") == render_html(report("proved"))
 
@@ -34,6 +35,7 @@ def test_same_spec_gives_the_same_bytes(path):
     assert render_html(report_of(path)) == render_html(report_of(path))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["dwell", *map(slow, ("polynomial", "mixture"))])
 def test_every_kind_gives_the_same_bytes(page, tmp_path, case):
     path = tmp_path / f"{case}.nrs.yaml"

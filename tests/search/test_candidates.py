@@ -74,6 +74,7 @@ def test_optimizing_gives_the_faster_rate():
     assert best >= plain
 
 
+@pytest.mark.slow
 def test_gradient_finds_evidence():
     evidence, words = outcome(search_by_gradient, GOOD)
     assert "updates" in words

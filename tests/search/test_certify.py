@@ -129,6 +129,7 @@ class TestNearTheThreshold:
     def test_proved_below(self, a):
         assert outcome(dayawansa_martin(a), limits=ANY_RATE) == ("proved", "exists")
 
+    @pytest.mark.slow
     @pytest.mark.parametrize("a", ["5.8285", *map(slow, ("5.829", "5.83", "6", "8")), "10"])
     def test_no_quadratic_function_above(self, a):
         assert outcome(dayawansa_martin(a)) == ("proved", "impossible")

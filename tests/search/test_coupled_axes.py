@@ -45,6 +45,7 @@ def test_what_cannot_be_is_not_found():
     assert (evidence, words) == (None, NO_MARGIN)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damping", [0, 1])
 def test_any_rate_is_that_of_the_function(damping):
     system = leaning(bouncing(damping), "1/8")
@@ -53,6 +54,7 @@ def test_any_rate_is_that_of_the_function(damping):
     assert 0 < float(evidence.rate) <= best * 1.01
 
 
+@pytest.mark.slow
 def test_numbers_of_any_size():
     """Speeds in units of a millionth: columns and rows differ by the square."""
     system = leaning(family([[-2, -(10**6)], ["1/1000000", 0]]), "1/8")
@@ -90,6 +92,7 @@ def test_only_rungs_that_know_of_other_axes_are_tried():
     assert not any("conewise" in step or "lmi" in step for step in tried)
 
 
+@pytest.mark.slow
 def test_it_can_be_asked_for_where_axes_act_on_each_other():
     system = leaning(bouncing(), "1/8")
     assert isinstance(certify(system, Method.COUPLED_AXES).evidence, CoupledAxes)

@@ -74,6 +74,7 @@ def turning(count, gain, **rules):
     return family(*map(mode, range(count)), switching=Switching(**rules))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [3, 5, 9])
 def test_around_a_ring_in_continuous_time(count):
     around = tuple((f"m{k}", f"m{(k + 1) % count}") for k in range(count))
@@ -199,6 +200,7 @@ def random_graph(seed):
     return family(*modes, time=Time.DISCRETE, switching=rules)
 
 
+@pytest.mark.slow
 def test_random_graphs_against_all_short_cycles():
     counts = dict.fromkeys(Verdict, 0)
     for seed in range(25):

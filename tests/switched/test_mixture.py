@@ -56,6 +56,7 @@ def test_impedance_mode_has_the_poles_that_it_has_alone(k, b, Mt, Bt, massless):
     assert polynomial(shared) == polynomial(velocity_mode(MOTION, law, contact))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("massless", [False, True])
 def test_run_against_actuator_and_firmware(massless):
     """Motor, PD on both errors, admittance and integrated reference, as they are."""

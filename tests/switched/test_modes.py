@@ -241,6 +241,7 @@ class TestFilter:
 
 
 class TestForce:
+    @pytest.mark.slow
     @given(st.fractions(0, 1), positive)
     def test_state_feedback_of_thesis_646(self, Kp, k):
         rows = position_mode(MOTION, ProportionalForce(Kp), Elastic(k))

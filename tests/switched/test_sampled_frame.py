@@ -127,6 +127,7 @@ def test_largest_stable_stiffness_of_a_faster_outer_loop(Bt, limit):
     assert radius(limit * 0.99) < 1 < radius(limit * 1.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("faster", [True, False])
 def test_two_periods_agree_with_a_simulation_step_by_step(faster):
     """Two loops with clocks of their own, contact lost and lagging, everything else at random.
@@ -263,6 +264,7 @@ def test_single_precision_never_leaves_the_roundings():
     assert min(largest[name] for name in ("e", "u", "v", "step")) > Fraction(3, 10)
 
 
+@pytest.mark.slow
 def test_filter_and_spring_in_single_precision_stay_within_the_roundings():
     """Two lags and a spring, computed in float32: lags and velocity are off by what is allowed.
 
@@ -323,6 +325,7 @@ def test_the_share_of_many_roundings():
             rounding_share(n)
 
 
+@pytest.mark.slow
 def test_position_and_force_control_agree_with_a_simulation_step_by_step():
     """The reference comes before the error; what impedance controllers keep, decays meanwhile."""
     rng = np.random.default_rng(15)
@@ -414,6 +417,7 @@ def test_a_spring_beside_others_draws_as_alone():
     assert [frame.counts["b Kt r"] for frame in (alone, beside)] == [5, 4]
 
 
+@pytest.mark.slow
 def test_force_control_in_single_precision_stays_within_the_roundings():
     """Reference, error and command of 500 random samples, with one lag or none, in float32."""
     rng = np.random.default_rng(16)

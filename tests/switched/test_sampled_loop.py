@@ -202,6 +202,7 @@ def test_one_period_written_twice_is_one(tmp_path):
     assert system_of(tmp_path, "{period: 2 ms, outer_period: 2 ms, delay: 1}") == once
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sampling", "verdict", "least"),
     [
@@ -224,6 +225,7 @@ def test_two_periods_of_the_thesis_robot(tmp_path, sampling, verdict, least):
         assert (1 - evidence.rate) / system.sample_time > Fraction(least)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("nominal", "ends", "delay", "least"),
     [("1", ("0", "3"), 0, "2.2"), ("5", ("5", "9"), 1, "1")],

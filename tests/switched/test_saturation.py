@@ -110,7 +110,7 @@ def test_a_region_is_found_for_each(tmp_path, text):
 def test_what_is_taken_for_granted(tmp_path):
     system = system_of(tmp_path, TEXT)
     (said,) = [text for text in system.assumptions if text.kind is LIMITED]
-    assert "cut off at 0.139626 rad/s (rounded down)" in said
+    assert "cut off at 0.139627 rad/s (rounded up)" in said
     assert "likewise at 2000 rpm" in said
     (left,) = [text for text in system.assumptions if text.kind is NOT_SAMPLED]
     assert "friction are not modelled, saturation only where a statement says so" in left

@@ -9,6 +9,7 @@ from tests.cli.identify.records import DATA, SINUSOIDS
 from tests.support import SOFT_TISSUE, run
 
 
+@pytest.mark.slow
 def test_sinusoids_and_a_ready_response(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)

@@ -10,6 +10,7 @@ from tests.identification import signals
 from tests.support import ROBOT, run
 
 
+@pytest.mark.slow
 def test_delay(tmp_path):
     record = signals.copy(1)
     rows = np.column_stack([record.time, record.sent, record.seen])

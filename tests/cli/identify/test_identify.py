@@ -14,6 +14,7 @@ def test_report(tmp_path, ending):
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "data"), [("tissue", SOFT[0]), ("actuator", DATA / "actuator-response.csv")]
 )

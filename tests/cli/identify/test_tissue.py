@@ -114,6 +114,7 @@ def robot_csv(folder, sign=1):
     return path
 
 
+@pytest.mark.slow
 def test_offsets_and_cuts_are_said(tmp_path):
     path = robot_csv(tmp_path)
     document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
@@ -132,6 +133,7 @@ def test_offsets_and_cuts_are_said(tmp_path):
     assert "Prony series of" in (tmp_path / "page.html").read_text()
 
 
+@pytest.mark.slow
 def test_opposite_signs_stop_the_writing(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)

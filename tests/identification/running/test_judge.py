@@ -291,6 +291,7 @@ def following(frequencies, noise=0.001):
     return t, angle, 43.0 * angle, command, np.full(len(t), "insertion")
 
 
+@pytest.mark.slow
 def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
     """Its lag of phase is that of a longer delay, too, and that is no violation."""
     asked = replace(SOFT, delay=0.03)

@@ -40,6 +40,7 @@ def written(found):
     return text, parse_spec(text).environments["soft"]
 
 
+@pytest.mark.slow
 def test_it_is_written_as_the_law_that_it_is():
     text, soft = written(identified(2))
     assert soft.model == "hunt-crossley"

@@ -73,6 +73,7 @@ def test_step_response_of_the_linear_loop(spec, smooth):
     assert np.max(trace) == pytest.approx(1.068, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_without_feed_forward_the_weight_deflects_the_joints(spec, robot, smooth):
     mechanism, law = Mechanism(robot), design_independent_joint(spec, None)
     start = at_rest(robot)

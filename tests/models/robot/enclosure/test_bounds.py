@@ -61,6 +61,7 @@ def test_the_file_holds(robot, document):
     assert list(confirm_bounds(robot, document)) == []
 
 
+@pytest.mark.slow
 def test_a_quantity_that_is_zero_is_bounded(robot):
     """Without gravity no box is below zero, since every operation adds what it may round."""
     weightless = replace(robot, gravity=0.0)
@@ -138,6 +139,7 @@ def test_a_goal_below_the_truth_is_never_reached():
         cover(whole, bound, 0.99, progress=stop)
 
 
+@pytest.mark.slow
 def test_inertia_over_a_small_workspace(robot):
     shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: 1.05 * found)
     largest = np.linalg.eigvalsh(mass_matrix(robot, poses(2000, 1))).max()

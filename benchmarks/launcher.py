@@ -18,6 +18,7 @@ def main() -> None:
         text = output.read().decode()
     facts = {
         "seconds": seconds,
+        "processor": usage.ru_utime + usage.ru_stime,
         "megabytes": usage.ru_maxrss / 1024,
         "output": text,
         "code": os.waitstatus_to_exitcode(status),

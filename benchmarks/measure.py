@@ -90,9 +90,10 @@ class Finding:
 
 @dataclass(frozen=True)
 class Child:
-    """What a child process took: wall time in s, peak memory in MB, output and exit code."""
+    """What a child took: wall and processor time in s, peak memory in MB, output, exit code."""
 
     seconds: float
+    processor: float
     megabytes: float
     output: str
     code: int

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
-from benchmarks.measure import Finding, run_child
+from benchmarks.measure import Child, Finding, run_child
 
 ROOT = Path(__file__).parents[1]
 WANTED_SECONDS = 0.5
@@ -18,7 +18,7 @@ def run(quick: bool) -> tuple[Finding, ...]:
     """Measure whole processes, the certificates in turn; the slowest comes first."""
     specs = {path.name.split(".")[0]: path for path in (ROOT / "specs").glob("*/*.nrs.yaml")}
     certificates = sorted((ROOT / "reports").glob("*.cert.json"))
-    seconds: dict[Path, list[float]] = {path: [] for path in certificates}
+    children: dict[Path, list[Child]] = {path: [] for path in certificates}
     with tempfile.TemporaryDirectory() as folder:
         # The first round compiles all modules and does not count.
         for k in range(4 if quick else 8):
@@ -27,20 +27,22 @@ def run(quick: bool) -> tuple[Finding, ...]:
                 command = ["-m", "nrs_design", "verify", str(path), str(spec), "--quiet"]
                 child = run_child([sys.executable, *command], folder)
                 if k:
-                    seconds[path].append(child.seconds)
-    findings = (_finding(path, times) for path, times in seconds.items())
+                    children[path].append(child)
+    findings = (_finding(path, found) for path, found in children.items())
     return tuple(sorted(findings, key=lambda finding: -finding.seconds))
 
 
-def _finding(path: Path, seconds: list[float]) -> Finding:
+def _finding(path: Path, children: list[Child]) -> Finding:
     document = json.loads(path.read_text(encoding="utf-8"))
     free = len(document.get("contact", {}).get("free", ()))
     kinds = dict.fromkeys(statement["kind"] for statement in document["statements"])
     result = f"{len(document['modes']) + free} modes of order {len(document['states'])}"
-    taken = median(seconds)
+    # What else the machine does makes the processor time longer, never shorter.
+    least = min(child.processor for child in children)
+    taken = median(child.seconds for child in children)
     return Finding(
         f"verify {path.name.removesuffix('.cert.json')}, cold process",
-        f"{document['verdict']}; {result}; {', '.join(kinds)}; fastest {min(seconds):.3g} s",
+        f"{document['verdict']}; {result}; {', '.join(kinds)}; processor time {least:.3g} s",
         f"below {WANTED_SECONDS} s",
         taken < WANTED_SECONDS,
         taken,

@@ -170,6 +170,11 @@ FEATURES = (
         {"goals": {"constant_force": "settles"}, "contact": "losable"},
     ),
     Feature(
+        "decay although signals saturate",
+        "goals.initial_force",
+        {"limits": {"command": "2000 rpm"}, "goals": {"initial_force": "0.1 N*m"}},
+    ),
+    Feature(
         "gains in a range",
         "controllers: range",
         {

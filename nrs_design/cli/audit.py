@@ -57,9 +57,9 @@ def audit(
     """Tell whether a run stayed inside what was proved: stiffness, contact, times, delay, force.
 
     Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
-    force_N); command_rpm; velocity_rad_s; mode, the name of the controller in force. A violation of
-    the stiffness is claimed only where a whole 95 % interval lies outside the range; what cannot be
-    judged is said.
+    force_N); velocity_rad_s; the command in the unit of the motor of the spec (command_rpm, _V, _A,
+    _counts); mode, the name of the controller in force. A violation of the stiffness is claimed
+    only where a whole 95 % interval lies outside the range; what cannot be judged is said.
 
     Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
 

@@ -242,7 +242,7 @@ def _print(result: Result, *, verbose: bool) -> None:
         if everything or missing:
             say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
     say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
-    say("  taken for granted:")
+    say("  taken for granted (nrs-design report says how to test each):")
     for assumption in certification.system.assumptions:
         say(f"    - {assumption}")
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from nrs_design.proof.bounds import upper_float
-from nrs_design.spec.environment_estimator import Decision, EstimatorSpec
+from nrs_design.spec.environment_estimator import EstimatorDecision, EstimatorSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class EnvironmentEstimator:
     age: float
 
     @classmethod
-    def of(cls, estimator: EstimatorSpec, decision: Decision) -> Self:
+    def of(cls, estimator: EstimatorSpec, decision: EstimatorDecision) -> Self:
         """Return the estimator that a spec declares, with what is derived for it."""
         age = upper_float(estimator.signals.torque.age.exact)
         return cls(float(decision.limit), upper_float(decision.travel), age)

@@ -23,7 +23,7 @@ UNITS = {"command": "rad/s", "torque": "N*m"}
 
 
 @dataclass(frozen=True, slots=True)
-class Bound:
+class SignalBound:
     """One side of a threshold.
 
     Parameters
@@ -47,7 +47,7 @@ class StepSwitch:
 
     source: int
     target: int
-    bounds: tuple[Bound, ...]
+    bounds: tuple[SignalBound, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,16 +124,16 @@ class StepLogic:
         return mode, min(held + 1, LONGEST)
 
 
-def _holds(bound: Bound, signals: Mapping[str, float]) -> bool:
+def _holds(bound: SignalBound, signals: Mapping[str, float]) -> bool:
     value, threshold = signals[bound.signal], float(bound.threshold)
     return value >= threshold if bound.above else value <= threshold
 
 
 def _switch(switch: LogicSwitchSpec, modes: Sequence[str]) -> StepSwitch:
-    bounds: list[Bound] = []
+    bounds: list[SignalBound] = []
     for name, condition in switch.conditions.items():
         if condition.above is not None:
-            bounds.append(Bound(name, True, float32_not_below(condition.above.not_below)))
+            bounds.append(SignalBound(name, True, float32_not_below(condition.above.not_below)))
         if condition.below is not None:
-            bounds.append(Bound(name, False, float32_not_above(condition.below.not_above)))
+            bounds.append(SignalBound(name, False, float32_not_above(condition.below.not_above)))
     return StepSwitch(modes.index(switch.source), modes.index(switch.target), tuple(bounds))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
-from nrs_design.controllers.step_logic import Bound, StepLogic
+from nrs_design.controllers.step_logic import SignalBound, StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.printable import printable
 
@@ -64,7 +64,7 @@ class CNames:
         logic = {} if law.logic is None else self.logic(law.logic, law.modes)
         return {self.modes: len(law.modes), **modes, **coefficients, **limits, **logic}
 
-    def threshold(self, index: int, bound: Bound) -> str:
+    def threshold(self, index: int, bound: SignalBound) -> str:
         """Return the macro of a bound of the switch with that number, counted from one."""
         side = "ABOVE" if bound.above else "BELOW"
         return f"{self.upper}_LOGIC_{index}_{bound.signal.upper()}_{side}"

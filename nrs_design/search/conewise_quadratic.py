@@ -35,7 +35,7 @@ Quadratic = ConewiseQuadratic | CommonQuadratic
 
 
 @dataclass(frozen=True)
-class Errors:
+class RoundingErrors:
     """What the arithmetic rounds, in floating point.
 
     Parameters
@@ -50,7 +50,7 @@ class Errors:
     rows: Array
 
     @classmethod
-    def of(cls, family: Family) -> Errors:
+    def of(cls, family: Family) -> RoundingErrors:
         """Convert the roundings of a system to the coordinates of a family."""
         d, n = family.exponents, len(family.exponents)
         items = family.system.roundings
@@ -86,13 +86,13 @@ def search_conewise(family: Family) -> Candidates[Quadratic]:
     Where the arithmetic rounds, functions that cover that are tried before others.
     """
     if family.system.roundings:
-        yield from _search(family, Errors.of(family))
+        yield from _search(family, RoundingErrors.of(family))
     if family.system.contact is None:
         return NO_MARGIN
     return (yield from _search(family, None))
 
 
-def _search(family: Family, errors: Errors | None) -> Candidates[Quadratic]:
+def _search(family: Family, errors: RoundingErrors | None) -> Candidates[Quadratic]:
     system = family.system
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
@@ -115,7 +115,7 @@ def _search(family: Family, errors: Errors | None) -> Candidates[Quadratic]:
 
 
 def _fastest(
-    family: Family, own: Motions, T: Array, errors: Errors | None
+    family: Family, own: Motions, T: Array, errors: RoundingErrors | None
 ) -> Iterator[Candidate[Quadratic]]:
     """Yield functions for the largest rates that fit into the time."""
 
@@ -133,7 +133,7 @@ def _fastest(
 
 
 def _roundings(
-    family: Family, solution: Solution, T: Array, claim: Fraction, errors: Errors | None
+    family: Family, solution: Solution, T: Array, claim: Fraction, errors: RoundingErrors | None
 ) -> Iterator[Quadratic]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 

@@ -25,7 +25,7 @@ from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions
 from nrs_design.search.conewise_quadratic import (
     LOST,
     WITH_ERRORS,
-    Errors,
+    RoundingErrors,
     in_numerators,
     multiplied,
     numerators,
@@ -294,7 +294,7 @@ class Program:
     def _allow_for(self, functions: list[Array], claim: Fraction) -> tuple[list[Array], Fraction]:
         """Return multipliers of roundings for each step, and what is left of the rate."""
         roots = [np.linalg.cholesky(Q) for Q in functions]
-        errors, found, worst = [Errors.of(part) for part in self.parts], list[Array](), 0.0
+        errors, found, worst = [RoundingErrors.of(part) for part in self.parts], list[Array](), 0.0
         for step, L in enumerate(roots):
             own = errors[min(step, 1)]
             after = roots[(step + 1) % len(roots)]

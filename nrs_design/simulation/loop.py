@@ -25,7 +25,7 @@ from nrs_design.spec import InteractionDesignSpec
 
 
 @dataclass(frozen=True, slots=True)
-class Mode:
+class LoopMode:
     """One way in which the loop can be.
 
     Parameters
@@ -146,7 +146,7 @@ class Loop:
         actuator, motion = self.plant.actuator, self.design.motion
         return float(actuator.gain * motion.Kd / actuator.time_constant)
 
-    def depth(self, j: int, mode: Mode) -> Array:
+    def depth(self, j: int, mode: LoopMode) -> Array:
         """Return the row of the depth below a surface, less what its damper keeps, in rad."""
         surface = self.scenario.surfaces[j]
         row = surface.sign * (mode.angle - surface.at * self.row("one"))
@@ -157,7 +157,7 @@ class Loop:
         element = self.scenario.surfaces[j].element
         return element is not None and element.c > 0
 
-    def push(self, j: int, mode: Mode) -> Array:
+    def push(self, j: int, mode: LoopMode) -> Array:
         """Return the row of the torque that a surface has while it is touched, towards it."""
         surface = self.scenario.surfaces[j]
         element = surface.element
@@ -170,7 +170,7 @@ class Loop:
             )
         return element.k * self.depth(j, mode) + element.c * surface.sign * mode.velocity
 
-    def mode(self, controller: str, touched: Sequence[int]) -> Mode:
+    def mode(self, controller: str, touched: Sequence[int]) -> LoopMode:
         """Return the loop with a controller in force, touching some surfaces.
 
         Parameters
@@ -183,14 +183,14 @@ class Loop:
         active = next(c for c in self.design.controllers if c.name == controller)
         return _Closing(self, active, tuple(touched)).mode()
 
-    def signal(self, name: str, mode: Mode, direction: int) -> Array:
+    def signal(self, name: str, mode: LoopMode, direction: int) -> Array:
         """Return the row of a signal that the mode logic sees.
 
         Parameters
         ----------
         name : str
             As in `nrs_design.simulation.scenario.Condition`.
-        mode : Mode
+        mode : LoopMode
             In force.
         direction : int
             1 if the tissue is met by rising angles, -1 if by falling ones.
@@ -210,14 +210,14 @@ class _Closing:
     controller: Controller
     touched: tuple[int, ...]
 
-    def mode(self) -> Mode:
+    def mode(self) -> LoopMode:
         loop, law = self.loop, self.controller.law
         row, n = loop.row, len(loop.states)
         moves = law.commands == "velocity"
         A = np.zeros((n, n))
         # The angle does not depend on the reference of the moment, the velocity does.
         angle = row("theta") if loop._given is None else _padded(loop._given[1], n)
-        still = Mode(A, angle, np.zeros(n), np.zeros(n), np.zeros(n))
+        still = LoopMode(A, angle, np.zeros(n), np.zeros(n), np.zeros(n))
         springs = self._torque(still)
         if not moves and any(map(loop.is_damped, self.touched)):
             raise DesignError(
@@ -235,12 +235,12 @@ class _Closing:
         if not law.bleeds:
             reference = sum((row(name) for name in loop.bleeding), reference)
         velocity = self._velocity(angle, reference)
-        found = Mode(A, angle, velocity, np.zeros(n), reference)
+        found = LoopMode(A, angle, velocity, np.zeros(n), reference)
         torque = self._torque(found)
         self._fill(A, found, torque)
-        return Mode(A, angle, velocity, torque, reference)
+        return LoopMode(A, angle, velocity, torque, reference)
 
-    def _torque(self, mode: Mode) -> Array:
+    def _torque(self, mode: LoopMode) -> Array:
         loop = self.loop
         rows = (loop.scenario.surfaces[j].sign * loop.push(j, mode) for j in self.touched)
         return np.asarray(sum(rows, np.zeros(len(loop.states))))
@@ -267,7 +267,7 @@ class _Closing:
         command, rates = law.respond(felt.tolist(), states)
         return np.array(command, float), [np.array(rate, float) for rate in rates]
 
-    def _fill(self, A: Array, mode: Mode, torque: Array) -> None:
+    def _fill(self, A: Array, mode: LoopMode, torque: Array) -> None:
         """Write the rates of all states into the rows of A."""
         loop, law, index = self.loop, self.controller.law, self.loop._index
         self._fill_motion(A, mode, torque)
@@ -297,7 +297,7 @@ class _Closing:
         swing = loop.row("hand") - profile.mean * loop.row("one")
         A[index["slope"]] = -(profile.omega**2) * swing
 
-    def _fill_motion(self, A: Array, mode: Mode, torque: Array) -> None:
+    def _fill_motion(self, A: Array, mode: LoopMode, torque: Array) -> None:
         loop = self.loop
         if loop._given is not None:
             own, _ = loop._given
@@ -313,7 +313,7 @@ class _Closing:
         if loop.plant.load_inertia is not None:
             A[1] -= torque / float(loop.plant.load_inertia)
 
-    def _fill_tissue(self, A: Array, mode: Mode) -> None:
+    def _fill_tissue(self, A: Array, mode: LoopMode) -> None:
         loop = self.loop
         for j in loop._memories:
             element = loop.scenario.surfaces[j].element

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.simulation.flow import Flow
-from nrs_design.simulation.loop import Loop, Mode
+from nrs_design.simulation.loop import Loop, LoopMode
 from nrs_design.simulation.scenario import Array
 
 # A depth, a torque and a velocity are on the other side of a threshold when they are so far beyond
@@ -28,7 +28,7 @@ class Way:
         In the order in which ways are taken.
     controller : str
         In force.
-    mode : Mode
+    mode : LoopMode
         The loop.
     flow : Flow
         Watches the depths below all surfaces, the pushes of those that it is in and that have
@@ -43,7 +43,7 @@ class Way:
 
     index: int
     controller: str
-    mode: Mode
+    mode: LoopMode
     flow: Flow
     damped: tuple[int, ...]
     pushes: Array

@@ -55,7 +55,7 @@ class EstimatorSpec(SpecModel):
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
+class EstimatorDecision:
     """How an estimator decides, and how late.
 
     Parameters
@@ -105,7 +105,7 @@ def decide(
     estimator: EstimatorSpec,
     controllers: Mapping[str, ControllerSpec],
     environments: Mapping[str, EnvironmentSpec],
-) -> Decision:
+) -> EstimatorDecision:
     """Derive how an estimator decides.
 
     Parameters
@@ -161,7 +161,9 @@ def decide(
             "mode_logic",
             "shortest_contact",
         )
-    return Decision(softer, stiffer, (soft, stiff), (below + above) / 2, travel, delay, stay)
+    return EstimatorDecision(
+        softer, stiffer, (soft, stiff), (below + above) / 2, travel, delay, stay
+    )
 
 
 def _ordered(

@@ -44,7 +44,7 @@ def check_initial_force(spec: AbstractInteractionSpec) -> None:
                 f"remove {part}, or the goal",
                 *_AT,
             )
-    if any(c.type != "impedance" or "Kt" in c.gains() for c in spec.controllers.values()):
+    if any(c.commands != "velocity" or "Kt" in c.gains() for c in spec.controllers.values()):
         raise fault(
             "decay although signals saturate is shown for impedance controllers without a spring "
             "Kt, and no others",
@@ -65,7 +65,7 @@ def check_initial_force(spec: AbstractInteractionSpec) -> None:
 
 def _check_environment(spec: AbstractInteractionSpec, name: str) -> None:
     environment = spec.environments[name]
-    if environment.model not in ("elastic", "kelvin-voigt"):
+    if environment.remembers or environment.has_mass or environment.preloaded:
         raise fault(
             "decay although signals saturate is shown for elastic and damped environments, not "
             f"for {name!r}, which is {environment.model}",

@@ -8,7 +8,6 @@ from __future__ import annotations
 from nrs_design.switched.assumption import AssumptionKind, Standing
 
 _AUDIT = "nrs-design audit LOG SPEC compares stays and transitions with the spec"
-_TIME_CONSTANTS = "compare time constants identified in the air and in contact"
 
 MOTOR = AssumptionKind(
     "the motor is linear, in its ranges",
@@ -20,13 +19,13 @@ UNLOADED = AssumptionKind(
     "what is touched does not load the motor",
     "torque of contact far below that of the motor",
     "The motor is slower in contact than in the modes.",
-    _TIME_CONSTANTS,
+    "nrs-design identify actuator on records in the air and in contact: one time constant",
 )
 LOAD = AssumptionKind(
     "the load acts against a known inertia",
     "the load inertia of the spec",
     "The motor meets another load than in the modes.",
-    _TIME_CONSTANTS,
+    "step a known torque at a held command: the speed first changes by torque over inertia",
 )
 COMMAND_UNIT = AssumptionKind(
     "unit of the motor's command",
@@ -46,7 +45,7 @@ INPUTS = AssumptionKind(
     "inputs are zero, or bounded where that is said",
     "zero, or the bounds of the spec's disturbances",
     "Points of rest move; how far states then go is not said.",
-    "log command and reference; their sizes against those of the spec",
+    "log command and reference, against the spec; what the law subtracts from the force: one value",
 )
 FRICTION = AssumptionKind(
     "friction keeps its sign over a period",
@@ -95,7 +94,7 @@ CONTACTS = AssumptionKind(
     "nothing else is touched",
     "the contacts that the spec lists for a controller",
     "Any other contact is a mode that nothing is said about.",
-    "by procedure: which tissue is met with which controller active",
+    "by procedure; nrs-design audit LOG SPEC compares the stiffness met with each controller",
 )
 TISSUE = AssumptionKind(
     "environments follow their models in their ranges",
@@ -171,7 +170,7 @@ LOGIC = AssumptionKind(
     "the mode logic keeps its times",
     "thresholds, noise and speeds of the spec",
     "Switches come earlier, or a wrong controller stays longer.",
-    _AUDIT,
+    f"{_AUDIT}; log the signals: their noise, age and rates",
     Standing.ARGUED,
 )
 NOT_SAMPLED = AssumptionKind(
@@ -214,7 +213,7 @@ COVERAGE = AssumptionKind(
     "what an identified range holds",
     "the coverage that is named, for such specimens or motors",
     "Specimens or motors outside the coverage are not covered.",
-    "identify from more specimens",
+    "identify one specimen or motor more: its parameters must lie within the ranges",
 )
 DOUBT = AssumptionKind(
     "the identification is in doubt",
@@ -240,7 +239,7 @@ RANGE = AssumptionKind(
     "a gain or parameter stays in its range",
     "the range of the spec",
     "Values outside are not covered.",
-    "log the gains, or measure the parameter",
+    "log the gain, or measure the parameter: in its range; one value where that is said",
 )
 MATRICES = AssumptionKind(
     "the matrices describe the system",

@@ -23,7 +23,7 @@ from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.coupled import AxesCoupling, check_gravity, not_below
 from nrs_design.switched.sampled_frame import INPUTS, Frame
-from nrs_design.switched.sampled_inputs import Motion, known_entries
+from nrs_design.switched.sampled_inputs import SampledMode, known_entries
 
 # Of the middle of a range, which need not be exact.
 LARGEST_DENOMINATOR = 1000
@@ -63,7 +63,7 @@ def couplings_of(
     coupling: AxesCoupling,
     ranges: ActuatorRanges,
     channels: Sequence[Channel],
-    motions: Sequence[Motion],
+    motions: Sequence[SampledMode],
     *,
     losable: bool,
 ) -> Iterator[Coupling]:
@@ -79,7 +79,7 @@ def couplings_of(
         Of a drive without links.
     channels : sequence of Channel
         The disturbances.
-    motions : sequence of Motion
+    motions : sequence of SampledMode
         All modes, those of free motion last.
     losable : bool
         Whether contact may be lost where the spring of the tissue ends.

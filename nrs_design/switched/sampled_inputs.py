@@ -20,7 +20,7 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class SampledMode:
     """One mode, the rows that move its states, those that bound roundings, and the slip.
 
     Of two periods, it says whether it is in force where a round begins.
@@ -33,7 +33,9 @@ class Motion:
     begins: bool = True
 
     @classmethod
-    def of(cls, name: str, rows: Sequence[LinearForm], n: int, *, begins: bool = True) -> Motion:
+    def of(
+        cls, name: str, rows: Sequence[LinearForm], n: int, *, begins: bool = True
+    ) -> SampledMode:
         """Take apart the rows of a frame.
 
         Parameters
@@ -57,7 +59,7 @@ class Motion:
 
 
 def channels_of(
-    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[Motion]
+    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[SampledMode]
 ) -> Iterator[Channel]:
     """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
 
@@ -67,7 +69,7 @@ def channels_of(
         With the disturbances, if it declares any.
     off : Fraction
         How far the force signal may be off for long, in N m.
-    motions : sequence of Motion
+    motions : sequence of SampledMode
         All modes, those of free motion last.
     """
     if spec.disturbances is None:
@@ -91,7 +93,7 @@ def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, s
 
 
 def roundings_of(
-    frame: Frame, channels: Sequence[Channel], motions: Sequence[Motion]
+    frame: Frame, channels: Sequence[Channel], motions: Sequence[SampledMode]
 ) -> Iterator[Rounding]:
     """Yield what the arithmetic adds, with rows over the states and the declared disturbances.
 
@@ -101,7 +103,7 @@ def roundings_of(
         Of all modes.
     channels : sequence of Channel
         The disturbances.
-    motions : sequence of Motion
+    motions : sequence of SampledMode
         All modes, those of free motion last.
     """
     kept = known_entries(frame, channels)

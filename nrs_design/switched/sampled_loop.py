@@ -41,7 +41,7 @@ from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
 from nrs_design.switched.sampled_gains import SampledGains
 from nrs_design.switched.sampled_inputs import (
-    Motion,
+    SampledMode,
     channels_of,
     damping_of,
     force_rows,
@@ -145,13 +145,13 @@ def _motions(
     design: ControllerDesign,
     laws: Mapping[str, SampledGains],
     loss: Loss,
-) -> tuple[dict[str, tuple[Motion, ...]], tuple[Motion, ...]]:
+) -> tuple[dict[str, tuple[SampledMode, ...]], tuple[SampledMode, ...]]:
     """Return the motions of each controller, and those of free motion beside them.
 
     Where contact is lost anywhere, a controller moves freely as it does in one more contact.
     """
-    parts: dict[str, tuple[Motion, ...]] = {}
-    free: list[Motion] = []
+    parts: dict[str, tuple[SampledMode, ...]] = {}
+    free: list[SampledMode] = []
     for c in design.controllers:
         own = tuple(map(plant.environment, c.contacts))
         parts[c.name] = loop.in_contact(c, laws[c.name], own or plant.among(design.contacts))
@@ -230,13 +230,13 @@ class _Loop:
 
     def in_contact(
         self, controller: Controller, gains: SampledGains, touched: Iterable[Environment]
-    ) -> tuple[Motion, ...]:
+    ) -> tuple[SampledMode, ...]:
         """Return the motions of a controller in all contacts, and in the air if it has none.
 
         Position control takes no force, but what it touches is sampled, and may be used by the
         controller after it.
         """
-        found: list[Motion] = []
+        found: list[SampledMode] = []
         if not controller.contacts:
             found += self._corners(gains, self.motor, controller.name)
             touched = touched if self.frame.remembers else ()
@@ -246,20 +246,20 @@ class _Loop:
             found += self._corners(gains, own.beside(self.motor), name)
         return tuple(found)
 
-    def in_the_air(self, controller: str, gains: SampledGains) -> tuple[Motion, ...]:
+    def in_the_air(self, controller: str, gains: SampledGains) -> tuple[SampledMode, ...]:
         """Return the motions of a controller that touches nothing."""
         return tuple(self._corners(gains, self.motor, f"{controller}/{FREE}"))
 
-    def between(self, law: SampledLaw, name: str) -> Iterator[Motion]:
+    def between(self, law: SampledLaw, name: str) -> Iterator[SampledMode]:
         """Yield the motions at samples of the motion loop alone, which no force reaches."""
 
         def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
             return self.frame.rows_and_slip(law, 0, values, Turn.MOTION)
 
         for corner, rows in self.motor.corners(rows_at, name):
-            yield Motion.of(corner, rows, len(self.frame.states), begins=False)
+            yield SampledMode.of(corner, rows, len(self.frame.states), begins=False)
 
-    def _corners(self, gains: SampledGains, box: Box, name: str) -> Iterator[Motion]:
+    def _corners(self, gains: SampledGains, box: Box, name: str) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
         law = gains.law
         ages = range(self.delays[0], self.delays[1] + 1)
@@ -273,7 +273,7 @@ class _Loop:
             rows_at = partial(self._rows, gains, delay, turn)
             for corner, rows in box.beside(gains.box).corners(rows_at, late):
                 size = len(self.frame.states)
-                yield Motion.of(corner, rows, size, begins=turn is Turn.BOTH)
+                yield SampledMode.of(corner, rows, size, begins=turn is Turn.BOTH)
 
     def _rows(
         self, gains: SampledGains, delay: int, turn: Turn, values: Mapping[str, Fraction]

@@ -68,6 +68,7 @@ SPECS = {
     "value": ROOT / "docs" / "examples" / "flutter.nrs.yaml",
     "period": ROOT / "docs" / "examples" / "wide-range.nrs.yaml",
     "pushed": ROOT / "docs" / "examples" / "pushed-in.nrs.yaml",
+    "saturating": ROOT / "docs" / "examples" / "saturating.nrs.yaml",
 }
 # Every change to the others, which are larger, is left to the slow tests.
 SMALL = ("given", "force", "unstable", "discrete")
@@ -80,6 +81,7 @@ NUMBERS = {
     "constant-force": {"Q", "slope"},
     "mode-quadratic": {"functions"},
     "parameter-quadratic": {"Q_low", "Q_high"},
+    "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
     "unstable-mode": set(),
     "unstable-period": {"steps", "doublings"},

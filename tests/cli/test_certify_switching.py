@@ -38,7 +38,7 @@ def test_proved(tmp_path):
     assert result.returncode == 0, result.stderr
     assert result.stdout.startswith("soft-tissue: PROVED (common quadratic function: exists)")
     assert "Every solution, with contact lost and made again" in result.stdout
-    assert "taken for granted:" in result.stdout
+    assert "taken for granted (nrs-design report says how to test each):" in result.stdout
     assert "certificate written to reports/soft-tissue.cert.json" in result.stderr
     document = json.loads((tmp_path / "reports" / "soft-tissue.cert.json").read_text())
     assert document["verdict"] == "proved"
@@ -58,6 +58,18 @@ def test_a_constant_force_that_is_not_covered_is_said(tmp_path):
     assert "pushed-in: PROVED" in result.stdout
     assert "Under a constant force" not in result.stdout
     assert "constant force: the solver found no solution" in result.stdout
+
+
+def test_the_force_that_motions_decay_from_is_said(tmp_path):
+    text = (ROOT / "docs" / "examples" / "saturating.nrs.yaml").read_text(encoding="utf-8")
+    (tmp_path / "a.nrs.yaml").write_text(text, encoding="utf-8")
+    result = run("certify-switching", "a.nrs.yaml", cwd=tmp_path)
+    assert "saturating: PROVED" in result.stdout
+    assert "at rest with a contact force up to 0.5 N*m" in result.stdout
+    assert "friction are not modelled, saturation only where" in result.stdout
+    again = run("verify", "reports/saturating.cert.json", "a.nrs.yaml", cwd=tmp_path)
+    assert again.returncode == 0
+    assert "at rest with a contact force up to 0.5 N*m" in again.stdout
 
 
 def test_an_edited_spec_renews_its_certificate_and_a_copy_does_not(tmp_path):

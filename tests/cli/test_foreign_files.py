@@ -25,16 +25,12 @@ COMMANDS = {
     "gate-junit": ("gate", "small.nrs.yaml", "--format", "junit", "--out", "x"),
     "report-html": ("report", COMMUTING, "--out", "x.html"),
     "gate-sarif": ("gate", "small.nrs.yaml", "--format", "sarif", "--out", "x"),
-    "gate-text": ("gate", "small.nrs.yaml", "--format", "text", "--out", "x"),
-    "compare-methods": ("compare-methods", COMMUTING, "--max-updates", 20, "--figure", "x.png"),
-    "kinematics": ("robot", "kinematics", HOLDER, "--figures", "."),
     "report-pdf": ("report", COMMUTING, "--out", "x.pdf", "--format", "pdf"),
     "report-png": ("report", COMMUTING, "--out", ".", "--format", "png"),
     "identify": ("identify", "actuator", *ACTUATOR, "--report", "x.pdf"),
     "monte-carlo": ("simulate", RUNS, "--monte-carlo", 2, "--out", ".", "--no-bound"),
-    "export": ("export", SAMPLED, "--format", "mat", "--out", "."),
 }
-QUICK = ("certify-switching", "schema", "gate-junit")
+QUICK = ("certify-switching", "schema")
 # What takes long is refused before it begins.
 BEFORE = {
     "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
@@ -97,8 +93,10 @@ def test_what_is_ours_is_replaced_and_what_is_not_stays(name, tmp_path):
     assert {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == before
 
 
-@pytest.mark.parametrize("link", [False, True])
-@pytest.mark.parametrize("name", BEFORE)
+@pytest.mark.parametrize("link", [False, pytest.param(True, marks=slow)])
+@pytest.mark.parametrize(
+    "name", [n if n == "x.html" else pytest.param(n, marks=slow) for n in BEFORE]
+)
 def test_a_place_that_holds_what_is_not_ours_is_refused_before_the_work(name, link, tmp_path):
     path = tmp_path / name
     if link:

@@ -96,6 +96,7 @@ def test_a_wrong_date_is_refused():
     assert "%Y-%m-%d" in done.stderr
 
 
+@pytest.mark.slow
 def test_png_writes_one_file_per_figure(tmp_path):
     done = run(COMMUTING, "--format", "png", "--out", str(tmp_path / "figures"), "--json")
     written = json.loads(done.stdout)["files"]
@@ -122,6 +123,7 @@ def test_inconclusive_exits_with_three(tmp_path):
     assert done.stderr == ""
 
 
+@pytest.mark.slow
 def test_times_are_shown_on_demand(tmp_path):
     assert run(COMMUTING, "--out", str(tmp_path / "r.html"), "--times").exit_code == 0
     assert "Time [ms]" in (tmp_path / "r.html").read_text()

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
@@ -68,7 +68,6 @@ def test_errors_add_up():
     assert found.lasting == F("0.017")
 
 
-@settings(deadline=None, max_examples=50)
 @given(st.integers(0, 2**32))
 def test_no_pose_is_further_off_than_the_bound(seed):
     """Gravity in any direction, seen in one that is off by both angles, on a tool in its range."""

@@ -6,7 +6,7 @@ import warnings
 import control
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from nrs_design.design.impedance import (
@@ -62,7 +62,6 @@ def test_without_mass_the_limit_is_of_the_order_of_1e4_or_above():
     assert found == pytest.approx(bisect_limit(EXACT, 0.0, 0.0, 1.04), rel=1e-6)
 
 
-@settings(max_examples=40, deadline=None)
 @given(Mt=masses, Bt=st.floats(0.3, 10), damping=dampings)
 def test_stiffness_limit_agrees_with_bisection(Mt, Bt, damping):
     found = stiffness_limit(ImpedanceLoop(EXACT, KelvinVoigt(1.0, damping)), Mt, Bt)
@@ -148,7 +147,6 @@ def test_integrator_alone_has_the_margins_of_the_textbook():
     assert margins.stiffness_limit == math.inf
 
 
-@settings(max_examples=40, deadline=None)
 @given(Mt=masses, Bt=st.floats(0.3, 10), stiffness=st.floats(5, 150), damping=dampings)
 def test_margins_satisfy_the_known_inequalities(Mt, Bt, stiffness, damping):
     loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.design.root_locus import (
@@ -101,7 +101,6 @@ def test_time_scaling(factor):
     assert scaled.zero_angle == pytest.approx(base.zero_angle)
 
 
-@settings(max_examples=50, deadline=None)
 @given(zeta=st.floats(0.05, 0.95), wn=st.floats(0.1, 1e4), ratio=st.floats(0.2, 50))
 def test_overshoot_of_a_second_order_loop_with_a_zero(zeta, wn, ratio):
     zero = ratio * wn

@@ -194,6 +194,34 @@ def test_that_the_force_settles_is_held_against_the_certificate(shown, status):
     assert nothing.status is Status.INCONCLUSIVE
 
 
+@pytest.mark.parametrize(
+    ("goal", "level", "status", "said"),
+    [
+        ("0.5 N*m", "1/2", "PROVED", "up to 0.5 N*m motions are proved to decay"),
+        ("0.5 N*m", "0.4999", "INCONCLUSIVE", "up to 0.4999 N*m"),
+        ("largest", "1/100", "PROVED", "up to 0.01 N*m"),
+        ("0.5 N*m", None, "INCONCLUSIVE", "no force was proved"),
+        ("largest", None, "INCONCLUSIVE", "no force was proved"),
+    ],
+)
+def test_the_force_that_motions_decay_from_is_held_against_the_certificate(
+    tmp_path, goal, level, status, said
+):
+    from tests.proof.evidence.test_saturated_ellipsoid import HELD
+    from tests.proof.systems import pushed_away
+
+    proof = CommonQuadratic(((1,),), 0, Fraction(1, 2))
+    shown = () if level is None else (replace(HELD, level=Fraction(level)),)
+    certificate = Certificate("s", "0", None, {}, pushed_away(), (proof, *shown), "0")
+    text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
+    path = tmp_path / "saturating.nrs.yaml"
+    path.write_text(text.replace("0.5 N*m", goal), encoding="utf-8")
+    (found,) = Examiner.of(read_spec(path)).certified_goals(certificate)
+    assert found.status is Status[status]
+    assert found.rule.id == "NRS108"
+    assert said in found.message
+
+
 def test_a_rate_per_step_counts_in_seconds(tmp_path):
     """rho = 0.95 in steps of a tenth of a second is at least 1/2 1/s."""
     from tests.proof.systems import bouncing_in_steps

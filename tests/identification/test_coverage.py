@@ -83,6 +83,16 @@ def test_the_docs_have_every_law_and_option():
     table = {row[0]: row[1:] for row in rows if len(row) == 1 + len(TISSUES)}
     assert table["record and option"] == list(TISSUES)
     assert set(OPTIONS) <= set(table)
+    bold = {
+        (tissue, option)
+        for option in OPTIONS
+        for tissue, cell in zip(TISSUES, table[option], strict=True)
+        if cell.startswith("**")
+    }
+    assert bold == {cell for cell in CELLS if cell[0] in TISSUES}
+    for tissue, option in bold - set(BEYOND):
+        low, *_, high = map(float, table[option][[*TISSUES].index(tissue)].strip("*").split(" to "))
+        assert 92 <= low <= high <= 98
 
 
 @pytest.mark.slow

@@ -248,6 +248,7 @@ def test_what_is_no_age_of_the_force(spec, delay, error, message):
     assert caught.value.remedy
 
 
+@pytest.mark.slow
 def test_a_lag_is_no_age_of_the_force():
     with pytest.raises(DataError, match="by a first-order lag") as caught:
         merge_delay(read_spec(SAMPLED), identify_delay(signals.lag(1)))

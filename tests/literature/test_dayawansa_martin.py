@@ -46,7 +46,9 @@ def test_quadratic_up_to_the_threshold_and_not_beyond():
     assert (above.verdict, above.common_quadratic) == ("proved", "impossible")
 
 
-@pytest.mark.parametrize(("a", "degree"), [("8", 4), ("9", 4), ("10", 8)])
+@pytest.mark.parametrize(
+    ("a", "degree"), [("8", 4), ("9", 4), pytest.param("10", 8, marks=pytest.mark.slow)]
+)
 def test_higher_degrees_reach_further(a, degree):
     found = certify(pair(a))
     assert (found.verdict, found.common_quadratic) == ("proved", "impossible")

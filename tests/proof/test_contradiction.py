@@ -9,6 +9,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.saturation import Start
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from tests.proof.systems import (
     bouncing,
@@ -16,8 +17,10 @@ from tests.proof.systems import (
     bouncing_in_turns,
     doubled_in_turns,
     family,
+    kept,
     matrix,
     pushed,
+    saturating,
 )
 
 HALF = Fraction(1, 2)
@@ -370,3 +373,41 @@ def test_turns_need_steps_of_one_size_and_free_modes_of_their_own():
         alone = replace(bounce, contact=Contact((a,)), clock=Clock(2, ("push 1", "fall")))
         assert "has no mode" in find_contradiction(alone)
         assert a != b
+
+
+def test_signals_that_saturate_make_sense_with_contact_lost_and_kept():
+    assert find_contradiction(saturating()) is None
+    assert find_contradiction(kept(saturating())) is None
+
+
+def test_signals_that_saturate_fit_every_mode_of_one_size():
+    system = saturating()
+    one_less = replace(system, modes=system.modes[:1])
+    assert find_contradiction(one_less) == "s1 has not one column and row for every mode"
+    unlike = family([[-1]], [[-1, 0], [0, -1]])
+    found = find_contradiction(replace(unlike, saturation=system.saturation))
+    assert found == "signals saturate, but the modes are not of one size"
+
+
+SIGNALS = saturating().saturation.signals
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"signals": ()}, "no signal saturates"),
+        ({"signals": (SIGNALS[0], replace(SIGNALS[1], name="s1"))}, "two that do have one name"),
+        ({"signals": SIGNALS[1:]}, "s2 does not have the size of the state"),
+        ({"signals": (replace(SIGNALS[0], limit=Fraction(0)),)}, "the limit of s1 is not positive"),
+        (
+            {"signals": (replace(SIGNALS[0], rows=(matrix([[-1, 1]]),) * 3),)},
+            "s1 depends on the deflection in free motion",
+        ),
+        ({"start": Start("force", "N", ())}, "force does not have the size of the state"),
+        ({"start": Start("force", "N", (ONE,))}, "force does not have the size of the state"),
+    ],
+)
+def test_signals_that_make_no_sense(changes, reason):
+    system = saturating()
+    odd = replace(system, saturation=replace(system.saturation, **changes))
+    assert reason in str(find_contradiction(odd))

@@ -19,6 +19,7 @@ from tests.proof.systems import (
     family,
     genuine,
     matrix,
+    saturating,
     settling,
 )
 
@@ -190,3 +191,23 @@ def test_that_a_force_pushes_in_is_written_only_where_it_does():
         changed = {**fields, "contact": {**fields["contact"], "pushed": wrong}}
         with pytest.raises(TypeError, match="constant force pushes in"):
             read_system("family", changed)
+
+
+def test_what_saturates_is_written_only_where_something_does():
+    system = saturating()
+    fields = system_fields(system)
+    assert "saturation" not in system_fields(bouncing())
+    assert read_system("family", fields) == system
+    start = replace(system.saturation.start, wanted=Fraction(1, 2))
+    wanted = replace(system, saturation=replace(system.saturation, start=start))
+    assert system_fields(wanted)["saturation"]["start"]["wanted"] == "1/2"
+    assert read_system("family", system_fields(wanted)) == wanted
+    for part in ("signals", "start"):
+        with pytest.raises(KeyError, match=part):
+            read_system(
+                "family",
+                {
+                    **fields,
+                    "saturation": {k: v for k, v in fields["saturation"].items() if k != part},
+                },
+            )

@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
@@ -301,6 +301,7 @@ class TestScales:
 
 
 class TestMethods:
+    @pytest.mark.slow
     @pytest.mark.parametrize(
         "system",
         [STABLE, dayawansa_martin("1/5"), family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])],
@@ -315,6 +316,7 @@ class TestMethods:
         assert result.certification.verdict is Verdict.PROVED
         assert result.certification.method == "gradient"
 
+    @pytest.mark.slow
     def test_gradient_gives_up(self):
         result = settle(NOT_QUADRATIC, Method.GRADIENT)
         assert result.verdict is Verdict.INCONCLUSIVE
@@ -454,7 +456,6 @@ class TestMethods:
         limits = Limits(max_degree=4, optimize_rate=False)
         assert settle(system, method, limits).verdict is Verdict.PROVED
 
-    @settings(deadline=None, max_examples=60)
     @given(merging_families(), st.sampled_from([Method.AUTO, *DISCRETE_METHODS]))
     def test_merged_modes_and_blocks_always_end_in_a_verdict(self, system, method):
         """Whatever a search returns holds for all modes, equal ones and those of blocks too."""

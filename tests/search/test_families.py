@@ -95,6 +95,7 @@ def test_both_answers_are_common():
         assert set(answers) == DECIDED
 
 
+@pytest.mark.slow
 def test_a_pair_of_order_30():
     """A'Q + QA = -S with Q random: far beyond what the families above reach."""
     rng = np.random.default_rng(30)

@@ -3,7 +3,7 @@
 import cvxpy as cp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
@@ -88,7 +88,6 @@ def test_margins_of_both_sorts_occur():
     assert max(best) > 0.1
 
 
-@settings(deadline=None, max_examples=50)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 5), st.integers(1, 4))
 def test_the_answer_is_strictly_feasible(seed, n, m):
     _, cones, start = random_problem(np.random.default_rng(seed), n, m)

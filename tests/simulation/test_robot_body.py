@@ -81,6 +81,7 @@ def test_gravity_that_is_held_at_rest_acts_elsewhere(robot):
     assert found == pytest.approx(np.linalg.solve(inertia, lack) * 1e-4, rel=3e-3)
 
 
+@pytest.mark.slow
 def test_a_pose_out_of_reach_is_an_error_and_a_way_there_ends_the_run(robot):
     with pytest.raises(PoseError):
         run(lambda axes, plant: RobotBody(Arm(robot, np.array([0, 0, 0.6])), plant, axes))

@@ -4,7 +4,7 @@ import math
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import SpecError
@@ -59,7 +59,6 @@ def test_tangent_of_the_models():
 shares = st.floats(0, 1)
 
 
-@settings(max_examples=60)
 @given(
     phi=st.tuples(shares, shares),
     reach=st.tuples(st.floats(0.05, 1), st.floats(1, 6)),

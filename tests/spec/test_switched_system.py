@@ -1,7 +1,7 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from .samples import SWITCHED, numbers, place_of, refusal, spoiled, switched
@@ -94,7 +94,6 @@ def test_number_of_modes_is_limited() -> None:
     assert "modes: more than 20000 entries" in refusal(head + _modes(20_001, 1) + tail).message
 
 
-@settings(max_examples=40)
 @given(
     st.integers(1, 4).flatmap(
         lambda n: st.lists(

@@ -43,8 +43,8 @@ def axes(Bt, coupling, load=NO_LOAD, **sections):
     ("Bt", "coupling", "contact", "rate"),
     [
         (BOTH, LINKS, "losable", 1.29),
-        (INSERTION, LINKS, "losable", 10.3),
-        (BOTH, MOVING, "kept", 1.21),
+        pytest.param(INSERTION, LINKS, "losable", 10.3, marks=pytest.mark.slow),
+        pytest.param(BOTH, MOVING, "kept", 1.21, marks=pytest.mark.slow),
     ],
 )
 def test_rates_of_the_reference(Bt, coupling, contact, rate):

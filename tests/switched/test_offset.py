@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
@@ -93,7 +93,6 @@ def test_reference_leaves_the_state_and_measured_sets_the_lead_to_zero():
     }
 
 
-@settings(max_examples=30)
 @given(
     seed=st.integers(0, 2**32 - 1),
     offset=st.sampled_from(["reference", "measured"]),

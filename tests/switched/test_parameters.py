@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
@@ -88,7 +88,6 @@ def test_a_constant_parameter_is_not_arbitrary_switching():
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
 @given(
     st.lists(st.sampled_from(ENTRIES), min_size=4, max_size=4),
     st.lists(st.tuples(HALVES, HALVES), min_size=3, max_size=3),

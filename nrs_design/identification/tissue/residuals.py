@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,14 +97,25 @@ def _signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
     """
     if explained(trial, residuals) >= LEAST_R2 or _takes_work(trial):
         return
-    X = np.column_stack([trial.deflection, offsets])
-    found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
-    known = uncertainty(X, trial.measured - X @ found)
-    if found[0] + student_quantile(known.degrees) * known.errors[0] < 0:
+    ((_, stiffest),) = _ends(trial, [trial.deflection], offsets)
+    # Where a tissue relaxes strongly, its force follows the velocity alone.
+    velocity = trial.motion.velocity[trial.used]
+    (softest, _), (_, damping) = _ends(trial, [trial.deflection, velocity], offsets)
+    if stiffest < 0 or (damping < 0 and softest <= 0):
         yield (
             "force and deflection have opposite signs (--negate-force if the sensor measures the "
             "force on the probe)"
         )
+
+
+def _ends(trial: Trial, columns: Sequence[Array], offsets: Array) -> Iterator[tuple[float, float]]:
+    """Yield the 95 % interval of the factor of each column that the force is a sum of."""
+    X = np.column_stack([*columns, offsets])
+    found = np.linalg.lstsq(X, trial.measured, rcond=None)[0]
+    known = uncertainty(X, trial.measured - X @ found)
+    for factor, error in zip(found[: len(columns)], known.errors, strict=False):
+        half = student_quantile(known.degrees) * float(error)
+        yield float(factor) - half, float(factor) + half
 
 
 def _takes_work(trial: Trial) -> bool:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import (
+    MAX_INTEGER_BITS,
     Matrix,
     matrix_fields,
     rate_words,
@@ -91,6 +92,9 @@ class SaturatedEllipsoid(AbstractEvidence):
             return "the environment could pull, which is not covered where signals saturate"
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
+        logarithms = self.denominator_log2, self.H_denominator_log2
+        if not all(0 <= log2 <= MAX_INTEGER_BITS for log2 in logarithms):
+            return "the denominator of Q or of H is out of range"
         rows = len(system.saturation.signals)
         if len(self.H) != rows or any(len(row) != system.order for row in self.H):
             return f"H has not {rows} rows of {system.order} entries"

@@ -28,6 +28,7 @@ def test_delay(tmp_path):
     assert "samples of 0.002 s [95 %]" in text
 
 
+@pytest.mark.slow
 def test_delay_into_a_spec(tmp_path):
     spec = tmp_path / "mine.nrs.yaml"
     shutil.copy(ROBOT / "soft-tissue-sampled.nrs.yaml", spec)

@@ -77,6 +77,7 @@ def test_a_failed_merge_leaves_the_spec(tmp_path):
     assert spec.read_text() == SOFT_TISSUE.read_text()
 
 
+@pytest.mark.slow
 def test_what_is_chosen_for_the_nose_can_be_proved(tmp_path):
     spec = tmp_path / "nose.nrs.yaml"
     shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)

@@ -58,6 +58,7 @@ def test_the_power_law_finds_its_zero():
     assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
 
 
+@pytest.mark.slow
 def test_what_is_given_is_kept_and_narrows_the_interval():
     _, free, _ = chosen(shifted(0.1))
     _, fit, offsets = chosen(shifted(0.1), zero=0.1, tare=0.0)

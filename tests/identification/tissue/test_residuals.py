@@ -9,7 +9,7 @@ from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import fit_record
 from nrs_design.identification.tissue.residuals import structure
 from nrs_design.models.contact import LAWS, Elastic, KelvinVoigt, Maxwell, Motion
-from tests.identification.support import quick, record, source
+from tests.identification.support import quick, record, slow, source
 
 
 def test_structure_is_found_and_noise_is_none():
@@ -61,6 +61,7 @@ def test_a_tissue_that_relaxes_is_not_taken_for_one_that_pulls():
     turned = replace(data, force=-data.force)
     assert "opposite signs" not in "; ".join(fit_record(Maxwell, data).doubts)
     assert "% of the range of the force" in "; ".join(fit_record(Maxwell, turned).doubts)
+    assert "opposite signs" in "; ".join(fit_record(Maxwell, turned).doubts)
     pulled = replace(record(Elastic(400.0), quick(1), 0.02, 1), force=-400.0 * quick(1).deflection)
     for kind in LAWS.values():
         assert "opposite signs" in "; ".join(fit_record(kind, pulled).doubts)
@@ -77,3 +78,13 @@ def test_an_interval_that_reaches_zero():
     (small,), (middle,), (large,) = (fit.estimates_at(level) for level in (0.5, 0.95, 0.99))
     assert small.low == middle.low == large.low == 0.0
     assert small.high < middle.high < large.high < np.inf
+
+
+@pytest.mark.parametrize("b", [0.5, 2.0, 20.0])
+def test_a_wrong_sign_is_named_beside_strong_relaxation(b):
+    """The faster it relaxes, the more the force follows the velocity alone."""
+    data = record(Maxwell(1.129, b), slow(1), 0.01, 1)
+    turned = replace(data, force=-data.force)
+    for kind in (Elastic, Maxwell):
+        assert "opposite signs" in "; ".join(fit_record(kind, turned).doubts)
+        assert "opposite signs" not in "; ".join(fit_record(kind, data).doubts)

@@ -113,8 +113,8 @@ def test_tables_of_several_groups_of_motions_are_those_of_each(robot, monkeypatc
     tilts = np.radians([-40.0, 0.0])
     apart = [tilt_table(robot, tilts, group) for group in (DEPTH_SINES, TABLE_3_5)]
     moved = []
-    torques = correction._torques
-    monkeypatch.setattr(correction, "_torques", lambda *at: moved.append(at) or torques(*at))
+    moves = correction.joint_motion
+    monkeypatch.setattr(correction, "joint_motion", lambda *at: moved.append(at) or moves(*at))
     together = tilt_tables(robot, tilts, DEPTH_SINES, TABLE_3_5)
     for one, other in zip(together, apart, strict=True):
         assert (one.mean_ratio == other.mean_ratio).all()

@@ -114,6 +114,9 @@ def test_limits_that_are_wider_are_covered():
         (replace(HELD, H=((-17,), (-17,))), "H has not 1 rows"),
         (replace(HELD, H=((-17, 0),)), "H has not 1 rows"),
         (replace(HELD, H=((-17.0,),)), "float"),
+        (replace(HELD, denominator_log2=10**400), "denominator of Q or of H is out of range"),
+        (replace(HELD, H_denominator_log2=10**400), "denominator of Q or of H is out of range"),
+        (replace(HELD, H_denominator_log2=-1), "denominator of Q or of H is out of range"),
     ],
 )
 def test_other_numbers_are_refused(evidence, fault):

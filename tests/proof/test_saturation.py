@@ -1,0 +1,34 @@
+"""Signals that saturate: what makes no sense of them, and what lies between their limits."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from tests.proof.systems import matrix, pushed_away
+
+WHAT = pushed_away().saturation
+(SIGNAL,) = WHAT.signals
+
+
+def several(count):
+    rows = (matrix([[-3] + [0] * i]) for i in range(count))
+    signals = (replace(SIGNAL, name=f"s{i}", rows=(row,)) for i, row in enumerate(rows))
+    return replace(WHAT, signals=tuple(signals))
+
+
+def test_up_to_four_signals_make_sense():
+    assert WHAT.find_oddity(1, 1, 0) is None
+    assert several(4).find_oddity(1, 1, 0) is None
+    assert several(5).find_oddity(1, 1, 0) == "more than 4 signals saturate"
+
+
+@pytest.mark.parametrize("signals", [(), (SIGNAL, SIGNAL)])
+def test_there_is_a_signal_and_each_has_its_name(signals):
+    assert "no signal saturates" in replace(WHAT, signals=signals).find_oddity(1, 1, 0)
+
+
+def test_every_choice_is_a_matrix():
+    held = [[Fraction(-17, 16)]]
+    found = [B.fractions() for B in WHAT.between(matrix([[-2]]), 0, held)]
+    assert found == [[[-2]], [[Fraction(-1, 16)]]]

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
+from nrs_design.controllers.sensor import LowPass
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
@@ -26,6 +27,11 @@ from nrs_design.spec import InteractionDesignSpec
 from nrs_design.switched.assumption_kinds import LIMITED
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
+
+_FILTERED = (
+    " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "
+    "part, each lag the same."
+)
 
 
 def with_saturation(
@@ -83,17 +89,18 @@ def with_saturation(
     start = Start(
         "contact force",
         "N*m",
-        tuple(_rest(system.states, plant.among(design.contacts))),
+        tuple(_rest(system.states, plant.among(design.contacts), design.sensor.filter)),
         None if wanted is None or isinstance(wanted, str) else wanted.exact,
     )
     modelled: dict[str, str] = {NOT_MODELLED: NOT_MODELLED_BUT_LIMITS}
     texts = (modelled.get(text, text) for text in system.assumptions)
+    filtered = "" if design.sensor.filter is None else _FILTERED
     limited = LIMITED.says(
         "Where signals saturate: the velocity command of the admittance is cut off at "
         f"{rounded_up(velocity_limit, 'rad/s')} before the motion loop takes it, or at any "
         "larger value on either side, or nowhere; the command of the motor likewise at "
         f"{rounded_up(command_limit, spec.actuator.command)}; nothing else is. Nobody commands "
-        "anything, and nothing disturbs, while the motion decays.",
+        f"anything, and nothing disturbs, while the motion decays.{filtered}",
         f"{rounded_up(velocity_limit, 'rad/s')} and "
         f"{rounded_up(command_limit, spec.actuator.command)}, or more",
     )
@@ -127,14 +134,23 @@ def _drive(mode: Mode, Kp: Fraction) -> Fraction:
     return Fraction(mode.A.numerators[1][0], mode.A.denominator) / Kp
 
 
-def _rest(states: Sequence[str], touched: Sequence[Environment]) -> list[RationalMatrix]:
-    """Return the states at rest with a unit of force, at every stiffness."""
+def _rest(
+    states: Sequence[str], touched: Sequence[Environment], low_pass: LowPass | None
+) -> list[RationalMatrix]:
+    """Return the states at rest with a unit of force, at every stiffness.
+
+    A filter of the force may not have seen the force yet, or have settled at it.
+    """
     unit = coordinates(len(states))
-    found: list[RationalMatrix] = []
-    for environment in touched:
-        for stiffness in (environment.stiffness.low, environment.stiffness.high):
-            found.append(_column([entry / stiffness for entry in unit[-1]]))
-    return found
+    lags = () if low_pass is None else low_pass.states
+    settled = [Fraction(int(state in lags)) for state in states]
+    sensed = [zero(len(states)), *([settled] if lags else [])]
+    return [
+        _column(combine((1 / stiffness, unit[-1]), (Fraction(1), shown)))
+        for environment in touched
+        for stiffness in (environment.stiffness.low, environment.stiffness.high)
+        for shown in sensed
+    ]
 
 
 def _column(form: Sequence[Fraction]) -> RationalMatrix:

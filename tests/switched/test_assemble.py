@@ -88,6 +88,21 @@ def test_decay_under_saturation_is_assembled_in_deflection_coordinates_only():
         assemble_from_text(spec, gains, "force")
 
 
+def test_a_motion_that_begins_with_a_force_may_have_a_filter_that_shows_it(tmp_path):
+    text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
+    filtered = text.replace("limits:", "sensor: {filter: {order: 2, cutoff: 20 Hz}}\nlimits:")
+    path = tmp_path / "filtered.nrs.yaml"
+    path.write_text(filtered, "utf-8")
+    spec, _, gains = design_of(path)
+    system = assemble_from_text(spec, gains, "deflection")
+    states = [[entry for (entry,) in x.fractions()] for x in system.saturation.start.states]
+    shown = [(*(state[i] for i in (3, 4)),) for state in states]
+    assert [system.states[i] for i in (3, 4)] == ["filtered 1 [N*m]", "filtered 2 [N*m]"]
+    assert shown == [(0, 0), (1, 1), (0, 0), (1, 1)]
+    assert all(state[5] > 0 and not any(state[:3]) for state in states)
+    assert any("any part, each lag the same" in text for text in system.assumptions)
+
+
 def test_missing_gains():
     spec, _, gains = design_of(FORCE_LIMIT)
     with pytest.raises(CertificateError, match="gains"):

@@ -74,6 +74,7 @@ class DelayIdentification:
     held : tuple of float
         From and to, in samples: they hold the interval and every part of the record. Where errors
         are not noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
+        Of a command of one frequency, they hold all from zero to those of a copy.
     doubts : tuple of str
         What speaks against it.
     """
@@ -147,13 +148,19 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     samples = Estimate(max(value, 0.0), max(value - half, 0.0), max(value + half, 0.0))
     parts = tuple(_parts(record, chosen, value))
     held = [samples, *(part for _, part in parts)]
-    if chosen.uncertainty.whiteness < WHITE:
+    one_frequency = _other_than_one_frequency(record) < _OTHER
+    if one_frequency:
+        held.append(Estimate(0.0, 0.0, 0.0))
+    if one_frequency or chosen.uncertainty.whiteness < WHITE:
         copy = fits[0]
         held += [part for _, part in _parts(record, copy, copy.delay / step)]
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
         record, fits, chosen, samples.scaled(step), samples, peak, parts, ends,
-        (*_rivals(record, fits, chosen, half), *_doubts(record, chosen, value, half, parts)),
+        (
+            *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
+            *_doubts(record, chosen, value, half, parts),
+        ),
     )  # fmt: skip
 
 
@@ -280,10 +287,15 @@ def _own_delay(
 
 
 def _rivals(
-    record: SignalRecord, fits: Sequence[DelayFit], chosen: DelayFit, half: float
+    record: SignalRecord,
+    fits: Sequence[DelayFit],
+    chosen: DelayFit,
+    half: float,
+    *,
+    one_frequency: bool,
 ) -> Iterator[str]:
     """Yield what explains the record nearly as well with quite another delay."""
-    if _other_than_one_frequency(record) < _OTHER:
+    if one_frequency:
         yield (
             f"{record.names[0]} has one frequency: a delay and a lag cannot be told apart by it; "
             "record a motion of several"

@@ -102,6 +102,19 @@ def test_a_sine_does_not_tell_a_delay_from_a_lag():
     assert "cannot be told apart" in found.doubts[0]
 
 
+def test_of_one_frequency_every_delay_up_to_that_of_a_copy_is_held():
+    """A delay of 3 samples and a lag of 2 make the phase of 5: the delay is not near 5."""
+    record = signals.copy(1)
+    rate, w, tau = 1 / record.step, 2 * np.pi * 1.3, 2 * record.step
+    phase = w * (record.time - 3 / rate) - np.arctan(w * tau)
+    noise = 1e-3 * np.random.default_rng(2).normal(size=len(phase))
+    seen = np.sin(phase) / np.hypot(1, w * tau) + noise
+    found = identify_delay(replace(record, sent=np.sin(w * record.time), seen=seen))
+    low, high = found.whole_samples
+    assert low == 0
+    assert high >= 5
+
+
 def test_opposite_signs_are_said():
     found = identify_delay(signals.copy(3, gain=-0.9))
     assert any("opposite" in doubt for doubt in found.doubts)

@@ -106,6 +106,8 @@ class Saturation:
         states = self.start.states
         if not states or not all(x.is_well_formed and x.shape == (order, 1) for x in states):
             return f"{self.start.name} does not have the size of the state"
+        if not all(any(map(any, x.numerators)) for x in states):
+            return f"{self.start.name} stands for a state that is zero"
         return None
 
     def between(

@@ -28,6 +28,11 @@ def test_there_is_a_signal_and_each_has_its_name(signals):
     assert "no signal saturates" in replace(WHAT, signals=signals).find_oddity(1, 1, 0)
 
 
+def test_a_motion_that_begins_at_zero_says_nothing():
+    nowhere = replace(WHAT, start=replace(WHAT.start, states=(matrix([[1]]), matrix([[0]]))))
+    assert "stands for a state that is zero" in nowhere.find_oddity(1, 1, 0)
+
+
 def test_every_choice_is_a_matrix():
     held = [[Fraction(-17, 16)]]
     found = [B.fractions() for B in WHAT.between(matrix([[-2]]), 0, held)]

@@ -124,7 +124,8 @@ def certify_switching(
         )
     # What is shown is kept before the margins: those take minutes.
     written = _write(result, path, quiet=quiet or as_json)
-    with progress(f"margins of {loaded.spec.name}", quiet=quiet, lines=True) as step:
+    more = "margins" if margin or shortest_dwell else "what else is proved"
+    with progress(f"{more} of {loaded.spec.name}", quiet=quiet, lines=True) as step:
         margins = run_proof_margins(
             result, limits, step, margin=margin, shortest_dwell=shortest_dwell
         )
@@ -240,7 +241,9 @@ def _print(result: Result, *, verbose: bool) -> None:
         sought = attempt.step.startswith(("bound on ", "constant force", "decay under"))
         missing = sought and attempt.outcome != "found"
         if everything or missing:
-            say(f"  {attempt.step}: {attempt.outcome} ({attempt.seconds * 1e3:.1f} ms)")
+            # What was not looked for took no time.
+            took = f" ({attempt.seconds * 1e3:.1f} ms)" if attempt.seconds else ""
+            say(f"  {attempt.step}: {attempt.outcome}{took}")
     say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
     say("  taken for granted (nrs-design report says how to test each):")
     for assumption in certification.system.assumptions:

@@ -20,6 +20,7 @@ from nrs_design.spec.quantity_fields import (
     Duration,
     Impedance,
     Torque,
+    TorqueOrLargest,
 )
 
 # What only one type of controller has.
@@ -112,8 +113,7 @@ class GoalsSpec(SpecModel):
         "pushes in, through loss of contact, at any constant stiffness; for the whole spec, with "
         "`contact: losable` and one elastic environment, in continuous time",
     )
-
-    initial_force: Torque | Literal["largest"] | None = Field(
+    initial_force: TorqueOrLargest | None = Field(
         default=None,
         description="contact force in N*m from which, at rest, every motion must be proved to "
         "decay although velocity command and motor command saturate at their limits; largest: as "

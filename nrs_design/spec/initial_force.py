@@ -25,7 +25,8 @@ def check_initial_force(spec: AbstractInteractionSpec) -> None:
     if spec.limits.command is None:
         raise fault(
             "nothing says where the command of the motor saturates",
-            "add it to the limits, such as `command: 2000 rpm`, in units of the error at the joint",
+            f"add `command` to the limits, in {spec.actuator.command}, for the error that the "
+            "gains are for",
             *_AT,
         )
     for part, given, why in (

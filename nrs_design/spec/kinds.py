@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from nrs_design.spec.quantity import QuantityKind
 from nrs_design.spec.units import COMMAND_UNITS
 
@@ -68,6 +70,7 @@ TORQUE = QuantityKind(
         "N": "that is a force: multiply it by its lever arm and write N*m",
     },
 )
+INITIAL_TORQUE = replace(TORQUE, example="0.5 N*m")
 BANDWIDTH = QuantityKind(
     "a bandwidth",
     ("rad/s", "Hz"),

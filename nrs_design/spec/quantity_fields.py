@@ -73,6 +73,26 @@ def _schema(kind: QuantityKind) -> WithJsonSchema:
     return WithJsonSchema(quantity_schema(kind))
 
 
+# In the place of a quantity: as large as is found.
+LARGEST = "largest"
+
+
+def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | str:
+    """Read both in one place, so that what is neither is one fault."""
+    if value == LARGEST:
+        return LARGEST
+    if isinstance(value, str) and not any(map(str.isdigit, value)):
+        raise fault(
+            f"{quoted(value)} is neither {kind.name} nor {LARGEST!r}",
+            f"write {kind.example!r}, or {LARGEST!r}",
+        )
+    return read_quantity(value, kind, positive=True)
+
+
+def _or_largest_schema(kind: QuantityKind) -> WithJsonSchema:
+    return WithJsonSchema({"anyOf": [quantity_schema(kind), {"const": LARGEST}]})
+
+
 def _as_is(value: object) -> Quantity:
     if isinstance(value, PydanticCustomError):
         raise value
@@ -263,6 +283,11 @@ SignedAngularVelocity = Annotated[
     Quantity, _quantity(kinds.ANGULAR_VELOCITY, signed=True), _schema(kinds.ANGULAR_VELOCITY)
 ]
 Torque = Annotated[Quantity, _quantity(kinds.TORQUE), _schema(kinds.TORQUE)]
+TorqueOrLargest = Annotated[
+    Quantity | str,
+    ReadBy(lambda value: _read_or_largest(value, kinds.INITIAL_TORQUE)),
+    _or_largest_schema(kinds.INITIAL_TORQUE),
+]
 SignedTorque = Annotated[Quantity, _quantity(kinds.TORQUE, signed=True), _schema(kinds.TORQUE)]
 TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
 Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]

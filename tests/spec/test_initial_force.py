@@ -26,7 +26,7 @@ def test_damped_contact_that_is_kept_is_modelled():
 @pytest.mark.parametrize(
     ("old", "new", "what"),
     [
-        ("  command: 2000 rpm\n", "", "add it to the limits"),
+        ("  command: 2000 rpm\n", "", "add `command` to the limits, in rpm"),
         (
             "contact: losable",
             "contact: losable\nsampling: {period: 2 ms, delay: 0}",
@@ -46,8 +46,8 @@ def test_damped_contact_that_is_kept_is_modelled():
         ("model: elastic", DAMPED, "write `contact: kept`"),
         ("contact: losable\n", "", None),
         ("Bt: 1.04 N*m*s/rad", "Bt: 1.04 N*m*s/rad, Kt: 1 N*m/rad", "without a spring Kt"),
-        ("initial_force: 0.5 N*m", "initial_force: most", "initial_force"),
-        ("initial_force: 0.5 N*m", "initial_force: 0.5 N", "initial_force"),
+        ("initial_force: 0.5 N*m", "initial_force: most", "write '0.5 N*m', or 'largest'"),
+        ("initial_force: 0.5 N*m", "initial_force: 0.5 N", "multiply it by its lever arm"),
         ("Bt: 1.04", "goals: {initial_force: largest}, Bt: 1.04", "all controllers together"),
         (
             "model: elastic\n    stiffness: {nominal: 747.1461 N/m, range: [720.56 N/m, "

@@ -12,6 +12,7 @@ from nrs_design.proof.evidence import (
     AbstractEvidence,
     Shows,
 )
+from nrs_design.proof.evidence.abstract import find_indefinite
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -343,3 +344,25 @@ def test_facts_of_the_kinds(fact):
 @pytest.mark.parametrize("fact", FACTS)
 def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
     assert getattr(Claimed(), fact) is False
+
+
+def test_only_what_speaks_of_saturation_says_how_motions_begin():
+    assert Claimed().start_size is None
+    pairs = [genuine(example) for example in SYSTEMS]
+    begun = {item.kind for _, item in pairs if item.start_size is not None}
+    assert begun == {"saturated-ellipsoid"}
+
+
+@pytest.mark.parametrize("example", SYSTEMS)
+def test_a_second_opinion_is_given_every_form_that_was_decided(example):
+    system, evidence = genuine(example)
+    made = []
+    assert evidence.find_fault(system, made) is None
+    assert made == [form for _, form in evidence.forms(system)]
+
+
+def test_it_is_given_none_beyond_the_first_that_fails():
+    good, bad = ("good", ((1,),)), ("bad", ((-1,),))
+    made = []
+    assert find_indefinite([good, bad, good], made) == "bad"
+    assert made == [((1,),), ((-1,),)]

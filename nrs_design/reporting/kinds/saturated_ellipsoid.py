@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.proof.bounds import lower, nearly, rounded_down
+from nrs_design.proof.bounds import lower, nearly, rounded_down, rounded_up
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.saturation import Saturation
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
@@ -77,7 +77,8 @@ class SaturatedEllipsoidPage(AbstractKindPage[SaturatedEllipsoid]):
         H /= np.abs(H).max()
         rows = [
             *(
-                (f"Limit of the {s.name}", nearly(s.limit, s.unit))
+                # Of a lower limit nothing is claimed.
+                (f"Limit of the {s.name}", rounded_up(s.limit, s.unit))
                 for s in self._saturation.signals
             ),
             (

@@ -107,7 +107,7 @@ def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"")
 
 
 def write_outputs(outputs: Collection[Output]) -> None:
-    """Write the files of one result: none where one of them is refused, or cannot be written.
+    """Write the files of one result: none where one of them is refused, or cannot be staged.
 
     Parameters
     ----------

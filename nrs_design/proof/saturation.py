@@ -108,6 +108,9 @@ class Saturation:
             return f"{self.start.name} does not have the size of the state"
         if not all(any(map(any, x.numerators)) for x in states):
             return f"{self.start.name} stands for a state that is zero"
+        # Where contact is lost, V is not x'Qx.
+        if free and any(x.numerators[-1][0] < 0 for x in states):
+            return f"{self.start.name} stands for a state without contact"
         return None
 
     def between(

@@ -5,7 +5,8 @@ from fractions import Fraction
 
 import pytest
 
-from tests.proof.systems import matrix, pushed_away
+from nrs_design.proof.contradiction import find_contradiction
+from tests.proof.systems import genuine, matrix, pushed_away
 
 WHAT = pushed_away().saturation
 (SIGNAL,) = WHAT.signals
@@ -31,6 +32,15 @@ def test_there_is_a_signal_and_each_has_its_name(signals):
 def test_a_motion_that_begins_at_zero_says_nothing():
     nowhere = replace(WHAT, start=replace(WHAT.start, states=(matrix([[1]]), matrix([[0]]))))
     assert "stands for a state that is zero" in nowhere.find_oddity(1, 1, 0)
+
+
+def test_a_motion_begins_in_contact_where_that_can_be_lost():
+    """With a negative deflection, x'Qx may be smaller than V, which is of (y, 0)."""
+    system, evidence = genuine("saturated-ellipsoid")
+    start = replace(system.saturation.start, states=(matrix([[1], [Fraction(-1, 8)]]),))
+    away = replace(system, saturation=replace(system.saturation, start=start))
+    assert "stands for a state without contact" in find_contradiction(away)
+    assert evidence.find_fault(system) is None
 
 
 def test_every_choice_is_a_matrix():

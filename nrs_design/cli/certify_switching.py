@@ -207,7 +207,7 @@ def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str
         return ()
     from nrs_design.reporting.next_steps import next_steps
 
-    return next_steps(result, margin=margin, shortest_dwell=shortest_dwell)
+    return next_steps(result, margin=margin, shortest_dwell=shortest_dwell, spec=result.loaded.path)
 
 
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:

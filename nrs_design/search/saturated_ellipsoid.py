@@ -291,7 +291,8 @@ def _rounded(
     assert system.saturation is not None
     limits = np.array([float(s.limit) for s in system.saturation.signals])
     H = limits[:, None] * (region.H @ np.linalg.inv(T))
-    T = T @ round_coordinates(np.linalg.inv(region.S))
+    shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
+    T = np.asarray(T @ round_coordinates(shape), dtype=np.float64)
     log2 = max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
     rows = tuple(tuple(round(float(v)) for v in row) for row in np.ldexp(H, log2))
     kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T

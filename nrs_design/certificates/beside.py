@@ -32,7 +32,7 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[Fault | None]:
     document : mapping
         As `nrs_design.certificates.verify.read_document` gives it.
     """
-    if not _can_copy():
+    if not can_copy():
         yield None
         return
     from multiprocessing import get_context
@@ -59,7 +59,7 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[Fault | None]:
         receiver.close()
 
 
-def _can_copy() -> bool:
+def can_copy() -> bool:
     """Tell whether a copy of this process runs at the same time, and what it shares is safe."""
     return sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
 

@@ -40,7 +40,12 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[Fault | None]:
     context = get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_tell_fault, args=(document, sender), daemon=True)
-    process.start()
+    try:
+        process.start()
+    except OSError:
+        # No room for another process: this one does it all.
+        yield None
+        return
     sender.close()
 
     def fault() -> str | None:

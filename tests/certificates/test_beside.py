@@ -110,6 +110,15 @@ def test_on_one_processor_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> Non
         assert proof is None
 
 
+def test_without_room_for_a_process_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail() -> int:
+        raise BlockingIOError
+
+    monkeypatch.setattr(os, "fork", fail)
+    with proof_beside(_document(SPEC)) as proof:
+        assert proof is None
+
+
 def test_the_former_schema_is_proved_with_the_spec_only() -> None:
     document, loaded = _document(SPEC), read_spec(SPEC)
     document["schema"] = "nrs-design/certificate/3"

@@ -11,7 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
-    Outputs,
+    Destinations,
     ReportTo,
     read_all,
     sources,
@@ -68,7 +68,7 @@ def audit(
     from nrs_design.identification.running import bounds_of, judge_run, read_run
     from nrs_design.spec import read_spec
 
-    outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
     loaded = read_spec(spec)
     bounds = bounds_of(loaded)
     reason, losable = _proof_of(certificate, loaded)

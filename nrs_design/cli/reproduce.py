@@ -15,7 +15,7 @@ from nrs_design.cli.tables import print_table
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from nrs_design.reproduction.comparison import Comparison
+    from nrs_design.reproduction.comparison import ReproducedValue
     from nrs_design.reproduction.gallery.counterpart import Counterpart
 
 _GALLERY = "figures.html"
@@ -96,7 +96,7 @@ def _link(page: Path, gallery: Path) -> str:
 
 
 def _summary(
-    table: tuple[Comparison, ...], gallery: tuple[Counterpart, ...] | None
+    table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None
 ) -> dict[str, Any]:
     from dataclasses import asdict
 
@@ -115,7 +115,7 @@ def _summary(
     return content
 
 
-def _print(table: tuple[Comparison, ...], gallery: tuple[Counterpart, ...] | None) -> None:
+def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
     from nrs_design.reproduction.page import format_deviation
     from nrs_design.reproduction.table import count_verdicts
 

@@ -19,7 +19,7 @@ from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:
-    from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+    from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.spec.sampling import SamplingSpec
 
@@ -38,7 +38,7 @@ class ProofMargins:
 
     Parameters
     ----------
-    loop : LoopMargins or None
+    loop : MarginBrackets or None
         Of delay, period and disturbances.
     box : BoxMargin or None
         Of the declared ranges.
@@ -46,7 +46,7 @@ class ProofMargins:
         Of the time between switches.
     """
 
-    loop: LoopMargins | None = None
+    loop: MarginBrackets | None = None
     box: BoxMargin | None = None
     dwell: DwellMargin | None = None
 
@@ -132,7 +132,7 @@ def run_margin(
 
 def run_loop_margins(
     result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> LoopMargins | None:
+) -> MarginBrackets | None:
     """Find how far delay, period and disturbances stretch; None where a spec has none of them.
 
     Parameters
@@ -144,7 +144,7 @@ def run_loop_margins(
     progress : callable
         Told the name of each step.
     """
-    from nrs_design.search.loop_margin import LoopMargins
+    from nrs_design.search.loop_margin import MarginBrackets
 
     spec = None if result.designed is None else result.designed.spec
     if spec is None or (spec.sampling is None and spec.disturbances is None):
@@ -153,7 +153,7 @@ def run_loop_margins(
     delay = period = None
     if result.designed is not None and spec.sampling is not None:
         delay, period = _sampling_margins(result.designed, spec.sampling, result, quick, progress)
-    return LoopMargins(delay, period, _command_margin(result))
+    return MarginBrackets(delay, period, _command_margin(result))
 
 
 def _sampling_margins(

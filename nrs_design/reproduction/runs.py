@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
+from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, derived
 from nrs_design.reproduction.interaction import (
     BLEEDING,
     BY_THRESHOLD,
@@ -37,12 +37,12 @@ from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Simulate insertion and withdrawal, the limit on the force, and tissue and tool."""
     return (*_profile_rows(), *_withdrawals(), *_limits(), _tissue_and_tool())
 
 
-def _profile_rows() -> tuple[Comparison, Comparison]:
+def _profile_rows() -> tuple[ReproducedValue, ReproducedValue]:
     scenario = into(8, *PROFILE)
     stiff = simulated({"position": POSITION}, scenario)
     run = simulated({"insertion": admittance("0", "2.15")}, scenario)
@@ -81,7 +81,7 @@ def _profile_rows() -> tuple[Comparison, Comparison]:
     )
 
 
-def _withdrawals() -> tuple[Comparison, ...]:
+def _withdrawals() -> tuple[ReproducedValue, ...]:
     printed = {
         5: "0.75, 0.61, 19 in phi; 0.09, 0.07, 20 in psi",
         3: "0.53, 0.41, 21; 0.16, 0.13, 20",
@@ -115,7 +115,7 @@ def _withdrawal(run: Run) -> float:
     return time
 
 
-def _limits() -> tuple[Comparison, ...]:
+def _limits() -> tuple[ReproducedValue, ...]:
     row = partial(derived, section="6.3.3.3", unit="N m, %", tolerance=Tolerance(1e-3, 1e-6))
     return (
         row(
@@ -156,7 +156,7 @@ def _limited(force: str, more: str = "") -> tuple[float, float]:
     return peak, round(100 * steady_state_error(t, torque, thesis.TORQUE), 6)
 
 
-def _tissue_and_tool() -> Comparison:
+def _tissue_and_tool() -> ReproducedValue:
     """Judge the run of 6.4."""
     run = tissue_and_tool()
     t, hand, torque = run.response.t, run.response["hand"], run.response["torque"]

@@ -15,7 +15,7 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.noun import dataclass
 from nrs_design.spec import IdleStatesSpec
@@ -56,7 +56,7 @@ class SharedState:
     bleeding: tuple[str, ...] = ()
 
     @property
-    def motion(self) -> Realization | JointMotion:
+    def motion(self) -> Realization | JointMotionLoop:
         """The motion loop at its nominal values."""
         return self.realization if self.joint is None else self.joint.nominal
 
@@ -65,7 +65,7 @@ class SharedState:
         """Where the motor may be."""
         return Box({}) if self.joint is None else self.joint.box
 
-    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotion:
+    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotionLoop:
         """Return the motion loop at the values of the motor."""
         return self.realization if self.joint is None else self.joint.at(values)
 

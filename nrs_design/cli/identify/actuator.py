@@ -11,7 +11,7 @@ from nrs_design.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
     numbers,
@@ -59,7 +59,7 @@ def actuator(
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
     from nrs_design.identification.write_spec import merge_actuator
 
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
     items = read_all(data, read_actuator, columns or [], quiet=quiet)
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]

@@ -100,7 +100,7 @@ def _bar(*, quiet: bool) -> Iterator[Callable[[str], Callable[[float], None]]]:
 
 
 @dataclass(frozen=True, slots=True)
-class Outputs:
+class Destinations:
     """Where a result goes: into a spec, onto a page, to stdout.
 
     Parameters

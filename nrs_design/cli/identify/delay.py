@@ -10,7 +10,7 @@ import typer
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
     numbers,
@@ -67,7 +67,7 @@ def delay(
             "name the force as measured by --command, and as the law used it by --measured",
             param_hint="--write",
         )
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]

@@ -9,7 +9,7 @@ from nrs_design.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
     numbers,
@@ -85,7 +85,7 @@ def tissue(
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.write_spec import merge_tissue
 
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     records = read_all(data, read_tissue, columns or [], quiet=quiet)
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)

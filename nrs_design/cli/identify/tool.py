@@ -10,7 +10,7 @@ from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
     DataFiles,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
     numbers,
@@ -49,7 +49,7 @@ def tool(
     from nrs_design.identification.tool import identify_tool
     from nrs_design.identification.write_spec import merge_tool
 
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     records = read_all(data, read_poses, columns or [], quiet=quiet)
     with progress("fitting", quiet=quiet):
         found = identify_tool(records, gravity)

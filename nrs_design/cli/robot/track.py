@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nrs_design.models.robot import Robot
-    from nrs_design.simulation.tracking import Record
+    from nrs_design.simulation.tracking import TrackingRecord
     from nrs_design.spec import RobotSpec
 
 ALL = "all"
@@ -119,7 +119,7 @@ def _records(
     moved: str | None,
     period: float | None,
     tell: Callable[[str], None],
-) -> list[Record]:
+) -> list[TrackingRecord]:
     from nrs_design.simulation.tracking import CONTROLLERS, build_track, simulate
 
     names: tuple[str, ...] = (controller.value,)
@@ -147,7 +147,7 @@ def _ablation(
     return rows
 
 
-def _run(spec: RobotSpec, robot: Robot, record: Record) -> dict[str, Any]:
+def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
     from nrs_design.reproduction.tracking import measured_rmse
 
     measured = measured_rmse(spec, robot, record.controller, record.experiment)

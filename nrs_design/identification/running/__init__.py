@@ -6,16 +6,16 @@ from nrs_design.identification.running.bounds import (
     bounds_of_spec,
     rules_of,
 )
-from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.judge import RunJudgement, judge_run
 from nrs_design.identification.running.log import RunLog, read_run
 
 __all__ = [
+    "BoundStatus",
     "Check",
     "RunBounds",
     "RunJudgement",
     "RunLog",
-    "Status",
     "Violation",
     "bounds_of",
     "bounds_of_spec",

@@ -35,7 +35,7 @@ _SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 
 
 @dataclass(frozen=True)
-class Problem:
+class LeastSquaresProblem:
     """Least squares over one law and one trial."""
 
     kind: type[AbstractContactLaw]
@@ -135,13 +135,13 @@ class Point:
 
     Parameters
     ----------
-    problem : Problem
+    problem : LeastSquaresProblem
         With n used samples.
     values : ndarray, shape (p,) or (p + 1,)
         Logarithms of the parameters, and the move of the zero in travels of the record.
     """
 
-    problem: Problem
+    problem: LeastSquaresProblem
     values: Array
 
     @cached_property

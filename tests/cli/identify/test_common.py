@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.cli.identify.common import Outputs, numbers, read_all, sources
+from nrs_design.cli.identify.common import Destinations, numbers, read_all, sources
 from nrs_design.errors import NrsDesignError, OutputError, SpecError
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.statistics import Estimate
@@ -41,7 +41,7 @@ def test_a_column_without_a_name(entry):
 
 
 def checked(write=None, report=None):
-    return Outputs.checked(write, report, None, as_json=False, quiet=True)
+    return Destinations.checked(write, report, None, as_json=False, quiet=True)
 
 
 def test_outputs_are_refused_before_the_work(tmp_path):

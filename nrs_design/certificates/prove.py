@@ -93,7 +93,17 @@ def held_system(document: Mapping[str, Any]) -> SwitchedSystem:
 
 def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
     """Check every statement of a document for a system, and all that follows from it."""
-    certificate = Certificate(
+    certificate = read_certificate(document, system)
+    fault = _find_difference(document, certificate)
+    forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
+    for statement, made in zip(certificate.statements, forms, strict=True):
+        fault = fault or statement.find_fault(system, made)
+    return Verification(certificate, fault, forms)
+
+
+def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Certificate:
+    """Read what a document states of a system; whether it holds is not asked."""
+    return Certificate(
         spec_name=read_text(document["spec"]["name"]),
         spec_sha256=read_text(document["spec"]["sha256"]),
         coordinates=_read_coordinates(document["coordinates"]),
@@ -103,11 +113,6 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
         version=read_text(document["package"]["version"]),
         schema=document["schema"],
     )
-    fault = _find_difference(document, certificate)
-    forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
-    for statement, made in zip(certificate.statements, forms, strict=True):
-        fault = fault or statement.find_fault(system, made)
-    return Verification(certificate, fault, forms)
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:
@@ -118,12 +123,7 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     InternalError
         If flint disagrees with what has been accepted.
     """
-    try:
-        verification = judge()
-    except _MALFORMED as error:
-        return Verification(None, f"a field is missing or malformed ({error})")
-    except NrsDesignError as error:
-        return Verification(None, error.message)
+    verification = judged(judge)
     certificate = verification.certificate
     if certificate is None or verification.fault is not None:
         return verification
@@ -132,6 +132,16 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     if not all(agrees(system, item, forms) for item, forms in pairs):
         raise InternalError(DISAGREE)
     return Verification(certificate, None)
+
+
+def judged(judge: Callable[[], Verification]) -> Verification:
+    """Return a judgement, or a rejection where something is malformed."""
+    try:
+        return judge()
+    except _MALFORMED as error:
+        return Verification(None, f"a field is missing or malformed ({error})")
+    except NrsDesignError as error:
+        return Verification(None, error.message)
 
 
 def read_gains(document: Mapping[str, Any]) -> dict[str, dict[str, str]]:

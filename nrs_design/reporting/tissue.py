@@ -13,14 +13,10 @@ from nrs_design.reporting.figures.identification import draw_fit, draw_intervals
 from nrs_design.reporting.formatting import number, plural, shortened
 from nrs_design.reporting.identification import (
     DRAWN,
-    FOOTER,
-    IDENTIFIED,
-    data_lights,
-    facts_of,
     figure_names,
+    identification_page,
     in_interval,
     label_of,
-    source_section,
 )
 
 if TYPE_CHECKING:
@@ -61,14 +57,12 @@ def tissue_report(
         f"{name} = {in_interval(estimate)} {unit}".rstrip()
         for name, estimate, unit in zip(names, chosen.ranges, units, strict=True)
     )
-    return Report(
+    return identification_page(
         name=f"tissue-{chosen.law.name}",
         title=f"Tissue law from {plural(len(found.records), 'record')}",
-        verdict=IDENTIFIED,
-        claim=f"{label_of(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
+        claim=f"{chosen.law.formula} with {values}. {found.reason}",
         remarks=found.caveats,
-        lights=data_lights([record.source for record in found.records], len(found.caveats)),
-        facts=facts_of([record.source for record in found.records]),
+        sources=[record.source for record in found.records],
         sections=(
             Section("What of the records is used", tuple(_used(found))),
             Section("Comparison of laws", tuple(_comparison(found))),
@@ -76,9 +70,7 @@ def tissue_report(
             *several,
             Section("Measured against fitted", tuple(_tissue_figures(found))),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
-            source_section([record.source for record in found.records]),
         ),
-        footer=FOOTER,
     )
 
 

@@ -13,11 +13,11 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.printing import note, print_json, say
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.output import Beginning
-    from nrs_design.pipeline import Progress
     from nrs_design.pipeline.monte_carlo import MonteCarlo
     from nrs_design.simulation.monte_carlo import Outcome, Share
 

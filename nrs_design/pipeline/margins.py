@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.pipeline.certification import Result, assemble_spec, limits_of
-from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
@@ -28,7 +29,7 @@ MARGIN_BUDGET = 10.0
 
 def quick_limits(result: Result, limits: Limits | None) -> Limits:
     """Return how far one search of many goes: a proof is enough, whatever its decay rate."""
-    limits = limits or limits_of(result.loaded.spec)
+    limits = limits or search_limits(result.loaded.spec)
     return replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
 

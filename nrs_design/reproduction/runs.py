@@ -21,7 +21,7 @@ from nrs_design.reproduction.interaction import (
     admittance,
     away,
     into,
-    simulated,
+    run_scenario,
     tissue_and_tool,
     withdrawals,
 )
@@ -44,11 +44,11 @@ def rows() -> tuple[ReproducedValue, ...]:
 
 def _profile_rows() -> tuple[ReproducedValue, ReproducedValue]:
     scenario = into(8, *PROFILE)
-    stiff = simulated({"position": POSITION}, scenario)
-    run = simulated({"insertion": admittance("0", "2.15")}, scenario)
+    stiff = run_scenario({"position": POSITION}, scenario)
+    run = run_scenario({"insertion": admittance("0", "2.15")}, scenario)
     peaks = tuple(float(np.abs(r.response["torque"]).max()) for r in (stiff, run))
     constant = into(1, (0, 4), (2, 4))
-    settled = simulated({"insertion": admittance("0", "2.15")}, constant).response
+    settled = run_scenario({"insertion": admittance("0", "2.15")}, constant).response
     shown, _ = displayed_impedance(settled["hand"], settled["torque"])
     hand, torque = run.response["hand"], run.response["torque"]
     error = impedance_rmse(run.response.t, hand, torque, DESIRED)
@@ -147,7 +147,7 @@ def _limits() -> tuple[ReproducedValue, ...]:
 def _limited(force: str, more: str = "") -> tuple[float, float]:
     """Return the peak torque in N m and the steady error in % of force control."""
     scenario = into(1, (0, 5), (2, 5), control=BY_THRESHOLD)
-    run = simulated({"position": POSITION, "force": force}, scenario, more)
+    run = run_scenario({"position": POSITION, "force": force}, scenario, more)
     ((begin, _),) = run.switches
     inside = run.response.t >= begin
     t, torque = run.response.t[inside], run.response["torque"][inside]

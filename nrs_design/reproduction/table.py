@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from nrs_design.progress import Progress, silent
 from nrs_design.reproduction import (
     actuator,
     balance,
@@ -49,7 +48,7 @@ TOPICS = (
 )
 
 
-def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[ReproducedValue, ...]:
+def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
     """Recompute every number of every topic.
 
     Parameters

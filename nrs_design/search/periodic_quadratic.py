@@ -19,7 +19,7 @@ from nrs_design.proof.evidence import PeriodicQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
-from nrs_design.search.balance import own_norm, scale
+from nrs_design.search.balance import own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions
 from nrs_design.search.conewise_quadratic import (
@@ -103,7 +103,7 @@ class PeriodicProgram:
 
     def _part(self, step: int) -> Family:
         part = on_turn(self.family.system, self.clock, step)
-        matrices = scale(to_floats([mode.A for mode in part.modes]), self.family.exponents)
+        matrices = scale_states(to_floats([mode.A for mode in part.modes]), self.family.exponents)
         return Family(part, matrices, self.family.exponents, self.family.limit)
 
     @staticmethod

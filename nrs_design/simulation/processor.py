@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Protocol
 
 from nrs_design.errors import PoseError
+from nrs_design.progress import Progress
 from nrs_design.simulation.fate import Fate
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.sampled_axis import SampledAxis
 
 # Samples after which it is told how far the run is.
 _OFTEN = 20_000
-Tell = Callable[[str], None]
-
-
-def silent(step: str) -> None:
-    """Report no progress."""
 
 
 class AbstractBody(Protocol):
@@ -58,7 +54,7 @@ class Motors:
 
 
 def run_axes(
-    axes: Sequence[SampledAxis], body: AbstractBody, engine: str, max_steps: int, tell: Tell
+    axes: Sequence[SampledAxis], body: AbstractBody, engine: str, max_steps: int, tell: Progress
 ) -> tuple[Run, ...]:
     """Run the laws of all axes on one processor, at the same samples.
 

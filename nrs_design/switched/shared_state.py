@@ -22,7 +22,7 @@ from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.joint import Joint
-from nrs_design.switched.mixture import check_mixture
+from nrs_design.switched.mixture import check_mixture_models
 from nrs_design.switched.modes import (
     Rows,
     position_mode,
@@ -31,7 +31,7 @@ from nrs_design.switched.modes import (
     with_idle,
     with_memories,
 )
-from nrs_design.switched.offset import names_of, to_motion
+from nrs_design.switched.offset import state_names, to_motion
 from nrs_design.switched.parameter_box import Box
 
 # What impedance controllers in a mixture integrate their velocity to.
@@ -84,7 +84,7 @@ class SharedState:
     def names(self) -> tuple[str, ...]:
         """Names of the states, with units where there are any."""
         if self.offset != "none":
-            return names_of(self.realization.order)
+            return state_names(self.realization.order)
         inner = self.motion.states
         if self.idle is not None:
             inner = tuple(f"xi{i + 1}" for i in range(len(inner)))
@@ -199,7 +199,7 @@ def shared_state(
     _check_coordinates(coordinates, touched)
     _check_spring(coordinates, touched, design)
     if idle is not None:
-        check_mixture(coordinates, touched)
+        check_mixture_models(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
     joint = Joint.of(plant, design.motion)
     if joint is not None and (idle is not None or shared.commands != "velocity"):

@@ -224,7 +224,7 @@ def _write_spec(path: Path, text: str, *, quiet: bool) -> None:
     note(f"merged into {path}; run nrs-design gate {path} to prove it", quiet=quiet)
 
 
-def numbers(estimate: Estimate) -> dict[str, float | None]:
+def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
     """Return an estimate for JSON, which has no infinity; None says unlimited."""
     low, high = (end if math.isfinite(end) else None for end in (estimate.low, estimate.high))
     return {"value": estimate.value, "low": low, "high": high}

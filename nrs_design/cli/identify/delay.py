@@ -13,7 +13,7 @@ from nrs_design.cli.identify.common import (
     Destinations,
     ReportTo,
     WriteTo,
-    numbers,
+    estimate_numbers,
     read_all,
     sources,
 )
@@ -120,9 +120,11 @@ def _summary(found: DelayIdentification) -> dict[str, Any]:
         "sampling_step_s": record.step,
         "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
         "chosen": found.chosen.follower.name,
-        "delay_s": numbers(found.delay),
-        "delay_samples": numbers(found.samples),
-        "parts": [{"time_s": time, "samples": numbers(part)} for time, part in found.parts],
+        "delay_s": estimate_numbers(found.delay),
+        "delay_samples": estimate_numbers(found.samples),
+        "parts": [
+            {"time_s": time, "samples": estimate_numbers(part)} for time, part in found.parts
+        ],
         "whole_samples": list(found.whole_samples),
         "fits": [
             {

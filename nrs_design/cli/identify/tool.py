@@ -13,7 +13,7 @@ from nrs_design.cli.identify.common import (
     Destinations,
     ReportTo,
     WriteTo,
-    numbers,
+    estimate_numbers,
     read_all,
     sources,
 )
@@ -86,14 +86,14 @@ def _print(found: ToolIdentification) -> None:
 
 def _summary(found: ToolIdentification) -> dict[str, Any]:
     def along(estimates: Any) -> dict[str, Any]:
-        return {axis: numbers(e) for axis, e in zip("xyz", estimates, strict=True)}
+        return {axis: estimate_numbers(e) for axis, e in zip("xyz", estimates, strict=True)}
 
     return {
         "synthetic": found.synthetic,
         "records": sources(record.source for record in found.records),
         "poses": len(found.force_errors),
         "gravity_m_s2": found.gravity,
-        "mass_kg": numbers(found.mass),
+        "mass_kg": estimate_numbers(found.mass),
         "center_of_mass_m": along(found.center),
         "force_bias_N": along(found.force_bias),
         "torque_bias_Nm": along(found.torque_bias),

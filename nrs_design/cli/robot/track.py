@@ -11,10 +11,9 @@ from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json, progress, say
 from nrs_design.cli.robot.options import Figures, Tilt, write_figures
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from nrs_design.models.robot import Robot
     from nrs_design.simulation.tracking import TrackingRecord
     from nrs_design.spec import RobotSpec
@@ -118,7 +117,7 @@ def _records(
     controller: ControllerOption,
     moved: str | None,
     period: float | None,
-    tell: Callable[[str], None],
+    tell: Progress,
 ) -> list[TrackingRecord]:
     from nrs_design.simulation.tracking import CONTROLLERS, build_track, simulate
 
@@ -134,7 +133,7 @@ def _ablation(
     robot: Robot,
     moved: str | None,
     period: float | None,
-    tell: Callable[[str], None],
+    tell: Progress,
 ) -> list[dict[str, Any]]:
     from nrs_design.simulation.tracking import ablation_tracks, simulate
 

@@ -13,7 +13,7 @@ from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Uncertainty, uncertainty
-from nrs_design.identification.steps import shortened
+from nrs_design.identification.steps import limited_step
 
 Array = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
         step = scale * np.linalg.lstsq(J * scale, error, rcond=None)[0]
         limit = np.full(len(step), _LARGEST_STEP)
         limit[-1] = 2 * usual + motor.time_constant / 4
-        step = shortened(step, limit)
+        step = limited_step(step, limit)
         if np.abs(step / scale).max() < _CONVERGED:
             break
         better = _improved(records, motor, step, float(error @ error))

@@ -2,9 +2,9 @@
 
 from nrs_design.identification.running.bounds import (
     RunBounds,
-    bounds_of,
     bounds_of_spec,
-    rules_of,
+    read_run_bounds,
+    switching_rules,
 )
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.judge import RunJudgement, judge_run
@@ -17,9 +17,9 @@ __all__ = [
     "RunJudgement",
     "RunLog",
     "Violation",
-    "bounds_of",
     "bounds_of_spec",
     "judge_run",
     "read_run",
-    "rules_of",
+    "read_run_bounds",
+    "switching_rules",
 ]

@@ -84,7 +84,7 @@ class RunBounds:
         return Stiffness(tuple(ranges), tuple(foreign))
 
 
-def bounds_of(loaded: LoadedSpec) -> RunBounds:
+def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
     """Read the bounds out of a spec.
 
     Raises
@@ -102,7 +102,7 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
     return bounds_of_spec(spec)
 
 
-def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
+def switching_rules(spec: InteractionDesignSpec) -> SwitchingSpec:
     """Return the rules of switching that a run can be held against.
 
     A log says which controller is active, not what is touched.
@@ -111,9 +111,9 @@ def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
 
 
 def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
-    """Return the bounds of a design; see `bounds_of`."""
+    """Return the bounds of a design; see `read_run_bounds`."""
     arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
-    rules = rules_of(spec)
+    rules = switching_rules(spec)
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(

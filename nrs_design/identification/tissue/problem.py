@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from nrs_design.identification.tissue.offsets import (
     fits_zero,
-    measured,
+    measured_force,
     offset_columns,
     offset_names,
 )
@@ -69,7 +69,7 @@ class LeastSquaresProblem:
     @cached_property
     def force(self) -> Array:
         """Measured force, less a tare that is given, shape (n,)."""
-        return measured(self.trial)
+        return measured_force(self.trial)
 
     @cached_property
     def travel(self) -> float:

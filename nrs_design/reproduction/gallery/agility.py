@@ -10,7 +10,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.experiments import GAINS, TIMES
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
@@ -33,7 +33,7 @@ from nrs_design.reproduction.interaction import (
     admittance,
     away,
     into,
-    simulated,
+    run_scenario,
     withdrawals,
 )
 from nrs_design.reproduction.thesis import TORQUE
@@ -104,7 +104,7 @@ def counterparts() -> tuple[Counterpart, ...]:
 def _profile() -> Counterpart:
     both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
     without, switched = (
-        simulated(both, into(8, *PROFILE, control=control))
+        run_scenario(both, into(8, *PROFILE, control=control))
         for control in ("{fixed: insertion}", BY_SIGN)
     )
     later, sooner = (run.contacts[1][0] for run in (without, switched))
@@ -122,13 +122,13 @@ def _profile() -> Counterpart:
             stated(
                 "torque up to its peak",
                 "the same",
-                f"{rounded_up(_largest(switched))} N m in both",
+                f"{four_digits_up(_largest(switched))} N m in both",
                 math.isclose(_largest(without), _largest(switched), rel_tol=1e-9),
             ),
             stated(
                 "peak torque",
                 "does not exceed T_max, 0.3 N m",
-                f"{rounded_up(_largest(switched))} N m",
+                f"{four_digits_up(_largest(switched))} N m",
                 _largest(switched) < TORQUE,
             ),
         ),
@@ -194,8 +194,9 @@ def _scheme(run: Run) -> Counterpart:
                 "figure-6-17-record",
                 "Counterpart of figure 6.17: every signal of the scheme in one run",
                 "Into tissue at 8 deg/s, out at 5 deg/s from 1 s on. The robot follows the command "
-                "less what the admittance makes of the torque. Met at 8 deg/s, the tissue pushes "
-                f"with up to {rounded_up(_largest(run))} N m at first, more than T_max. {ENGINE}",
+                "less what the admittance makes of the torque. Met at 8 deg/s, the tissue "
+                f"pushes with up to {four_digits_up(_largest(run))} N m at first, more than T_max. "
+                f"{ENGINE}",
                 draw_records([_signals(run)]),
             ),
         ),

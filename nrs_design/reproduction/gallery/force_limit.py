@@ -12,7 +12,7 @@ from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
@@ -32,7 +32,7 @@ from nrs_design.reproduction.interaction import (
     PROPORTIONAL,
     PROPORTIONAL_FROM_MEASURED,
     into,
-    simulated,
+    run_scenario,
 )
 from nrs_design.simulation.metrics import overshoot, steady_state_error
 from nrs_design.simulation.run import Run
@@ -116,7 +116,7 @@ def _pressed(one: ForceLimitExperiment, force: str, more: str) -> Run:
         (end + 2, -SPEED),
     )
     scenario = into(_TISSUE, *((round(t, 6), v) for t, v in command), control=BY_THRESHOLD)
-    return simulated({"position": POSITION, "force": force}, scenario, more)
+    return run_scenario({"position": POSITION, "force": force}, scenario, more)
 
 
 def _selection(run: Run) -> Panel:
@@ -126,7 +126,7 @@ def _selection(run: Run) -> Panel:
 
 
 def _profile() -> Counterpart:
-    run = simulated(
+    run = run_scenario(
         {"position": POSITION, "force": PROPORTIONAL}, into(8, *PROFILE, control=BY_THRESHOLD)
     )
     response, (switched, back) = run.response, [time for time, _ in run.switches]
@@ -148,7 +148,7 @@ def _profile() -> Counterpart:
             stated(
                 "torque from t_i to t4, N m",
                 "kept at T_h, 0.3",
-                f"peak {rounded_up(float(torque.max()))}, at last {torque[-1]:.4g}",
+                f"peak {four_digits_up(float(torque.max()))}, at last {torque[-1]:.4g}",
                 bool(torque.max() <= thesis.TORQUE),
                 "a proportional gain overshoots at the switch, and with X_i the reference it keeps "
                 "an error; figures 6.26 and 6.27 show the same of the robot",
@@ -162,7 +162,7 @@ def _profile() -> Counterpart:
                 "Counterpart of figure 6.22: command, torque and selection",
                 "The command waits while force is controlled. From t4 on position control takes up "
                 "where it waits, which is deeper: the torque first rises to "
-                f"{rounded_up(float(response['torque'].max()))} N m. {ENGINE}",
+                f"{four_digits_up(float(response['torque'].max()))} N m. {ENGINE}",
                 draw_records([PanelColumn("", panels, (1.0, 5.0), stays(run))]),
             ),
         ),
@@ -315,10 +315,10 @@ def _statements(
         stated(
             "overshoot at the switch",
             "observed" if one.axis == "phi" else "not observed",
-            f"to {rounded_up(peak)} N m",
+            f"to {four_digits_up(peak)} N m",
             (peak > thesis.TORQUE) == (one.axis == "phi"),
             "both axes have one model, so they overshoot alike; with X_i the position to "
-            f"{rounded_up(other)} N m",
+            f"{four_digits_up(other)} N m",
         )
     ]
     if one.axis == "phi":
@@ -326,7 +326,7 @@ def _statements(
             measured(
                 "largest torque, N m",
                 "0.35",
-                float(rounded_up(peak)),
+                float(four_digits_up(peak)),
                 speed,
                 Reproducibility.OMITTED,
             )
@@ -352,7 +352,7 @@ def _statements(
         stated(
             "an integral would leave none, but its stability under switching is not guaranteed",
             "so said (6.3.3.1)",
-            f"PI that bleeds: {nothing:.2g} % left, to {rounded_up(integral)} N m; certified",
+            f"PI that bleeds: {nothing:.2g} % left, to {four_digits_up(integral)} N m; certified",
             holds=False,
             why="position control and a PI that bleeds have a common quadratic function: "
             "specs/neuroboscope/force-limit-pi.nrs.yaml",

@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.records import PanelColumn, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
     Reproducibility,
@@ -25,7 +25,7 @@ from nrs_design.reproduction.gallery.panels import (
     speed_panel,
     torque_panel,
 )
-from nrs_design.reproduction.interaction import DESIRED, admittance, into, simulated
+from nrs_design.reproduction.interaction import DESIRED, admittance, into, run_scenario
 from nrs_design.reproduction.thesis import VELOCITY
 from nrs_design.simulation.metrics import displayed_impedance, impedance_rmse
 from nrs_design.simulation.run import Run
@@ -99,7 +99,7 @@ def counterparts() -> tuple[Counterpart, ...]:
 
 
 def _counterpart(one: ImpedanceExperiment) -> Counterpart:
-    run = simulated({"impedance": admittance("0", "2.15")}, into(one.tissue, *one.command))
+    run = run_scenario({"impedance": admittance("0", "2.15")}, into(one.tissue, *one.command))
     name = f"figure-{one.figure.replace('.', '-')}"
     return Counterpart(
         shows={one.figure: f"Commanded speed of {one.axis} and torque, soft specimen"},
@@ -173,7 +173,7 @@ def _statements(one: ImpedanceExperiment, run: Run) -> tuple[Statement, ...]:
         Statement(
             "largest torque, N m",
             "safe (chapter 8); T_max is 0.3",
-            rounded_up(float(np.abs(torque).max())),
+            four_digits_up(float(np.abs(torque).max())),
             Reproducibility.OMITTED,
             "at rest it is Bt times the command, whose size is not printed: "
             f"{2.15 * VELOCITY:.4f} at 8 deg/s",

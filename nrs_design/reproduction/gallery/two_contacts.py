@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
     Reproducibility,
@@ -171,11 +171,11 @@ def _order(run: Run) -> tuple[Statement, ...]:
             f"{1e3 * (t4 - zero):.0f} ms after it",
             abs(t4 - zero) < _LATE,
         ),
-        stated("largest torque in tissue, N m", "T_max, 0.3", rounded_up(soft), soft <= TORQUE),
+        stated("largest torque in tissue, N m", "T_max, 0.3", four_digits_up(soft), soft <= TORQUE),
         stated(
             "largest torque against the tool, N m",
             "T_max, 0.3",
-            rounded_up(stiff),
+            four_digits_up(stiff),
             stiff <= TORQUE,
             "the tool is met at the largest speed here, and the torque overshoots before the "
             "robot has given way",

@@ -11,6 +11,7 @@ from nrs_design.controllers.motion import JointReference, LawState
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.models.robot import direct_kinematics
 from nrs_design.models.robot.vectors import Array
+from nrs_design.progress import Progress, silent
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Stepper
 from nrs_design.simulation.tracking.record import TrackingRecord
 from nrs_design.simulation.tracking.track import Track
@@ -39,7 +40,7 @@ def simulate(
     *,
     steps: int = STEPS_PER_TICK,
     held_phase: float = HELD_PHASE,
-    tell: Callable[[str], None] = lambda step: None,
+    tell: Progress = silent,
 ) -> list[TrackingRecord]:
     """Simulate every experiment of every track.
 

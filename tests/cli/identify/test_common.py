@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.cli.identify.common import Destinations, numbers, read_all, sources
+from nrs_design.cli.identify.common import Destinations, estimate_numbers, read_all, sources
 from nrs_design.errors import NrsDesignError, OutputError, SpecError
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.statistics import Estimate
@@ -12,8 +12,8 @@ from tests.support import SOFT_TISSUE
 
 
 def test_unlimited_is_null_in_json():
-    assert numbers(Estimate(2.0, 1.0, 3.0)) == {"value": 2.0, "low": 1.0, "high": 3.0}
-    assert numbers(Estimate(2.0, 1.0, float("inf")))["high"] is None
+    assert estimate_numbers(Estimate(2.0, 1.0, 3.0)) == {"value": 2.0, "low": 1.0, "high": 3.0}
+    assert estimate_numbers(Estimate(2.0, 1.0, float("inf")))["high"] is None
 
 
 def test_files_are_known_by_their_hash():

@@ -7,14 +7,14 @@ import pytest
 
 from nrs_design.errors import DataError, DesignError
 from nrs_design.identification.datasets.columns import parse_mapping
-from nrs_design.identification.running import bounds_of, judge_run, read_run
+from nrs_design.identification.running import judge_run, read_run, read_run_bounds
 from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
 from nrs_design.spec import read_spec
 from tests.identification import runs
 from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
 
-SOFT = bounds_of(read_spec(SOFT_TISSUE))
-SAMPLED = bounds_of(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
+SOFT = read_run_bounds(read_spec(SOFT_TISSUE))
+SAMPLED = read_run_bounds(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
 
 
 def log(tmp_path, data=None, text=None, entries=()):
@@ -37,7 +37,7 @@ def test_bounds_of_the_spec():
     assert pair == pytest.approx((720.56 * 0.24**2, 768.17 * 0.24**2))
     assert (SOFT.torque, SOFT.transitions, SOFT.delay) == (0.3, None, None)
     with pytest.raises(DesignError, match="kind switched-system"):
-        bounds_of(read_spec(COMMUTING))
+        read_run_bounds(read_spec(COMMUTING))
 
 
 def test_a_good_run(tmp_path):
@@ -181,7 +181,7 @@ def with_switching(tmp_path, rules):
     text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
     path = tmp_path / "spec.nrs.yaml"
     path.write_text(text)
-    return bounds_of(read_spec(path))
+    return read_run_bounds(read_spec(path))
 
 
 @pytest.mark.parametrize(
@@ -211,7 +211,7 @@ def test_rules_without_a_column(tmp_path):
 
 
 def test_a_tissue_that_remembers(tmp_path):
-    bounds = bounds_of(read_spec(ROBOT / "nose.nrs.yaml"))
+    bounds = read_run_bounds(read_spec(ROBOT / "nose.nrs.yaml"))
     text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
     assert "remembers" in check(judged(log(tmp_path, text=text), bounds), "stiffness").measured
 

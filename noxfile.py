@@ -8,6 +8,7 @@ import nox
 
 nox.needs_version = ">=2025.10.14"
 nox.options.sessions = ["lint", "types", "tests"]
+nox.options.default_venv_backend = "virtualenv"
 
 # Who is done takes over from the other: some tests are a thousand times as long as others.
 TWO_PROCESSES = ("-n", "2", "--dist", "worksteal")

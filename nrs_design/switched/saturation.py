@@ -28,7 +28,7 @@ from nrs_design.switched.assumption_kinds import LIMITED
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
 
-# States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotion`.
+# States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
 _ERROR, _OMEGA = 0, 1
 _FILTERED = (
     " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "

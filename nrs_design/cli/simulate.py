@@ -13,12 +13,13 @@ from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import progress
 from nrs_design.cli.seconds import seconds
 from nrs_design.cli.simulate_options import Jobs, Many, MonteCarloRuns, Resume, Seed, WorstCaseFlag
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline import Designed, Progress
+    from nrs_design.pipeline import Designed
     from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import LoadedSpec
 

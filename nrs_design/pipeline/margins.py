@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.pipeline.certification import Result, assemble_spec, limits_of
-from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
@@ -19,7 +20,7 @@ from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:
-    from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+    from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.spec.sampling import SamplingSpec
 
@@ -28,7 +29,7 @@ MARGIN_BUDGET = 10.0
 
 def quick_limits(result: Result, limits: Limits | None) -> Limits:
     """Return how far one search of many goes: a proof is enough, whatever its decay rate."""
-    limits = limits or limits_of(result.loaded.spec)
+    limits = limits or search_limits(result.loaded.spec)
     return replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
 
@@ -38,7 +39,7 @@ class ProofMargins:
 
     Parameters
     ----------
-    loop : LoopMargins or None
+    loop : MarginBrackets or None
         Of delay, period and disturbances.
     box : BoxMargin or None
         Of the declared ranges.
@@ -46,7 +47,7 @@ class ProofMargins:
         Of the time between switches.
     """
 
-    loop: LoopMargins | None = None
+    loop: MarginBrackets | None = None
     box: BoxMargin | None = None
     dwell: DwellMargin | None = None
 
@@ -132,7 +133,7 @@ def run_margin(
 
 def run_loop_margins(
     result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> LoopMargins | None:
+) -> MarginBrackets | None:
     """Find how far delay, period and disturbances stretch; None where a spec has none of them.
 
     Parameters
@@ -144,7 +145,7 @@ def run_loop_margins(
     progress : callable
         Told the name of each step.
     """
-    from nrs_design.search.loop_margin import LoopMargins
+    from nrs_design.search.loop_margin import MarginBrackets
 
     spec = None if result.designed is None else result.designed.spec
     if spec is None or (spec.sampling is None and spec.disturbances is None):
@@ -153,7 +154,7 @@ def run_loop_margins(
     delay = period = None
     if result.designed is not None and spec.sampling is not None:
         delay, period = _sampling_margins(result.designed, spec.sampling, result, quick, progress)
-    return LoopMargins(delay, period, _command_margin(result))
+    return MarginBrackets(delay, period, _command_margin(result))
 
 
 def _sampling_margins(

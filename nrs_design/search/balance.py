@@ -49,7 +49,9 @@ def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
     return exponents
 
 
-def scale(matrices: NDArray[np.float64], exponents: NDArray[np.int64]) -> NDArray[np.float64]:
+def scale_states(
+    matrices: NDArray[np.float64], exponents: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """Return ``2^-d A 2^d`` for every matrix; exact but for under- and overflow."""
     scaled: NDArray[np.float64] = np.ldexp(matrices, exponents[None, :] - exponents[:, None])
     return scaled

@@ -16,7 +16,7 @@ from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.matrix import RationalMatrix
@@ -28,7 +28,7 @@ from nrs_design.switched.assumption_kinds import LIMITED
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
 
-# States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotion`.
+# States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
 _ERROR, _OMEGA = 0, 1
 _FILTERED = (
     " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "
@@ -112,11 +112,11 @@ def with_saturation(
 
 
 def _physical(
-    motion: Realization | JointMotion, n: int
+    motion: Realization | JointMotionLoop, n: int
 ) -> tuple[LinearForm, LinearForm, tuple[LinearForm, LinearForm]]:
     """Return e and omega as forms of the state, and what a change of each is in the state."""
     omega, unit = motion.output(n), coordinates(n)
-    error = unit[_ERROR] if isinstance(motion, JointMotion) else motion.integral(zero(n))
+    error = unit[_ERROR] if isinstance(motion, JointMotionLoop) else motion.integral(zero(n))
     (a, b), (c, d) = error[:2], omega[:2]
     determinant = a * d - b * c
     rest = zero(n - 2)
@@ -125,11 +125,11 @@ def _physical(
     return error, omega, (first, second)
 
 
-def _command(mode: Mode, motion: Realization | JointMotion) -> LinearForm:
+def _command(mode: Mode, motion: Realization | JointMotionLoop) -> LinearForm:
     """Return the velocity that the law commands in a mode: what drives its motion loop."""
     n, A = len(mode.A.numerators), mode.A.fractions()
     still = motion.rates(zero(n))
-    k = _ERROR if isinstance(motion, JointMotion) else motion.order - 1
+    k = _ERROR if isinstance(motion, JointMotionLoop) else motion.order - 1
     return combine((Fraction(1), A[k]), (Fraction(-1), still[k]))
 
 

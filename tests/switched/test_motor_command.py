@@ -10,7 +10,7 @@ import pytest
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify_document
-from nrs_design.pipeline import limits_of, run_certification, run_design
+from nrs_design.pipeline import run_certification, run_design, search_limits
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.spec import read_spec
@@ -92,7 +92,7 @@ def test_where_it_is_not_asked_for(tmp_path):
 def test_runs_stay_below_the_bound_and_come_near(tmp_path):
     """In single precision: the command that moves the motor most, and 500 at random."""
     loaded = spec_of(tmp_path, COMMANDED)
-    result = run_certification(loaded, limits=limits_of(loaded.spec, optimize_rate=False))
+    result = run_certification(loaded, limits=search_limits(loaded.spec, optimize_rate=False))
     system = result.certification.system
     bound = bound_on(system, result.certification.statements, "motor command")
     claim = next(s for s in result.certificate.statements if "motor" in s.claim(system))

@@ -10,11 +10,11 @@ import pytest
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.models.robot import (
     Space,
+    bounds_document,
     compute_bounds,
     confirm_bounds,
     coriolis_matrix,
     mass_matrix,
-    to_document,
 )
 from nrs_design.models.robot.enclosure.bounds import goal_of
 from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
@@ -40,7 +40,7 @@ SPACE = Space("0.5", "0.5", ("199.5", "200.5"))
 
 @pytest.fixture(scope="module")
 def document(robot):
-    return to_document("arm", 64 * "0", SPACE, compute_bounds(robot, SPACE), "1")
+    return bounds_document("arm", 64 * "0", SPACE, compute_bounds(robot, SPACE), "1")
 
 
 def tampered(document, key, factor):

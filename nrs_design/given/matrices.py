@@ -123,11 +123,13 @@ def time_of(modes: Sequence[object], time: str | None) -> Time:
             f"the time {quoted(str(time))} is not known", remedy="continuous or discrete"
         )
     periods: list[Any] = [getattr(mode, "dt", None) for mode in modes if is_state_space(mode)]
-    known = {period for period in periods if period is not None}
+    known = [period for period in periods if period is not None]
     said = {Time.CONTINUOUS if period == 0 else Time.DISCRETE for period in known}
+    # True is a step of any length, though it equals one second.
+    steps = {period for period in known if period is not True}
     if time is not None:
         said.add(Time(time))
-    if len(said) > 1 or len(known - {0, True}) > 1:
+    if len(said) > 1 or len(steps) > 1:
         raise SpecError(
             "the modes are not of one time axis",
             remedy="give state spaces of one sample time dt, and the same time if it is given too",

@@ -73,7 +73,13 @@ def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[
 
 
 def round_coordinates(P: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return T such that ``x' P x`` is ``|z|^2`` for ``x = T z``; P is positive definite."""
+    """Return an upper triangular T such that ``x' P x`` is ``|z|^2`` for ``x = T z``.
+
+    Parameters
+    ----------
+    P : ndarray, shape (n, n)
+        Positive definite.
+    """
     return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
 
 

@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.load import Spec
 
-# Beyond a lever arm in m and a time constant in s, another unit was probably meant.
-_LONGEST, _SLOWEST = 2, 1
+# Beyond a lever arm in m, a time constant in s, and a force that a motion begins with, in limits of
+# the torque, another unit was probably meant.
+_LONGEST, _SLOWEST, _HARDEST = 2, 1, 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,7 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     yield from _doubt_units(spec)
     yield from _doubt_thresholds(spec)
     yield from _doubt_command(spec)
+    yield from _doubt_initial_force(spec)
     yield from _doubt_bounds(spec)
     yield from _doubt_continuous(spec)
 
@@ -111,6 +113,19 @@ def _doubt_command(spec: InteractionDesignSpec) -> Iterator[Doubt]:
             f"{limits.velocity.text}: the axis cannot follow a command at that limit (raise "
             "limits.command, or lower limits.velocity)",
         )
+
+
+def _doubt_initial_force(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield a wanted force that is out of proportion: some more than the limit is the very use."""
+    force, limit = None if spec.goals is None else spec.goals.initial_force, spec.limits.torque
+    if force is None or isinstance(force, str) or force.exact <= _HARDEST * limit.exact:
+        return
+    yield Doubt(
+        ("goals", "initial_force"),
+        f"goals.initial_force of {force.text} is more than {_HARDEST} times limits.torque of "
+        f"{limit.text}: is that its unit? (what is shown is that motions from there decay, not "
+        "that the torque is within its limit; write `largest` for as much as is found)",
+    )
 
 
 def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:

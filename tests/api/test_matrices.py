@@ -178,3 +178,17 @@ def test_check_lyapunov_says_where_it_fails():
     ):
         with pytest.raises(NrsDesignError, match=said):
             nrs.check_lyapunov(pair(5), P)
+
+
+@pytest.mark.parametrize("time", ["continuous", "discrete"])
+def test_a_constant_parameter_beside_modes_of_unequal_size(time):
+    """No function that is affine in it is looked for; that ended in an IndexError."""
+    decision = nrs.certify(
+        {"a": [["-k", 0], [0, "-k"]], "b": [["-k"]]},
+        time=time,
+        resets={("a", "b"): [["1/2", 0]], ("b", "a"): [["1/2"], [0]]},
+        parameters={"k": {"nominal": "1/2", "range": ("1/3", "2/3"), "varies": False}},
+        budget=2,
+    )
+    assert decision.verdict in ("proved", "inconclusive")
+    assert "parameter quadratic" not in {attempt.step for attempt in decision.attempts}

@@ -52,6 +52,8 @@ class RunBounds:
         Whether the spec asks for a proof that holds while contact is lost.
     command : str
         Unit of the motor's command.
+    saturates : float or None
+        Command at which the driver saturates, in that unit; None if the spec does not say.
     proved : bool
         Whether a valid certificate proves the spec; else it is only declared.
     """
@@ -65,6 +67,7 @@ class RunBounds:
     period: float | None
     losable: bool
     command: str
+    saturates: float | None = None
     proved: bool = False
 
     @property
@@ -126,6 +129,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         period=_period(spec),
         losable=spec.contact == "losable",
         command=spec.actuator.command,
+        saturates=None if spec.limits.command is None else spec.limits.command.si,
     )
 
 

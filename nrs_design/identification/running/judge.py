@@ -96,7 +96,7 @@ def judge_run(
     window : float
         Length of the windows of stiffness in s.
     command_limit : float, optional
-        Where the driver saturates, in units of the command.
+        Where the driver saturates, in units of the command; that of the spec, if it has one.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def judge_run(
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
-        judge_saturation(log, bounds, command_limit),
+        judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
         judge_force(log, bounds),
     )
     return RunJudgement(log, bounds, checks, tuple(windows))

@@ -13,6 +13,9 @@ from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 
+# Clocks of loop and log differ by less than this part of a period.
+_UNEVEN = 0.05
+
 
 def _assumed(bounds: RunBounds) -> str:
     return f"taken for granted by {bounds.source}"
@@ -68,7 +71,15 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
     """
     steps = np.diff(log.time)
     words = f"steps from {steps.min():.4g} to {steps.max():.4g} s, usually {log.step:.4g} s"
+    if bounds.period is not None and not _holds_whole(log.step, bounds.period):
+        words += f": no whole number of periods of {bounds.period:g} s"
     return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
+
+
+def _holds_whole(step: float, period: float) -> bool:
+    """Tell whether rows come at every sample of the loop, or at every second one, and so on."""
+    count = max(round(step / period), 1)
+    return abs(step - count * period) <= _UNEVEN * period
 
 
 def _time_of(bounds: RunBounds) -> str:
@@ -99,7 +110,8 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
     size = np.abs(log.columns["command"])
     largest = f"largest command {size.max():.5g} {log.command_unit}"
     if limit is None:
-        reason = f"{largest}; where the driver saturates is not known: give --command-limit"
+        unknown = "where the driver saturates is not known"
+        reason = f"{largest}; {unknown}: give --command-limit, or the spec `limits: command`"
         return Check("saturation", BoundStatus.NOT_JUDGED, reason, "", "")
     allowed = f"below {limit:g} {log.command_unit}"
     met = np.flatnonzero(size >= limit)

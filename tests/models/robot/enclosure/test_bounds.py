@@ -16,7 +16,7 @@ from nrs_design.models.robot import (
     coriolis_matrix,
     mass_matrix,
 )
-from nrs_design.models.robot.enclosure.bounds import goal_of
+from nrs_design.models.robot.enclosure.bounds import bounds_document, goal_of
 from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
 from nrs_design.models.robot.enclosure.enclose import enclose, find_largest
 from nrs_design.models.robot.enclosure.quantities import (
@@ -202,7 +202,7 @@ def test_the_table_of_the_page(robot, said, key, shown):
     quantity = QUANTITIES[key]
     if shown:
         whole = enclose(robot, quantity, space.workspace, goal_of(room))
-        document = to_document("arm", 64 * "0", space, {key: whole}, "1")
+        document = bounds_document("arm", 64 * "0", space, {key: whole}, "1")
         assert bound == document["bounds"][key]
         assert int(boxes) == document["found"][key]["boxes"]
     largest, (phi, psi, d) = find_largest(robot, quantity, space.workspace)

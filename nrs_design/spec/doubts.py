@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec.quantity import is_less
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
@@ -114,7 +115,7 @@ def _doubt_command(spec: InteractionDesignSpec) -> Iterator[Doubt]:
 
 
 def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
-    """Yield disturbances under which no bound will be proved."""
+    """Yield disturbances under which no bound will be proved, or one that commands may leave."""
     two = spec.sampling is not None and spec.sampling.round > 1
     if two and spec.disturbances is not None:
         yield Doubt(
@@ -122,6 +123,14 @@ def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
             "beside an outer_period, the decay of the undisturbed loop is proved, and no bound "
             "under disturbances (bounds of the loop without outer_period are listed; or remove "
             "disturbances)",
+        )
+    command = None if spec.disturbances is None else spec.disturbances.command
+    if command is not None and is_less(command, limit := spec.limits.velocity):
+        yield Doubt(
+            ("disturbances", "command"),
+            f"bounds are for velocity commands up to {command.text}, and limits.velocity lets them "
+            f"be {limit.text}: beyond the first, no bound holds (raise the first, or lower "
+            "limits.velocity)",
         )
 
 

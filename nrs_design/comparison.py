@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
-from nrs_design.pipeline import Progress, run_analysis, run_certification
+from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -125,7 +126,7 @@ class Comparison:
         return tuple(part for part in Part if part not in self.compared)
 
 
-def compare(before: Path, after: Path, progress: Progress = lambda step: None) -> Comparison:
+def compare(before: Path, after: Path, progress: Progress = silent) -> Comparison:
     """Compare two specs, two certificates, or one of each.
 
     Specs are designed and certified afresh; certificates are re-checked without their specs.

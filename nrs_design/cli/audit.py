@@ -11,7 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
-    Outputs,
+    Destinations,
     ReportTo,
     read_all,
     sources,
@@ -69,12 +69,12 @@ def audit(
 
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
-    from nrs_design.identification.running import bounds_of, judge_run, read_run
+    from nrs_design.identification.running import judge_run, read_run, read_run_bounds
     from nrs_design.spec import read_spec
 
-    outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
     loaded = read_spec(spec)
-    bounds = bounds_of(loaded)
+    bounds = read_run_bounds(loaded)
     limit = None if command_limit is None else _limit_of(command_limit, bounds.command)
     reason, losable = _proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [], quiet=quiet)

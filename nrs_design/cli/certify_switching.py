@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.certification_summary import summary
+from nrs_design.cli.certification_summary import certification_summary
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
     MaxUpdates,
@@ -98,7 +98,7 @@ def certify_switching(
     """
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
-    from nrs_design.pipeline import Overrides, limits_of, run_certification
+    from nrs_design.pipeline import Overrides, run_certification, search_limits
     from nrs_design.pipeline.margins import check_margins, run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
@@ -113,7 +113,7 @@ def certify_switching(
     )
     if method is Method.GRADIENT and as_json:
         gradient = replace(gradient, tell=lambda updates, v: history.append((updates, v)))
-    limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
+    limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
@@ -137,7 +137,7 @@ def certify_switching(
         parts = look(result, limits, step)
     steps = _next_steps(result, margin, shortest_dwell)
     if as_json:
-        content = summary(result, written) | margins_summary(margins)
+        content = certification_summary(result, written) | margins_summary(margins)
         content |= {"gradient_history": history} if history else {}
         print_json("certify-switching", content | _help_summary(result, parts, steps))
     elif not quiet:

@@ -174,7 +174,7 @@ def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
         say_failure(text.line_of(item), str(item.status))
     if not quiet:
         say()
-        say(text.summary_of(outcome))
+        say(text.summary_line(outcome))
 
 
 def _certify(

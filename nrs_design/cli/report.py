@@ -13,12 +13,13 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Budget, Date, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.errors import DesignError, OutputError
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from datetime import date as Day
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Overrides, Progress, Result
+    from nrs_design.pipeline import Overrides, Result
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -171,13 +172,13 @@ def _build(
     loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress, quiet: bool
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
-    from nrs_design.pipeline import limits_of, run_certification, run_comparison, run_recorded
+    from nrs_design.pipeline import run_certification, run_comparison, run_recorded, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
 
-    limits = limits_of(loaded.spec, overrides)
+    limits = search_limits(loaded.spec, overrides)
     if asked.certificate is None:
         result = run_certification(loaded, limits=limits, progress=step)
     else:

@@ -12,7 +12,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline import Designed, Progress, run_certification, run_design, wrong_kind
+from nrs_design.pipeline import Designed, run_certification, run_design, wrong_kind
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
@@ -77,7 +78,7 @@ class Execution:
 def export_design(
     loaded: LoadedSpec,
     certificate: Path | None = None,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
     execution: Execution | None = None,
 ) -> Export:
     """Design a spec and return its export record, if the design is proved.

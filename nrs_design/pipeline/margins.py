@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.pipeline.certification import Result, assemble_spec, limits_of
-from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
@@ -18,7 +19,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
 
 if TYPE_CHECKING:
-    from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+    from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.spec.sampling import SamplingSpec
 
@@ -27,7 +28,7 @@ MARGIN_BUDGET = 10.0
 
 def quick_limits(result: Result, limits: Limits | None) -> Limits:
     """Return how far one search of many goes: a proof is enough, whatever its decay rate."""
-    limits = limits or limits_of(result.loaded.spec)
+    limits = limits or search_limits(result.loaded.spec)
     return replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
 
@@ -37,7 +38,7 @@ class ProofMargins:
 
     Parameters
     ----------
-    loop : LoopMargins or None
+    loop : MarginBrackets or None
         Of delay, period and disturbances.
     box : BoxMargin or None
         Of the declared ranges.
@@ -45,7 +46,7 @@ class ProofMargins:
         Of the time between switches.
     """
 
-    loop: LoopMargins | None = None
+    loop: MarginBrackets | None = None
     box: BoxMargin | None = None
     dwell: DwellMargin | None = None
 
@@ -171,7 +172,7 @@ def _so_far(verdicts: Mapping[Fraction, Verdict], unit: str = "") -> str:
 
 def run_loop_margins(
     result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> LoopMargins | None:
+) -> MarginBrackets | None:
     """Find how far delay, period and disturbances stretch; None where a spec has none of them.
 
     Parameters
@@ -183,7 +184,7 @@ def run_loop_margins(
     progress : callable
         Told the name of each step.
     """
-    from nrs_design.search.loop_margin import LoopMargins
+    from nrs_design.search.loop_margin import MarginBrackets
 
     if result.designed is None or not _has_loop(result):
         return None
@@ -191,7 +192,7 @@ def run_loop_margins(
     delay = period = None
     if (sampling := result.designed.spec.sampling) is not None:
         delay, period = _sampling_margins(result.designed, sampling, result, quick, progress)
-    return LoopMargins(delay, period, _command_margin(result))
+    return MarginBrackets(delay, period, _command_margin(result))
 
 
 def _has_loop(result: Result) -> bool:

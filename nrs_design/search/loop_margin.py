@@ -54,7 +54,7 @@ class CommandMargin:
 
 
 @dataclass(frozen=True)
-class LoopMargins:
+class MarginBrackets:
     """What `--margin` finds beside the box of ranges.
 
     Parameters

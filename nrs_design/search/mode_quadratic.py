@@ -23,7 +23,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance, Cost
-from nrs_design.search.balance import balance, scale
+from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family
@@ -163,7 +163,7 @@ class _Problem:
         names = {mode.name: k for k, mode in enumerate(system.modes)}
         matrices = [np.array(mode.A.floats()) for mode in system.modes]
         self.matrices = [
-            scale(A[None], d)[0] for A, d in zip(matrices, self.exponents, strict=True)
+            scale_states(A[None], d)[0] for A, d in zip(matrices, self.exponents, strict=True)
         ]
         self.switches = [
             self._switch(names[edge.source.name], names[edge.target.name], edge)

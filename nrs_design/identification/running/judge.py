@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from nrs_design.errors import DataError
 from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import Check, Status
+from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.contact import judge_contact
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.signals import (
@@ -53,9 +53,9 @@ class RunJudgement:
     def verdict(self) -> str:
         """``outside``, ``inside``, or ``inconclusive``."""
         statuses = {check.status for check in self.checks}
-        if Status.OUTSIDE in statuses:
+        if BoundStatus.OUTSIDE in statuses:
             return "outside"
-        open_ends = {Status.UNDECIDED, Status.NOT_JUDGED} & statuses
+        open_ends = {BoundStatus.UNDECIDED, BoundStatus.NOT_JUDGED} & statuses
         return "inside" if self.bounds.proved and not open_ends else "inconclusive"
 
 

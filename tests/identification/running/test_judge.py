@@ -7,15 +7,15 @@ import pytest
 
 from nrs_design.errors import DataError, DesignError
 from nrs_design.identification.datasets.columns import parse_mapping
-from nrs_design.identification.running import bounds_of, judge_run, read_run
+from nrs_design.identification.running import judge_run, read_run, read_run_bounds
 from nrs_design.identification.running.bounds import Stiffness
 from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
 from nrs_design.spec import read_spec
 from tests.identification import runs
 from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
 
-SOFT = bounds_of(read_spec(SOFT_TISSUE))
-SAMPLED = bounds_of(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
+SOFT = read_run_bounds(read_spec(SOFT_TISSUE))
+SAMPLED = read_run_bounds(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
 
 
 def log(tmp_path, data=None, text=None, entries=()):
@@ -38,7 +38,7 @@ def test_bounds_of_the_spec():
     assert pair == pytest.approx((720.56 * 0.24**2, 768.17 * 0.24**2))
     assert (SOFT.torque, SOFT.transitions, SOFT.delay) == (0.3, None, None)
     with pytest.raises(DesignError, match="kind switched-system"):
-        bounds_of(read_spec(COMMUTING))
+        read_run_bounds(read_spec(COMMUTING))
 
 
 def test_a_good_run(tmp_path):
@@ -182,7 +182,7 @@ def with_switching(tmp_path, rules):
     text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
     path = tmp_path / "spec.nrs.yaml"
     path.write_text(text)
-    return bounds_of(read_spec(path))
+    return read_run_bounds(read_spec(path))
 
 
 @pytest.mark.parametrize(
@@ -203,6 +203,15 @@ def test_dwell_times(tmp_path, rules, status, words):
         assert any(word in found.first.words for word in words.split("|"))
 
 
+def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
+    rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
+    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
+    stays = check(found, "dwell times")
+    assert str(stays.status) == "not judged"
+    assert "name contacts" in stays.measured
+    assert found.verdict == "inconclusive"
+
+
 def test_rules_without_a_column(tmp_path):
     text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
     record = log(tmp_path, text=text)
@@ -212,7 +221,7 @@ def test_rules_without_a_column(tmp_path):
 
 
 def test_a_tissue_that_remembers(tmp_path):
-    bounds = bounds_of(read_spec(ROBOT / "nose.nrs.yaml"))
+    bounds = read_run_bounds(read_spec(ROBOT / "nose.nrs.yaml"))
     text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
     assert "remembers" in check(judged(log(tmp_path, text=text), bounds), "stiffness").measured
 

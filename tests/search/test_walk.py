@@ -10,8 +10,11 @@ import pytest
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
+from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import Limits, Verdict, certify
+from nrs_design.search.graph import Graph
 from nrs_design.search.period import search_period
+from nrs_design.search.walk import growing_walks
 from tests.proof.systems import ando_shih, family, golden, matrix, resets_between
 from tests.proof.truth import holds
 from tests.search.support import found
@@ -209,3 +212,18 @@ def test_words_are_searched_where_any_mode_may_follow_any():
 def test_stable_families_stay_so(dwell):
     assert search(ando_shih("0.99", Switching(Fraction(dwell)))) is None
     assert matrix([["0.99"]]).denominator == 100
+
+
+def test_every_walk_is_closed_in_the_direction_of_its_jumps():
+    """Modes that follow each other one way round, and a way back between two of them."""
+    modes = [[["1/2", f"{k}/3"], [0, "1/4"]] for k in range(1, 4)]
+    ways = (("m0", "m1"), ("m1", "m2"), ("m2", "m0"), ("m1", "m0"))
+    switching = Switching(Fraction(1), transitions=ways)
+    system = family(*modes, time=Time.DISCRETE, switching=switching)
+    graph = Graph.of(system, np.array([mode.A.floats() for mode in system.modes]))
+    walks = list(growing_walks(graph, Allowance()))
+    assert {len(cycle) for cycle, _ in walks} >= {2, 3}
+    for cycle, times in walks:
+        assert len(cycle) == len(times)
+        for k, after in zip(cycle, (*cycle[1:], cycle[0]), strict=True):
+            assert graph.jumps[k].target == graph.jumps[after].source

@@ -116,5 +116,9 @@ def judge_run(
         judge_jitter(log, bounds),
         judge_saturation(log, bounds, command_limit),
         judge_force(log, bounds),
+        *(
+            Check(name, Status.NOT_JUDGED, why, allowed, f"taken for granted by {bounds.source}")
+            for name, why, allowed in bounds.unseen
+        ),
     )
     return RunJudgement(log, bounds, checks, tuple(windows))

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
+
 import nox
 
+nox.needs_version = ">=2025.10.14"
 nox.options.sessions = ["lint", "types", "tests"]
-nox.options.default_venv_backend = "venv"
+nox.options.default_venv_backend = "virtualenv"
 
 # Who is done takes over from the other: some tests are a thousand times as long as others.
 TWO_PROCESSES = ("-n", "2", "--dist", "worksteal")
 CONSTRAINTS = ("-c", "constraints.txt")
+IN_ENVIRONMENT = {"venv_backend": "none", "requires": ["environment"]}
 SOURCES = ("nrs_design", "tests", "benchmarks", "docs", "noxfile.py")
 
 
@@ -21,56 +25,66 @@ def lint(session: nox.Session) -> None:
 
 
 @nox.session
+def environment(session: nox.Session) -> None:
+    """Install the package and what its tests and mypy need, once for all sessions that run in it.
+
+    What is never imported is not compiled; the rest is when it is imported first.
+    """
+    session.install("--no-compile", ".[test]", "mypy", "scipy-stubs", *CONSTRAINTS)
+
+
+def run_there(session: nox.Session, program: str, *arguments: str, **settings: str) -> None:
+    """Run a program of the environment, which keeps the bytecode of what it imports."""
+    programs = session.env_dir.parent / "environment" / "bin"
+    path = f"{programs}{os.pathsep}{os.environ['PATH']}"
+    env = {"PATH": path, "PYTHONDONTWRITEBYTECODE": None, **settings}
+    session.run(str(programs / program), *arguments, env=env, external=True)
+
+
+@nox.session(**IN_ENVIRONMENT)
 def types(session: nox.Session) -> None:
-    session.install(".", "mypy", "scipy-stubs", *CONSTRAINTS)
-    session.run("mypy", "--num-workers", "2")
+    run_there(session, "mypy", "--num-workers", "2")
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def tests(session: nox.Session) -> None:
-    session.install(".[test]", *CONSTRAINTS)
-    session.run("pytest", *TWO_PROCESSES, "-m", "not slow", *session.posargs)
+    run_there(session, "pytest", *TWO_PROCESSES, "-m", "not slow", *session.posargs)
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def accessibility(session: nox.Session) -> None:
     """Hold pages against the rules of axe-core, which npm fetches, in Chromium."""
-    session.install(".[test]", *CONSTRAINTS)
     folder = session.create_tmp()
     session.run("npm", "install", "--prefix", folder, "axe-core@4.14.1", external=True, silent=True)
     axe = f"{folder}/node_modules/axe-core/axe.min.js"
-    session.run("pytest", "-k", "accessibility", "tests/reporting", env={"AXE": axe})
+    run_there(session, "pytest", "-k", "accessibility", "tests/reporting", AXE=axe)
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def coverage(session: nox.Session) -> None:
     """Every line and every branch of what decides is run by its own tests."""
-    session.install(".[test]", *CONSTRAINTS)
-    session.run("coverage", "run", "-m", "pytest", "-m", "not slow", "tests/proof")
-    session.run("coverage", "report")
+    run_there(session, "coverage", "run", "-m", "pytest", "-m", "not slow", "tests/proof")
+    run_there(session, "coverage", "report")
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def mutation(session: nox.Session) -> None:
     """Make every small error in what decides, and run its tests: a quarter of an hour."""
-    session.install(".[test]", *CONSTRAINTS)
-    session.run("python", "-m", "tests.mutation", *session.posargs)
+    run_there(session, "python", "-m", "tests.mutation", *session.posargs)
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def slow(session: nox.Session) -> None:
     """Run the exhaustive tests that the default session leaves out, and many more examples."""
-    session.install(".[test]", *CONSTRAINTS)
     chosen = ("-m", "slow or hypothesis", "--hypothesis-profile", "many")
-    session.run("pytest", *TWO_PROCESSES, *chosen, *session.posargs)
+    run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
 
 
-@nox.session
+@nox.session(**IN_ENVIRONMENT)
 def frama(session: nox.Session) -> None:
     """Analyze exported C for all inputs at once; for machines with Frama-C, which is large."""
-    session.install(".[test]", *CONSTRAINTS)
     session.run("frama-c", "-version", external=True)
-    session.run("pytest", "-m", "slow", "tests/exporters/test_eva.py")
+    run_there(session, "pytest", "-m", "slow", "tests/exporters/test_eva.py")
 
 
 @nox.session

@@ -52,6 +52,10 @@ class Verification:
     fault: str | None
     forms: tuple[list[IntegerMatrix], ...] = field(default=(), repr=False, compare=False)
 
+    def __bool__(self) -> bool:
+        """Whether the certificate is valid; what it shows may be a refutation."""
+        return self.fault is None
+
 
 def prove(document: Mapping[str, Any]) -> Verification:
     """Check that a certificate holds for its own modes; whose they are is not asked.
@@ -61,9 +65,12 @@ def prove(document: Mapping[str, Any]) -> Verification:
     document : mapping
         As `nrs_design.certificates.verify.read_document` gives it.
     """
-    return confirmed(
-        lambda: find_altered(document) or check_document(document, held_system(document))
-    )
+
+    def check() -> Verification:
+        altered = find_altered(document)
+        return check_document(document, held_system(document)) if altered is None else altered
+
+    return confirmed(check)
 
 
 def find_altered(document: Mapping[str, Any]) -> Verification | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -11,6 +11,7 @@ from pathlib import Path
 from nrs_design.errors import Fault, SpecError
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
 from nrs_design.gating.rules import ROS_AXIS, ROS_PARAMETERS
+from nrs_design.progress import Progress
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
@@ -69,7 +70,7 @@ class _Asker:
 
     path: Path
     limits: Limits
-    progress: Callable[[str], None]
+    progress: Progress
     known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
 
     def obligation(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Obligation:
@@ -155,9 +156,7 @@ class _Asker:
         return said
 
 
-def check_file(
-    path: Path, question: Question, limits: Limits, progress: Callable[[str], None]
-) -> GateOutcome:
+def check_file(path: Path, question: Question, limits: Limits, progress: Progress) -> GateOutcome:
     """Read every admittance controller of a file, and decide each of its axes.
 
     Parameters

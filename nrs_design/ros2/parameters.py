@@ -172,7 +172,7 @@ def read_integer(text: str) -> Fraction:
     Raises
     ------
     SpecError
-        If it is none.
+        If it is not one.
     """
     if not _INTEGER.fullmatch(text):
         raise SpecError(f"{quoted(text)} is no integer", remedy="write digits without a point")
@@ -185,7 +185,7 @@ def read_bool(text: str) -> Fraction:
     Raises
     ------
     SpecError
-        If it is none.
+        If it is not one.
     """
     if text in _TRUE or text in _FALSE:
         return Fraction(text in _TRUE)

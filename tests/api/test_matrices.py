@@ -1,13 +1,15 @@
 """What is decided about matrices of the user's own."""
 
+from decimal import Decimal
 from fractions import Fraction
 
 import control
+import cvxpy as cp
 import numpy as np
 import pytest
 
 import nrs_design as nrs
-from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.errors import DesignError, NrsDesignError, SpecError
 from tests.api.pairs import ROTATION, pair
 
 
@@ -96,6 +98,10 @@ def test_names_may_be_numbers():
         (([[[float("nan")]]],), "not a finite"),
         (([[[1]], [[1, 0], [0, 1]]],), "states"),
         (({"a b": [[1]]},), "not a name"),
+        ((None,), "not a list of matrices"),
+        (("mine.nrs.yaml",), "a text, not a list"),
+        (([control.tf([1], [1, 1])],), r"m1 is not a matrix .*control\.ss"),
+        (([[[Decimal("NaN")]]],), "NaN"),
     ],
 )
 def test_wrong_input_is_told_in_words(arguments, said):
@@ -120,6 +126,30 @@ def test_wrong_options():
     for transitions in (["m1", "m2"], "m1"):
         with pytest.raises(SpecError, match="expected two names"):
             nrs.certify([[[-1]], [[-2]]], transitions=transitions)
+    for resets in ({"m1": [[1]]}, [("m1", "m2", [[1]])]):
+        with pytest.raises(SpecError, match="named by two modes"):
+            nrs.certify([[[-1]], [[-2]]], resets=resets)
+    for option in ({"budget": -1}, {"budget": float("nan")}, {"max_degree": 0}):
+        with pytest.raises(DesignError, match=f"{next(iter(option))} is"):
+            nrs.certify([[[-1]]], **option)
+
+
+def test_a_variable_of_cvxpy_is_told_from_its_value():
+    P = cp.Variable((2, 2), symmetric=True)
+    with pytest.raises(SpecError, match="P is not a matrix") as caught:
+        nrs.check_lyapunov(pair(5), P)
+    assert "give its .value" in caught.value.remedy
+    P.value = np.diag([1.0, 5.0])
+    assert nrs.check_lyapunov(pair(5), P.value).holds
+
+
+def test_what_a_condition_takes_for_true():
+    """``if nrs.certify(...)`` asks for a proof."""
+    assert nrs.certify([[[-1]]])
+    assert not nrs.certify([[[1]]])
+    assert not nrs.certify(pair(6), method="lmi")
+    assert nrs.check_lyapunov(pair(5), [[1, 0], [0, 5]])
+    assert not nrs.check_lyapunov(pair(5), np.eye(2))
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,8 @@ class RunBounds:
         Unit of the motor's command.
     unseen : tuple of Unseen
         What else must hold, and no log shows.
+    saturates : float or None
+        Command at which the driver saturates, in that unit; None if the spec does not say.
     proved : bool
         Whether a valid certificate proves the spec; else it is only declared.
     """
@@ -80,6 +82,7 @@ class RunBounds:
     losable: bool
     command: str
     unseen: tuple[Unseen, ...] = ()
+    saturates: float | None = None
     proved: bool = False
 
     @property
@@ -99,7 +102,7 @@ class RunBounds:
         return Stiffness(tuple(ranges), tuple(foreign))
 
 
-def bounds_of(loaded: LoadedSpec) -> RunBounds:
+def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
     """Read the bounds out of a spec.
 
     Raises
@@ -117,7 +120,7 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
     return bounds_of_spec(spec)
 
 
-def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
+def switching_rules(spec: InteractionDesignSpec) -> SwitchingSpec:
     """Return the rules of switching that a run can be held against.
 
     A log says which controller is active, not what is touched.
@@ -126,9 +129,9 @@ def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
 
 
 def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
-    """Return the bounds of a design; see `bounds_of`."""
+    """Return the bounds of a design; see `read_run_bounds`."""
     arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
-    rules = rules_of(spec)
+    rules = switching_rules(spec)
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(
@@ -143,6 +146,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         losable=spec.contact == "losable",
         command=spec.actuator.command,
         unseen=tuple(_unseen(spec)),
+        saturates=None if spec.limits.command is None else spec.limits.command.si,
     )
 
 

@@ -117,7 +117,9 @@ def judge_run(
         judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
         judge_force(log, bounds),
         *(
-            Check(name, Status.NOT_JUDGED, why, allowed, f"taken for granted by {bounds.source}")
+            Check(
+                name, BoundStatus.NOT_JUDGED, why, allowed, f"taken for granted by {bounds.source}"
+            )
             for name, why, allowed in bounds.unseen
         ),
     )

@@ -211,7 +211,7 @@ def test_dwell_times(tmp_path, rules, status, words):
     ],
 )
 def test_what_no_log_shows_is_not_judged_so_the_run_is_not_inside(tmp_path, spec, name, allowed):
-    bounds = bounds_of(read_spec(ROBOT / f"{spec}.nrs.yaml"))
+    bounds = read_run_bounds(read_spec(ROBOT / f"{spec}.nrs.yaml"))
     unseen = check(judged(log(tmp_path), bounds, command_limit=3000), name)
     assert (str(unseen.status), unseen.allowed) == ("not judged", allowed)
     assert SOFT.unseen == ()

@@ -127,7 +127,7 @@ def worst_signs(system, mode):
 def test_the_numbers_of_the_page(tmp_path, speed, level, kept):
     """docs/certificates/invariant-ellipsoid.md: proved, and found at two stiffnesses."""
     loaded = spec_of(tmp_path, f"disturbances: {{command: {speed} deg/s}}\n")
-    result = run_certification(loaded, limits=limits_of(loaded.spec, optimize_rate=False))
+    result = run_certification(loaded, limits=search_limits(loaded.spec, optimize_rate=False))
     system = result.certification.system
     assert ceil(bound_on(system, result.certification.statements, "motor command").level) == level
     claim = next(s for s in result.certificate.statements if "motor" in s.claim(system))

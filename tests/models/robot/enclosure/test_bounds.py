@@ -202,7 +202,7 @@ def test_the_table_of_the_page(robot, said, key, shown):
     quantity = QUANTITIES[key]
     if shown:
         whole = enclose(robot, quantity, space.workspace, goal_of(room))
-        document = to_document("arm", 64 * "0", space, {key: whole}, "1")
+        document = bounds_document("arm", 64 * "0", space, {key: whole}, "1")
         assert bound == document["bounds"][key]
         assert int(boxes) == document["found"][key]["boxes"]
     largest, (phi, psi, d) = find_largest(robot, quantity, space.workspace)

@@ -165,7 +165,7 @@ class Study:
         Raises
         ------
         DesignError
-            If the spec is no interaction design, or its controllers are none that he plays against.
+            If the spec is no interaction design, or the adversary cannot play against it.
         CertificateError
             If the file is no certificate of the spec.
 

@@ -21,9 +21,8 @@ from nrs_design.exporters.deployed_c import code_differences, macro_differences
 from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import monitor_limits
-from nrs_design.exporters.program import program_of
+from nrs_design.exporters.program import law_of, program_of
 from nrs_design.exporters.record import ExportRecord, Gain
-from nrs_design.exporters.shipped import law_of
 from nrs_design.files import open_regular
 from nrs_design.spec import InteractionDesignSpec
 

@@ -227,6 +227,6 @@ def assumptions(around: Surroundings) -> tuple[str, ...]:
         follows,
         "each axis acts by itself: the control frame is aligned with the base, the Jacobian is "
         "square and regular and does not change, and its damped inverse (alpha) is its inverse",
-        "the parameters are not changed while the controller runs",
+        "the parameters are those of this file, and are not changed while the controller runs",
         "nothing is limited on the way, and arithmetic is not rounded",
     )

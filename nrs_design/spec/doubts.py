@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec.quantity import is_less
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
@@ -129,21 +130,28 @@ def _doubt_initial_force(spec: InteractionDesignSpec) -> Iterator[Doubt]:
 
 
 def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
-    """Yield what will not be proved beside two periods."""
-    if spec.sampling is None or spec.sampling.round == 1:
-        return
-    if spec.disturbances is not None:
+    """Yield what will not be proved beside two periods, and bounds that commands may leave."""
+    two = spec.sampling is not None and spec.sampling.round > 1
+    if two and spec.disturbances is not None:
         yield Doubt(
             ("disturbances",),
             "beside an outer_period, the decay of the undisturbed loop is proved, and no bound "
             "under disturbances (bounds of the loop without outer_period are listed; or remove "
             "disturbances)",
         )
-    if spec.coupling is not None:
+    if two and spec.coupling is not None:
         yield Doubt(
             ("coupling",),
             "beside an outer_period, nothing is proved of axes that act on each other (what is "
             "proved without the one or the other is listed; or remove outer_period or coupling)",
+        )
+    command = None if spec.disturbances is None else spec.disturbances.command
+    if command is not None and is_less(command, limit := spec.limits.velocity):
+        yield Doubt(
+            ("disturbances", "command"),
+            f"bounds are for velocity commands up to {command.text}, and limits.velocity lets them "
+            f"be {limit.text}: beyond the first, no bound holds (raise the first, or lower "
+            "limits.velocity)",
         )
 
 

@@ -57,6 +57,17 @@ def test_a_command_that_cannot_reach_the_speed_limit():
     assert "0.13944096 rad/s" in str(found[-1])
 
 
+def test_bounds_for_smaller_commands_than_the_limit_lets_through():
+    """What is exported saturates at limits.velocity, 8 deg/s; bounds are for the disturbance."""
+    for command, count in (("8 deg/s", 1), ("7.999 deg/s", 2), ("0.1 rad/s", 2), ("0.2 rad/s", 1)):
+        more = f"sampling: {{period: 2 ms, delay: 0}}\ndisturbances: {{command: {command}}}\n"
+        found = doubts(f"{IMPEDANCE}{more}")
+        assert len(found) == count
+        if count == 2:
+            assert found[-1].at == ("disturbances", "command")
+            assert f"up to {command}, and limits.velocity lets them be 8 deg/s" in str(found[-1])
+
+
 def test_the_largest_gain_of_a_range_counts():
     text = IMPEDANCE.replace(
         "gain: 4.8417e-4 rad/s/rpm",

@@ -258,7 +258,7 @@ def _has_failed(records: Sequence[ActuatorRecord], found: TimeFit) -> bool:
 def _first_order(records: Sequence[ActuatorRecord]) -> TimeFit:
     """Return a motor of first order, with friction only where that is better.
 
-    The scan may need friction that is none, as its times are coarse.
+    The scan may find friction where there is none, as its times are coarse.
     """
     start = scan_motor(records)
     if start.friction is None:

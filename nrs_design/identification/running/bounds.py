@@ -39,6 +39,8 @@ class RunBounds:
         Shortest and longest time in each controller, in s.
     transitions : frozenset of (str, str) or None
         Allowed switches; None allows all.
+    names_contacts : bool
+        Whether there are other rules, about what is touched, which no log says.
     torque : float
         Largest torque in N m.
     delay : float or None
@@ -61,6 +63,7 @@ class RunBounds:
     stiffness: Mapping[str, Stiffness | None]
     stays: Mapping[str, tuple[float, float]]
     transitions: frozenset[tuple[str, str]] | None
+    names_contacts: bool
     torque: float
     delay: float | None
     lever_arm: float | None
@@ -123,6 +126,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         stiffness={name: _stiffness(spec, name) for name in spec.controllers},
         stays={name: _stay(rules, name) for name in spec.controllers},
         transitions=None if transitions is None else frozenset(transitions),
+        names_contacts=spec.switching.names_contacts,
         torque=spec.limits.torque.si,
         delay=None if margin is None else margin.si,
         lever_arm=arms.pop() if len(arms) == 1 else None,

@@ -37,6 +37,9 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
         What the spec promises.
     """
     allowed, basis = _allowed(bounds), f"switching rules of {bounds.source}"
+    if bounds.names_contacts:
+        reason = "the rules name contacts, and a log does not say what is touched"
+        return Check(_NAME, BoundStatus.NOT_JUDGED, reason, "", basis)
     if log.modes is None:
         if not allowed:
             return Check(_NAME, BoundStatus.INSIDE, "any switching is allowed", "arbitrary", basis)

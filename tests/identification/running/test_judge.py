@@ -203,6 +203,15 @@ def test_dwell_times(tmp_path, rules, status, words):
         assert any(word in found.first.words for word in words.split("|"))
 
 
+def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
+    rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
+    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
+    stays = check(found, "dwell times")
+    assert str(stays.status) == "not judged"
+    assert "name contacts" in stays.measured
+    assert found.verdict == "inconclusive"
+
+
 def test_rules_without_a_column(tmp_path):
     text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
     record = log(tmp_path, text=text)

@@ -220,7 +220,9 @@ def _print_json(
 def _print_next(result: Result, asked: _Asked) -> None:
     from nrs_design.reporting.next_steps import next_steps
 
-    for line in next_steps(result, margin=asked.margin, shortest_dwell=asked.shortest_dwell):
+    for line in next_steps(
+        result, margin=asked.margin, shortest_dwell=asked.shortest_dwell, spec=result.loaded.path
+    ):
         say(f"next: {line}")
 
 

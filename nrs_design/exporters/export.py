@@ -152,6 +152,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     found, design = checked.certificate, designed.design
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)
+    if found.verdict != "proved":
+        return Export("inconclusive", None, found, f"{file} proves nothing", design)
     fault = find_mismatch(design, found)
     if fault is None and found.coordinates != designed.spec.coordinates:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"

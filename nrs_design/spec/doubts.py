@@ -129,14 +129,21 @@ def _doubt_initial_force(spec: InteractionDesignSpec) -> Iterator[Doubt]:
 
 
 def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
-    """Yield disturbances under which no bound will be proved."""
-    two = spec.sampling is not None and spec.sampling.round > 1
-    if two and spec.disturbances is not None:
+    """Yield what will not be proved beside two periods."""
+    if spec.sampling is None or spec.sampling.round == 1:
+        return
+    if spec.disturbances is not None:
         yield Doubt(
             ("disturbances",),
             "beside an outer_period, the decay of the undisturbed loop is proved, and no bound "
             "under disturbances (bounds of the loop without outer_period are listed; or remove "
             "disturbances)",
+        )
+    if spec.coupling is not None:
+        yield Doubt(
+            ("coupling",),
+            "beside an outer_period, nothing is proved of axes that act on each other (what is "
+            "proved without the one or the other is listed; or remove outer_period or coupling)",
         )
 
 

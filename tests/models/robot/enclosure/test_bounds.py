@@ -16,7 +16,7 @@ from nrs_design.models.robot import (
     coriolis_matrix,
     mass_matrix,
 )
-from nrs_design.models.robot.enclosure.bounds import bounds_document, goal_of
+from nrs_design.models.robot.enclosure.bounds import goal_of
 from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
 from nrs_design.models.robot.enclosure.enclose import enclose, find_largest
 from nrs_design.models.robot.enclosure.quantities import (

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.measure import Finding
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.controllers.controller_design import ControllerDesign
-from nrs_design.pipeline import Designed, Overrides, limits_of, run_certification
+from nrs_design.pipeline import Designed, Overrides, run_certification, search_limits
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.single_precision import Choices, simulate_single_precision
@@ -70,7 +70,7 @@ def hold_against_bound(
         How many runs.
     """
     loaded = _spec(controllers, inertia, contact)
-    limits = limits_of(loaded.spec, Overrides(budget=BUDGET), optimize_rate=False)
+    limits = search_limits(loaded.spec, Overrides(budget=BUDGET), optimize_rate=False)
     result = run_certification(loaded, limits=limits)
     system = result.certification.system
     found = bound_on(system, result.certification.statements, "force")

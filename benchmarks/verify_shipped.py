@@ -42,8 +42,8 @@ def _finding(path: Path, children: list[Child]) -> Finding:
     taken = median(child.seconds for child in children)
     return Finding(
         f"verify {path.name.removesuffix('.cert.json')}, cold process",
-        f"{document['verdict']}; {result}; {', '.join(kinds)}; processor time {least:.3g} s",
-        f"below {WANTED_SECONDS} s",
+        f"{document['verdict']}; {result}; {', '.join(kinds)}; least processor time {least:.3g} s",
+        f"wall time below {WANTED_SECONDS} s",
         taken < WANTED_SECONDS,
         taken,
     )

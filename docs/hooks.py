@@ -10,7 +10,8 @@ import re
 from itertools import count
 from pathlib import Path
 
-from making.combinations import combinations_table
+from making.combinations import pairs
+from making.combinations_page import combinations_tables
 from making.commands import commands_page
 from making.cost import cost_figures
 from making.faults import refuse
@@ -82,7 +83,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         if match[1] == "floors":
             return drawing(ROOT / "nrs_design", markdown)
         if match[1] == "combinations":
-            return combinations_table()
+            return combinations_tables(pairs())
         assert match[1] == "misprints"
         return misprints_table()
 
@@ -93,7 +94,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     """Let wide tables and code scroll by themselves, by keyboard too."""
     number = count(1)
-    html = re.sub("<table>", lambda match: SCROLLED.format(next(number)) + match[0], html)
+    html = re.sub("<table[ >]", lambda match: SCROLLED.format(next(number)) + match[0], html)
     html = html.replace("</table>", "</table></div>").replace("<th></th>", "<td></td>")
     return html.replace("<pre>", '<pre tabindex="0">')
 

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
-from nrs_design.pipeline import Progress, run_analysis, run_certification
+from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import read_spec
+from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.spec.document import Data, to_data
 
 if TYPE_CHECKING:
@@ -125,7 +126,7 @@ class Comparison:
         return tuple(part for part in Part if part not in self.compared)
 
 
-def compare(before: Path, after: Path, progress: Progress = lambda step: None) -> Comparison:
+def compare(before: Path, after: Path, progress: Progress = silent) -> Comparison:
     """Compare two specs, two certificates, or one of each.
 
     Specs are designed and certified afresh; certificates are re-checked without their specs.
@@ -144,11 +145,15 @@ def compare(before: Path, after: Path, progress: Progress = lambda step: None) -
     CertificateError
         If a file is not a certificate at all.
     """
+    # Both are read before the first one is designed.
+    given = [
+        (path, None if path.suffix == CERTIFICATE_SUFFIX else read_spec(path))
+        for path in (before, after)
+    ]
     sides = []
-    for path in (before, after):
+    for path, loaded in given:
         progress(str(path))
-        certified = path.suffix == CERTIFICATE_SUFFIX
-        sides.append(_side_of_certificate(path) if certified else _side_of_spec(path))
+        sides.append(_side_of_certificate(path) if loaded is None else _side_of_spec(loaded))
     return compare_sides(*sides)
 
 
@@ -176,8 +181,7 @@ def _side_of_certificate(path: Path) -> Side:
     return Side(path, certificate.spec_name, _proof_parts(certificate))
 
 
-def _side_of_spec(path: Path) -> Side:
-    loaded = read_spec(path)
+def _side_of_spec(loaded: LoadedSpec) -> Side:
     result = run_certification(loaded)
     parts: dict[Part, Mapping[str, str]] = {Part.SPEC: dict(_flat(to_data(loaded.root)))}
     if result.certificate is None:
@@ -188,7 +192,7 @@ def _side_of_spec(path: Path) -> Side:
         margins = _margins(result.designed)
         if margins is not None:
             parts[Part.MARGINS] = margins
-    return Side(path, loaded.spec.name, parts)
+    return Side(loaded.path, loaded.spec.name, parts)
 
 
 def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.comparison import Difference, Part, Side, compare, compare_sides
-from nrs_design.errors import CertificateError
+from nrs_design.errors import CertificateError, SpecError
 from tests.support import COMMUTING, ROOT, SOFT_TISSUE
 
 CERTIFICATE = ROOT / "reports" / "commuting.cert.json"
@@ -44,6 +44,13 @@ def test_a_rejected_certificate_is_never_the_same(tmp_path):
     after = {d.what: d.after for d in found.differences}
     assert after["verdict"] == "rejected"
     assert after["fault"]
+
+
+def test_both_are_read_before_one_is_designed(tmp_path):
+    told: list[str] = []
+    with pytest.raises(SpecError, match="no such file"):
+        compare(SOFT_TISSUE, tmp_path / "gone.nrs.yaml", told.append)
+    assert told == []
 
 
 def test_what_is_no_certificate(tmp_path):

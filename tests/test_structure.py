@@ -240,6 +240,17 @@ def test_only_the_pipeline_calls_the_stages():
     }
 
 
+def test_a_class_name_means_one_thing():
+    """Whoever reads a name knows the noun, without looking where it was imported from."""
+    homes: dict[str, list[str]] = {}
+    for name, path in FILES.items():
+        for node in ast.iter_child_nodes(nodes_of(path)[0]):
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                homes.setdefault(node.name, []).append(name)
+    assert len(homes) > 500
+    assert {name: where for name, where in homes.items() if len(where) > 1} == {}
+
+
 def uses(name: str, word: str) -> bool:
     """Whether the code of a module uses a name, as a function, an attribute or by importing it."""
     return any(

@@ -9,7 +9,6 @@ from enum import Enum
 from itertools import combinations
 from typing import Any
 
-from making.tables import cell
 from nrs_design.errors import SpecError
 from nrs_design.spec import doubt_spec, parse_spec
 
@@ -49,6 +48,7 @@ _BASE: Tree = {
     "limits": {"velocity": "8 deg/s", "torque": "0.3 N*m", "bandwidth": "2 Hz"},
     "environments": {"soft": _ELASTIC},
     "controllers": {"first": _IMPEDANCE, "second": _IMPEDANCE | {"Bt": "4 N*m*s/rad"}},
+    "contact": "kept",
     "switching": "arbitrary",
 }
 
@@ -204,7 +204,7 @@ FEATURES = (
         "all kinds of controllers",
         "idle_states",
         {
-            "controllers": {"first": _IMPEDANCE, "second": _PLACED, "third": _FORCE},
+            "controllers": {"first": _PLACED, "second": _IMPEDANCE, "third": _FORCE},
             **_IDLE,
         },
         "law",
@@ -311,32 +311,3 @@ def pair_of(a: Feature, b: Feature) -> Pair:
             return Pair((a, b), Answer.REFUSED, why, remedy.strip(" ()"))
     listed = (a.name, b.name) in _LISTED
     return Pair((a, b), Answer.LISTED if listed else Answer.TOGETHER)
-
-
-def combinations_table() -> str:
-    """Say of every feature what it does not combine with, and then why."""
-    every = pairs()
-    lines = ["| what | in a spec | a list with | refused with |", "|---|---|---|---|"]
-    for item in FEATURES:
-
-        def others(answer: Answer, item: Feature = item) -> str:
-            names = (
-                other.name
-                for pair in every
-                if pair.answer is answer and item in pair.features
-                for other in pair.features
-                if other is not item
-            )
-            return ", ".join(names) or "-"
-
-        texts = (item.name, f"`{item.key}`", others(Answer.LISTED), others(Answer.REFUSED))
-        lines.append(f"| {' | '.join(map(cell, texts))} |")
-    reasons: dict[tuple[str, str], list[str]] = {}
-    for pair in every:
-        if pair.answer is Answer.REFUSED:
-            names = " + ".join(item.name for item in pair.features)
-            reasons.setdefault((pair.why, pair.remedy), []).append(names)
-    lines += ["", "| refused | what is said | what to do |", "|---|---|---|"]
-    for (why, remedy), named in reasons.items():
-        lines.append(f"| {' | '.join(map(cell, ('; '.join(named), why, remedy)))} |")
-    return "\n".join(lines)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from nrs_design.reporting import Report
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Decision:
     """A verdict on stability under switching, with all that carries it.
 
@@ -106,10 +106,16 @@ class Decision:
         Raises
         ------
         OutputError
-            If the file cannot be written.
+            If the file cannot be written, or its name is that of something else.
         """
         from nrs_design.reporting import render_html
 
+        if file is not None and Path(file).suffix not in (".html", ".htm"):
+            raise OutputError(
+                "is not the name of a page",
+                path=Path(file),
+                remedy="end it in .html; nrs-design report SPEC --format pdf writes a PDF",
+            )
         page = render_html(self._page())
         if file is not None:
             write_output(Path(file), page, replaces=PAGE)
@@ -169,6 +175,14 @@ class Decision:
                 # Where a nominal loop has no margins, the page has none.
                 analysis = None
         return build_report(self.result, analysis)
+
+    def __bool__(self) -> bool:
+        """Whether it is proved; neither a refutation nor an open question counts."""
+        return self.verdict == "proved"
+
+    def __repr__(self) -> str:
+        """Name the system and the verdict."""
+        return f"<Decision on {self.result.loaded.spec.name}: {self.verdict}>"
 
     def __str__(self) -> str:
         """Say verdict and claim."""

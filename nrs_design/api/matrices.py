@@ -49,7 +49,7 @@ def certify(
     ----------
     modes : sequence or mapping of matrices
         ``x' = A x`` each, shape (n, n), in 1/s, or ``x+ = A x``: NumPy arrays, nested lists of
-        numbers, fractions or texts such as ``"0.1"`` and ``"1/3"``, or state spaces of
+        numbers, fractions, decimals or texts such as ``"0.1"`` and ``"1/3"``, or state spaces of
         python-control, whose A is taken. A float is the binary number that it is. The keys of a
         mapping name the modes; otherwise they are m1, m2, ...
     time : {"continuous", "discrete"}, optional

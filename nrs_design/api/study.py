@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,9 +22,10 @@ if TYPE_CHECKING:
     from nrs_design.pipeline.monte_carlo import Drawing
     from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.pipeline.worst_case import WorstCase
+    from nrs_design.spec import Spec
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """One spec file and what can be done with it.
 
@@ -34,6 +36,10 @@ class Study:
     """
 
     loaded: LoadedSpec
+
+    def __repr__(self) -> str:
+        """Name the spec and its kind."""
+        return f"<Study of {self.loaded.spec.name}, {self.loaded.spec.kind}>"
 
     def design(self) -> ControllerDesign | None:
         """Design the controllers; None where the spec gives matrices.
@@ -94,9 +100,10 @@ class Study:
         Raises
         ------
         DesignError, AssemblyError
-            If the spec has no design, or its modes make no switched system.
+            If the spec has no design, or its modes make no switched system; or an option is out of
+            its range.
         """
-        limits = _limits(budget, max_degree, gradient)
+        limits = _limits(self.loaded.spec, budget, max_degree, gradient)
         result = pipeline.run_certification(
             self.loaded, method=_method(method), coordinates=coordinates, limits=limits
         )
@@ -158,7 +165,7 @@ class Study:
         Raises
         ------
         DesignError
-            If the spec is no interaction design, or its controllers are none that he plays against.
+            If the spec is no interaction design, or the adversary cannot play against it.
         CertificateError
             If the file is no certificate of the spec.
 
@@ -270,6 +277,12 @@ def _runs(
     if engine not in (None, "exact", "sampled", "mujoco"):
         remedy = "write exact, sampled or mujoco"
         raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
+    if any(not isinstance(name, str) for name in scenarios):
+        raise DesignError("a scenario has no name", remedy="give names: simulate('one', 'two')")
+    if period is not None and not 1e-5 <= period <= 1:
+        raise DesignError(f"the period is {period} s", remedy="give 1e-5 to 1 s")
+    if delay is not None and not 0 <= delay <= 10:
+        raise DesignError(f"the delay is {delay} samples", remedy="give 0 to 10")
     if engine is None and (period is not None or delay is not None):
         engine = "sampled"
     return Runs(scenarios, engine, period, delay)
@@ -300,9 +313,12 @@ def _method(name: str) -> Method:
 
 
 def _limits(
-    budget: float | None, max_degree: int | None, gradient: Gradient | None = None
+    spec: Spec, budget: float | None, max_degree: int | None, gradient: Gradient | None
 ) -> Limits:
-    limits = Limits(gradient=gradient or Gradient())
-    if budget is not None:
-        limits = replace(limits, budget=budget)
-    return limits if max_degree is None else replace(limits, max_degree=max_degree)
+    """Return how far the search goes: as the spec says, where nothing else is said."""
+    if budget is not None and not 0 < budget < math.inf:
+        raise DesignError(f"the budget is {budget}", remedy="give seconds above zero")
+    if max_degree is not None and not 2 <= max_degree <= 64:
+        raise DesignError(f"max_degree is {max_degree}", remedy="give 2 to 64")
+    limits = pipeline.search_limits(spec, pipeline.Overrides(max_degree, budget))
+    return replace(limits, gradient=gradient or Gradient())

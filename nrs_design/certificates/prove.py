@@ -52,6 +52,10 @@ class Verification:
     fault: str | None
     forms: tuple[list[IntegerMatrix], ...] = field(default=(), repr=False, compare=False)
 
+    def __bool__(self) -> bool:
+        """Whether the certificate is valid; what it shows may be a refutation."""
+        return self.fault is None
+
 
 def prove(document: Mapping[str, Any]) -> Verification:
     """Check that a certificate holds for its own modes; whose they are is not asked.
@@ -61,9 +65,12 @@ def prove(document: Mapping[str, Any]) -> Verification:
     document : mapping
         As `nrs_design.certificates.verify.read_document` gives it.
     """
-    return confirmed(
-        lambda: find_altered(document) or check_document(document, held_system(document))
-    )
+
+    def check() -> Verification:
+        altered = find_altered(document)
+        return check_document(document, held_system(document)) if altered is None else altered
+
+    return confirmed(check)
 
 
 def find_altered(document: Mapping[str, Any]) -> Verification | None:
@@ -93,7 +100,17 @@ def held_system(document: Mapping[str, Any]) -> SwitchedSystem:
 
 def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
     """Check every statement of a document for a system, and all that follows from it."""
-    certificate = Certificate(
+    certificate = read_certificate(document, system)
+    fault = _find_difference(document, certificate)
+    forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
+    for statement, made in zip(certificate.statements, forms, strict=True):
+        fault = fault or statement.find_fault(system, made)
+    return Verification(certificate, fault, forms)
+
+
+def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Certificate:
+    """Read what a document states of a system; whether it holds is not asked."""
+    return Certificate(
         spec_name=read_text(document["spec"]["name"]),
         spec_sha256=read_text(document["spec"]["sha256"]),
         coordinates=_read_coordinates(document["coordinates"]),
@@ -103,11 +120,6 @@ def check_document(document: Mapping[str, Any], system: SwitchedSystem) -> Verif
         version=read_text(document["package"]["version"]),
         schema=document["schema"],
     )
-    fault = _find_difference(document, certificate)
-    forms = tuple(list[IntegerMatrix]() for _ in certificate.statements)
-    for statement, made in zip(certificate.statements, forms, strict=True):
-        fault = fault or statement.find_fault(system, made)
-    return Verification(certificate, fault, forms)
 
 
 def confirmed(judge: Callable[[], Verification]) -> Verification:
@@ -118,12 +130,7 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     InternalError
         If flint disagrees with what has been accepted.
     """
-    try:
-        verification = judge()
-    except _MALFORMED as error:
-        return Verification(None, f"a field is missing or malformed ({error})")
-    except NrsDesignError as error:
-        return Verification(None, error.message)
+    verification = judged(judge)
     certificate = verification.certificate
     if certificate is None or verification.fault is not None:
         return verification
@@ -132,6 +139,16 @@ def confirmed(judge: Callable[[], Verification]) -> Verification:
     if not all(agrees(system, item, forms) for item, forms in pairs):
         raise InternalError(DISAGREE)
     return Verification(certificate, None)
+
+
+def judged(judge: Callable[[], Verification]) -> Verification:
+    """Return a judgement, or a rejection where something is malformed."""
+    try:
+        return judge()
+    except _MALFORMED as error:
+        return Verification(None, f"a field is missing or malformed ({error})")
+    except NrsDesignError as error:
+        return Verification(None, error.message)
 
 
 def read_gains(document: Mapping[str, Any]) -> dict[str, dict[str, str]]:

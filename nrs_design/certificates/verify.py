@@ -8,7 +8,7 @@ and the assumptions must be the same.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -20,7 +20,9 @@ from nrs_design.certificates.prove import (
     confirmed,
     find_altered,
     held_system,
+    judged,
     prove,
+    read_certificate,
     read_gains,
 )
 from nrs_design.errors import CertificateError
@@ -35,6 +37,8 @@ if TYPE_CHECKING:
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
 
 MAX_BYTES = 32 * 2**20
+# Says why a proof is rejected, or None.
+Fault = Callable[[], str | None]
 
 
 def verify(
@@ -72,6 +76,7 @@ def verify_document(
     spec: LoadedSpec | None = None,
     coordinates: str | None = None,
     plant: Plant | None = None,
+    proof: Fault | None = None,
 ) -> Verification:
     """Re-check a parsed certificate.
 
@@ -81,14 +86,29 @@ def verify_document(
         As `read_document` gives it.
     spec, coordinates, plant
         As for `verify`.
+    proof : callable, optional
+        Says why `nrs_design.certificates.prove.prove` rejects this very document, or None; by
+        default it is asked here. See `nrs_design.certificates.beside`.
     """
     if spec is None:
         return prove(document)
-    return confirmed(lambda: _verify(document, spec, coordinates, plant))
+    # The former schema holds no modes that could be proved without the spec.
+    if proof is None or document.get("schema") == FORMER:
+        return confirmed(lambda: _verify(document, spec, coordinates, plant, check_document))
+
+    def proved(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
+        return Verification(read_certificate(document, system), proof())
+
+    # The proof has been confirmed where it was made.
+    return judged(lambda: _verify(document, spec, coordinates, plant, proved))
 
 
 def _verify(
-    document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None, plant: Plant | None
+    document: Mapping[str, Any],
+    spec: LoadedSpec,
+    coordinates: str | None,
+    plant: Plant | None,
+    check: Callable[[Mapping[str, Any], SwitchedSystem], Verification],
 ) -> Verification:
     if (altered := find_altered(document)) is not None:
         return altered
@@ -103,7 +123,7 @@ def _verify(
         for field in fields(SwitchedSystem):
             if getattr(held, field.name) != getattr(system, field.name):
                 return Verification(None, f"its field {field.name!r} is not that of the spec")
-    return check_document(document, system)
+    return check(document, system)
 
 
 def read_document(path: Path) -> dict[str, Any]:

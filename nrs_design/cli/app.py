@@ -13,7 +13,7 @@ import typer
 
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
-from nrs_design.cli.errors import print_error, summary
+from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.streams import lasting
@@ -124,7 +124,7 @@ def main() -> None:
         _run()
     except NrsDesignError as error:
         if "--json" in sys.argv:
-            print_json("error", summary(error))
+            print_json("error", error_summary(error))
         print_error(error)
         sys.exit(exit_codes.USAGE)
     except OSError as error:

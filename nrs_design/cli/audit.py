@@ -11,7 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
-    Outputs,
+    Destinations,
     ReportTo,
     read_all,
     sources,
@@ -19,7 +19,7 @@ from nrs_design.cli.identify.common import (
 from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
-from nrs_design.errors import CertificateError
+from nrs_design.errors import CertificateError, DesignError
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import Check, RunJudgement
@@ -45,8 +45,12 @@ def audit(
         float, typer.Option(metavar="SECONDS", min=1e-3, help="Window of the stiffness.")
     ] = 0.5,
     command_limit: Annotated[
-        float | None,
-        typer.Option(metavar="NUMBER", min=0.0, help="Where the driver saturates, as logged."),
+        str | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Where the driver saturates, such as '24 V', or a number as logged; default: "
+            "`limits: command` of the spec.",
+        ),
     ] = None,
     columns: ColumnMap = None,
     report: ReportTo = None,
@@ -65,12 +69,13 @@ def audit(
 
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
-    from nrs_design.identification.running import bounds_of, judge_run, read_run
+    from nrs_design.identification.running import judge_run, read_run, read_run_bounds
     from nrs_design.spec import read_spec
 
-    outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
     loaded = read_spec(spec)
-    bounds = bounds_of(loaded)
+    bounds = read_run_bounds(loaded)
+    limit = None if command_limit is None else _limit_of(command_limit, bounds.command)
     reason, losable = _proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [], quiet=quiet)
     with progress("judging", quiet=quiet):
@@ -80,7 +85,7 @@ def audit(
             proved=not reason,
             losable=losable,
             window=window,
-            command_limit=command_limit,
+            command_limit=limit,
         )
     outputs.deliver(
         "audit",
@@ -89,6 +94,29 @@ def audit(
         page=lambda: _page(found, loaded.spec.name, reason),
     )
     raise typer.Exit(_EXIT[found.verdict])
+
+
+def _limit_of(text: str, command: str) -> float:
+    """Read the limit of the driver; a bare number is in the unit of the motor's command."""
+    from nrs_design.spec import kinds
+    from nrs_design.spec.exact import parse_exact
+    from nrs_design.spec.quantity import parse_quantity
+
+    text = text.strip()
+    if not text[-1:].isalpha():
+        limit = float(parse_exact(text))
+    else:
+        quantity = parse_quantity(text, kinds.COMMAND)
+        held = kinds.COMMAND.unit_in(quantity.dimension)
+        if held != command:
+            raise DesignError(
+                f"--command-limit {text!r} is in {held}, and the motor of the spec takes {command}",
+                remedy=f"write it in {command}",
+            )
+        limit = quantity.si
+    if not limit > 0:
+        raise DesignError(f"--command-limit {text!r} is not positive", remedy="such as '24 V'")
+    return limit
 
 
 def _page(found: RunJudgement, name: str, reason: str) -> Report:

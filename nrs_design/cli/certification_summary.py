@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
 
 
-def summary(result: Result, path: Path | None) -> dict[str, Any]:
+def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
     """Return what ``--json`` prints."""
     from nrs_design.certificates.bounds import bounds_summary
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.certification_summary import summary
+from nrs_design.cli.certification_summary import certification_summary
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
     MaxUpdates,
@@ -48,7 +48,8 @@ LargestBox = Annotated[
     typer.Option(
         "--margin",
         help="Find the largest box of ranges with a proof, the smallest refuted; the same for "
-        "delay and period of a sampled loop, and for what disturbs.",
+        "delay and period of a sampled loop, and for what disturbs. Takes minutes: each value is "
+        "searched for 10 s at most.",
     ),
 ]
 Subsets = Annotated[
@@ -97,8 +98,8 @@ def certify_switching(
     """
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
-    from nrs_design.pipeline import Overrides, limits_of, run_certification
-    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline import Overrides, run_certification, search_limits
+    from nrs_design.pipeline.margins import check_margins, run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
 
@@ -112,7 +113,7 @@ def certify_switching(
     )
     if method is Method.GRADIENT and as_json:
         gradient = replace(gradient, tell=lambda updates, v: history.append((updates, v)))
-    limits = limits_of(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
+    limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
         result = run_certification(
@@ -122,8 +123,11 @@ def certify_switching(
             limits=limits,
             progress=step,
         )
-    # What is shown is kept before the margins: those take minutes.
+    # What is shown is kept, and told, before the margins: those take minutes.
     written = _write(result, path, quiet=quiet or as_json)
+    check_margins(result, margin=margin, shortest_dwell=shortest_dwell)
+    if not quiet and not as_json:
+        _print(result, verbose=verbose)
     more = "margins" if margin or shortest_dwell else "what else is proved"
     with progress(f"{more} of {loaded.spec.name}", quiet=quiet, lines=True) as step:
         margins = run_proof_margins(
@@ -133,11 +137,10 @@ def certify_switching(
         parts = look(result, limits, step)
     steps = _next_steps(result, margin, shortest_dwell)
     if as_json:
-        content = summary(result, written) | margins_summary(margins)
+        content = certification_summary(result, written) | margins_summary(margins)
         content |= {"gradient_history": history} if history else {}
         print_json("certify-switching", content | _help_summary(result, parts, steps))
     elif not quiet:
-        _print(result, verbose=verbose)
         _print_help(
             result,
             parts,
@@ -204,7 +207,7 @@ def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str
         return ()
     from nrs_design.reporting.next_steps import next_steps
 
-    return next_steps(result, margin=margin, shortest_dwell=shortest_dwell)
+    return next_steps(result, margin=margin, shortest_dwell=shortest_dwell, spec=result.loaded.path)
 
 
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:

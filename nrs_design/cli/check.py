@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.errors import print_error, summary
+from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.options import Json, Quiet
 from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.tables import print_table
@@ -29,7 +29,7 @@ def check(
         try:
             results.append(_understood(path))
         except NrsDesignError as error:
-            results.append({"valid": False, **summary(error), "path": str(path)})
+            results.append({"valid": False, **error_summary(error), "path": str(path)})
             if not as_json:
                 print_error(error)
             continue

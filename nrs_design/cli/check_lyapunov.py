@@ -56,6 +56,10 @@ def check_lyapunov(
 
     sys.set_int_max_str_digits(MAX_DIGITS)
     proposal = read_proposal(file)
+    if discrete and proposal.time == "continuous":
+        raise typer.BadParameter(
+            f"{file} says that its time is continuous", param_hint="--discrete"
+        )
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
     found = check(proposal.modes, proposal.P, wanted, time=time)

@@ -49,14 +49,14 @@ def compare_methods(
     Example: nrs-design compare-methods specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.output import PNG, check_place
-    from nrs_design.pipeline import Overrides, limits_of, run_comparison
+    from nrs_design.pipeline import Overrides, run_comparison, search_limits
     from nrs_design.spec import read_spec
 
     if figure is not None:
         check_place(figure, PNG)
     loaded = read_spec(spec)
     gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
-    limits = limits_of(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
+    limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     states = None if coordinates is None else str(coordinates)
     with progress(f"comparing on {loaded.spec.name}", quiet=quiet) as step:

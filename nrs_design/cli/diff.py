@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.identify.common import Outputs, ReportTo
+from nrs_design.cli.identify.common import Destinations, ReportTo
 from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
@@ -37,7 +37,7 @@ def diff(
     """
     from nrs_design.comparison import compare
 
-    outputs = Outputs.checked(None, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
     with progress("comparing", quiet=quiet) as step:
         found = compare(before, after, step)
     outputs.deliver(

@@ -36,7 +36,7 @@ def print_error(error: NrsDesignError) -> None:
     sys.stderr.write("\n".join(blocks) + "\n")
 
 
-def summary(error: NrsDesignError) -> dict[str, Any]:
+def error_summary(error: NrsDesignError) -> dict[str, Any]:
     """Return what ``--json`` prints about an error: its faults in file order, and their number."""
     return {
         "rule": error.rule,

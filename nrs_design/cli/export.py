@@ -130,7 +130,7 @@ def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Ex
         return Execution(period, unproved)
     if unproved or sample_time is not None:
         raise NrsDesignError(
-            "--unproved and --sample-time are for programs, and this format is none",
+            "--unproved and --sample-time are for programs, and this format is not one",
             remedy="leave them out; `nrs-design export --list` lists the formats",
         )
     return None

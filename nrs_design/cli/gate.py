@@ -174,7 +174,7 @@ def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
         say_failure(text.line_of(item), str(item.status))
     if not quiet:
         say()
-        say(text.summary_of(outcome))
+        say(text.summary_line(outcome))
 
 
 def _certify(
@@ -214,11 +214,17 @@ def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
 
 
 def _with_passed_over(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
-    from nrs_design.gating.find_specs import find_passed_over
+    from nrs_design.gating.find_specs import SUFFIXES, find_misnamed, find_passed_over
 
-    folders = find_passed_over(paths)
-    if not folders:
-        return outcome
-    listed = ", ".join(path.as_posix() for path in folders[:SHOWN])
-    more = f" and {len(folders) - SHOWN} more" if len(folders) > SHOWN else ""
-    return outcome.with_note(f"not looked into (hidden, or a link): {listed}{more}")
+    for why, found in {
+        "not looked into (hidden, or a link)": find_passed_over(paths),
+        f"not examined, for want of a name that ends in {SUFFIXES[0]}": find_misnamed(paths),
+    }.items():
+        if found:
+            outcome = outcome.with_note(f"{why}: {_listed(found)}")
+    return outcome
+
+
+def _listed(paths: tuple[Path, ...]) -> str:
+    more = f" and {len(paths) - SHOWN} more" if len(paths) > SHOWN else ""
+    return ", ".join(path.as_posix() for path in paths[:SHOWN]) + more

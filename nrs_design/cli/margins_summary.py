@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
-    from nrs_design.search.loop_margin import Bracket, LoopMargins
+    from nrs_design.search.loop_margin import Bracket, MarginBrackets
 
 
 def margins_summary(margins: ProofMargins) -> dict[str, Any]:
@@ -39,12 +39,12 @@ def margins_summary(margins: ProofMargins) -> dict[str, Any]:
     return content
 
 
-def loop_summary(margins: LoopMargins) -> dict[str, Any]:
+def loop_summary(margins: MarginBrackets) -> dict[str, Any]:
     """Return those of delay, period and disturbances.
 
     Parameters
     ----------
-    margins : LoopMargins
+    margins : MarginBrackets
         As `nrs_design.pipeline.margins.run_loop_margins` finds them.
     """
     from nrs_design.proof.bounds import lower_float, upper_float

@@ -13,17 +13,17 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.printing import note, print_json, say
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.output import Beginning
-    from nrs_design.pipeline import Progress
     from nrs_design.pipeline.monte_carlo import MonteCarlo
     from nrs_design.simulation.monte_carlo import Outcome, Share
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class MonteCarloSummary:
     """Runs, and what is told of them.
 
     Parameters
@@ -93,7 +93,7 @@ def monte_carlo(
     step("figures")
     found = shares(outcomes, asked.limits)
     bounds = {name: held_against(bound, outcomes) for name, bound in written.items()}
-    study = Study(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
+    study = MonteCarloSummary(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
     return partial(_show, study)
 
 
@@ -191,7 +191,7 @@ def _write(
     return [path for path, _ in places]
 
 
-def _show(study: Study, *, as_json: bool, quiet: bool) -> int:
+def _show(study: MonteCarloSummary, *, as_json: bool, quiet: bool) -> int:
     from nrs_design.reporting.monte_carlo import COLUMNS, MEANING, share_rows
 
     asked, outcomes = study.asked, study.outcomes
@@ -211,7 +211,7 @@ def _show(study: Study, *, as_json: bool, quiet: bool) -> int:
     return code
 
 
-def _say_bounds(study: Study) -> None:
+def _say_bounds(study: MonteCarloSummary) -> None:
     from fractions import Fraction
 
     from nrs_design.proof.bounds import upper
@@ -223,7 +223,7 @@ def _say_bounds(study: Study) -> None:
             say(f"    it is not about these runs: {reason}")
 
 
-def _document(study: Study) -> dict[str, Any]:
+def _document(study: MonteCarloSummary) -> dict[str, Any]:
     asked, outcomes = study.asked, study.outcomes
     names = dict.fromkeys(one.scenario for one in outcomes)
     return {

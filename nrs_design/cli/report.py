@@ -12,13 +12,14 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Budget, Date, Json, MaxDegree, Memory, Quiet, SpecFile
 from nrs_design.cli.printing import note, print_json, progress, say
-from nrs_design.errors import DesignError
+from nrs_design.errors import DesignError, OutputError
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from datetime import date as Day
 
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Overrides, Progress, Result
+    from nrs_design.pipeline import Overrides, Result
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -36,8 +37,12 @@ class ReportFormat(StrEnum):
 def report(
     spec: SpecFile,
     file_format: Annotated[
-        ReportFormat, typer.Option("--format", help="A page, a document, or one image per figure.")
-    ] = ReportFormat.HTML,
+        ReportFormat | None,
+        typer.Option(
+            "--format",
+            help="A page, a document, or one image per figure; default: as --out ends, or a page.",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -94,6 +99,7 @@ def report(
     from nrs_design.spec import read_spec
 
     loaded, day = read_spec(spec), date.date() if date else None
+    file_format = _format_of(file_format, out)
     if loaded.spec.kind == "robot":
         if certificate is not None:
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
@@ -111,6 +117,28 @@ def report(
         _print_next(result, asked)
         _print_files(files)
     raise typer.Exit(exit_codes.OF_VERDICT[verdict])
+
+
+def _format_of(file_format: ReportFormat | None, out: Path | None) -> ReportFormat:
+    """Return the format that was asked for, or that of the file's ending; both must agree."""
+    ending = "" if out is None else out.suffix.lower()
+    named = {".html": ReportFormat.HTML, ".pdf": ReportFormat.PDF}.get(ending)
+    if file_format is None and (named is not None or not ending):
+        return named or ReportFormat.HTML
+    if file_format is None:
+        raise OutputError(
+            f"{ending} is not a type of report",
+            path=out,
+            remedy="end it in .html or .pdf; --format png takes a folder",
+        )
+    if named not in (None, file_format) or (file_format is ReportFormat.PNG and ending == ".png"):
+        what = "takes a folder" if file_format is ReportFormat.PNG else "is about other files"
+        raise OutputError(
+            f"ends in {ending}, and --format {file_format} {what}",
+            path=out,
+            remedy="leave --format out, or name another place",
+        )
+    return file_format
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,13 +172,13 @@ def _build(
     loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress, quiet: bool
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
-    from nrs_design.pipeline import limits_of, run_certification, run_comparison, run_recorded
+    from nrs_design.pipeline import run_certification, run_comparison, run_recorded, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.reporting import build_report
 
-    limits = limits_of(loaded.spec, overrides)
+    limits = search_limits(loaded.spec, overrides)
     if asked.certificate is None:
         result = run_certification(loaded, limits=limits, progress=step)
     else:
@@ -192,7 +220,9 @@ def _print_json(
 def _print_next(result: Result, asked: _Asked) -> None:
     from nrs_design.reporting.next_steps import next_steps
 
-    for line in next_steps(result, margin=asked.margin, shortest_dwell=asked.shortest_dwell):
+    for line in next_steps(
+        result, margin=asked.margin, shortest_dwell=asked.shortest_dwell, spec=result.loaded.path
+    ):
         say(f"next: {line}")
 
 

@@ -11,11 +11,10 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.options import Json, Quiet
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from nrs_design.reproduction.comparison import Comparison
+    from nrs_design.reproduction.comparison import ReproducedValue
     from nrs_design.reproduction.gallery.counterpart import Counterpart
 
 _GALLERY = "figures.html"
@@ -69,7 +68,7 @@ def reproduce(
     raise typer.Exit(exit_codes.REFUTED if drifted(table) else exit_codes.PROVED)
 
 
-def _draw(folder: Path, step: Callable[[str], None]) -> tuple[Counterpart, ...]:
+def _draw(folder: Path, step: Progress) -> tuple[Counterpart, ...]:
     """Write the page of figures and the runs that they show."""
     from nrs_design.output import PAGE, RESPONSE, write_outputs
     from nrs_design.reproduction.gallery.figures import draw_counterparts
@@ -96,7 +95,7 @@ def _link(page: Path, gallery: Path) -> str:
 
 
 def _summary(
-    table: tuple[Comparison, ...], gallery: tuple[Counterpart, ...] | None
+    table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None
 ) -> dict[str, Any]:
     from dataclasses import asdict
 
@@ -115,7 +114,7 @@ def _summary(
     return content
 
 
-def _print(table: tuple[Comparison, ...], gallery: tuple[Counterpart, ...] | None) -> None:
+def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
     from nrs_design.reproduction.page import format_deviation
     from nrs_design.reproduction.table import count_verdicts
 

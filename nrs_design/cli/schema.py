@@ -45,9 +45,9 @@ def schema(
 
 def _text(of: Described) -> str:
     if of is Described.EXPORT:
-        from nrs_design.exporters.record import schema_text
+        from nrs_design.exporters.record import record_schema_text
 
-        return schema_text()
+        return record_schema_text()
     from nrs_design.spec.schema import schema_text as spec_schema_text
 
     return spec_schema_text()

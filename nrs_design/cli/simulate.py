@@ -2,89 +2,54 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
 from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import progress
-from nrs_design.cli.seconds import seconds
-from nrs_design.cli.simulate_options import Jobs, Many, MonteCarloRuns, Resume, Seed, WorstCaseFlag
+from nrs_design.cli.simulate_options import (
+    Bound,
+    BoundsOf,
+    Delay,
+    Engine,
+    EngineOption,
+    Jobs,
+    Many,
+    MaxSteps,
+    MonteCarloRuns,
+    Out,
+    OuterPeriod,
+    Period,
+    Resume,
+    Scenarios,
+    Seed,
+    WorstCaseFlag,
+)
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.pipeline import Designed, Progress
+    from nrs_design.pipeline import Designed
     from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import LoadedSpec
 
 
-class EngineOption(StrEnum):
-    """What simulates."""
-
-    EXACT = "exact"
-    SAMPLED = "sampled"
-    MUJOCO = "mujoco"
-
-
 def simulate(
     spec: SpecFile,
-    scenario: Annotated[
-        list[str] | None,
-        typer.Option("--scenario", metavar="NAME", help="One scenario, or several; default: all."),
-    ] = None,
-    engine: Annotated[
-        EngineOption | None,
-        typer.Option(
-            help="exact: continuous time, from event to event; sampled: the law that ships, in "
-            "single precision; mujoco: the same law on MuJoCo's mechanics (extra mujoco), and how "
-            "far that is from the sampled engine. Default: sampled where the spec has sampling, "
-            "tissue is not linear, or three axes move."
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Write SPEC.SCENARIO.svg, .png, .csv and .npz of every run there.",
-        ),
-    ] = None,
-    certificate: Annotated[
-        Path | None,
-        typer.Option(metavar="CERT", help="Show the bounds of this certificate of the spec."),
-    ] = None,
-    bound: Annotated[
-        bool,
-        typer.Option(help="Certify a bound where the spec says what disturbs the loop."),
-    ] = True,
-    period: Annotated[
-        float | None,
-        typer.Option(
-            metavar="S",
-            parser=seconds(1e-5, 1.0),
-            help="Period of the sampled engine in s, not the spec's; without either, 0.002.",
-        ),
-    ] = None,
-    delay: Annotated[
-        int | None,
-        typer.Option(min=0, max=10, help="Age of its force samples in samples, not the spec's."),
-    ] = None,
-    outer_period: Annotated[
-        float | None,
-        typer.Option(
-            metavar="S",
-            min=1e-5,
-            max=1.0,
-            help="Period of its force samples and admittances in s, not that of the motion loop.",
-        ),
-    ] = None,
-    max_steps: Annotated[
-        int | None, typer.Option(min=1, help="Most steps of a run; beyond, exit code 3.")
-    ] = None,
+    scenario: Scenarios = None,
+    engine: Engine = None,
+    out: Out = None,
+    certificate: BoundsOf = None,
+    bound: Bound = True,
+    period: Period = None,
+    delay: Delay = None,
+    outer_period: OuterPeriod = None,
+    max_steps: MaxSteps = None,
     worst: WorstCaseFlag = False,
     monte_carlo: MonteCarloRuns = None,
     jobs: Jobs = 1,

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.cli import exit_codes
 from nrs_design.cli.printing import note, print_json, say
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.output import Beginning
-    from nrs_design.pipeline import Designed, Progress
+    from nrs_design.pipeline import Designed
     from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
     from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.spec import InteractionDesignSpec
@@ -193,7 +194,7 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
     from fractions import Fraction
 
     from nrs_design.proof.bounds import upper
-    from nrs_design.reporting.simulation import metric_rows, rounded_up
+    from nrs_design.reporting.simulation import four_digits_up, metric_rows
 
     run = one.run
     print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
@@ -201,7 +202,7 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
     peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
     for b in bounds:
         peak = peaks.get(b.output)
-        shown = "" if peak is None else f", simulated peak {rounded_up(peak)} {b.unit}"
+        shown = "" if peak is None else f", simulated peak {four_digits_up(peak)} {b.unit}"
         level = upper(Fraction(b.level))
         say(f"  certified bound on the {b.output}: {level} {b.unit}{shown}")
         for reason in b.uncovered:
@@ -218,8 +219,9 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
     if run.deviation is not None:
         apart = run.deviation
         say(
-            f"  from the sampled engine, at most: angle {rounded_up(apart.angle)} rad, velocity "
-            f"{rounded_up(apart.velocity)} rad/s, torque {rounded_up(apart.torque)} N m"
+            f"  from the sampled engine, at most: angle {four_digits_up(apart.angle)} rad, "
+            f"velocity {four_digits_up(apart.velocity)} rad/s, "
+            f"torque {four_digits_up(apart.torque)} N m"
         )
     if run.stopped:
         say(f"  STOPPED: {run.stopped}")

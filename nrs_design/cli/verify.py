@@ -71,12 +71,8 @@ def verify(
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.certificates.verify import verify as verify_file
-    from nrs_design.spec import read_spec
-
     _check_arguments(certificate, spec, coordinates, deployed)
-    loaded = None if spec is None else read_spec(spec)
-    outcome = verify_file(certificate, loaded, None if coordinates is None else str(coordinates))
+    outcome, loaded = _verify(certificate, spec, None if coordinates is None else str(coordinates))
     robot = None if loaded is None else _robot_of(loaded)
     if bounds and robot is None:
         raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
@@ -100,6 +96,23 @@ def verify(
     if checked is None or differences or faults:
         raise typer.Exit(exit_codes.REFUTED)
     raise typer.Exit(exit_codes.OF_VERDICT[checked.verdict])
+
+
+def _verify(
+    certificate: Path, spec: Path | None, coordinates: str | None
+) -> tuple[Verification, LoadedSpec | None]:
+    from nrs_design.certificates.verify import read_document, verify_document
+
+    document = read_document(certificate)
+    if spec is None:
+        return verify_document(document), None
+    from nrs_design.certificates.beside import proof_beside
+
+    with proof_beside(document) as proof:
+        from nrs_design.spec import read_spec
+
+        loaded = read_spec(spec)
+        return verify_document(document, loaded, coordinates, proof=proof), loaded
 
 
 def _check_arguments(

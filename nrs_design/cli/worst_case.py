@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.cli import exit_codes
 from nrs_design.cli.printing import note, print_json, say
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.output import Beginning
-    from nrs_design.pipeline import Designed, Progress
+    from nrs_design.pipeline import Designed
     from nrs_design.pipeline.worst_case import WorstCase
 
 

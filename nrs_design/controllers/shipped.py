@@ -77,7 +77,7 @@ def _step_law(
     outer: Fraction,
 ) -> StepLaw:
     low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
-    frame = StepFrame(design.motion.sampled(period), low_pass, limits_of(spec))
+    frame = StepFrame(design.motion.sampled(period), low_pass, step_limits(spec))
     moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
     placed = [name for name, law in laws.items() if isinstance(law, SampledForce)]
     if spec.offset != "none":
@@ -120,7 +120,7 @@ def _without_program(what: str, controller: str) -> DesignError:
     )
 
 
-def limits_of(spec: InteractionDesignSpec) -> StepLimits:
+def step_limits(spec: InteractionDesignSpec) -> StepLimits:
     """Return the limits of a spec in single precision, none of them above what is written.
 
     Parameters

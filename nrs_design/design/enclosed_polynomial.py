@@ -79,7 +79,7 @@ def in_tangent(P: Polynomial, degree: int) -> Polynomial:
     return total
 
 
-def shortened(P: Polynomial) -> Polynomial:
+def rounded_outwards(P: Polynomial) -> Polynomial:
     """Round coefficients outwards to few digits."""
     return [(_below(low), -_below(-high)) for low, high in P]
 

@@ -18,7 +18,7 @@ import numpy as np
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.loops import Loops, extremes, multiply
+from nrs_design.design.loops import Loops, gain_extremes, multiply
 from nrs_design.design.measures import (
     AT_HOME,
     CREEP,
@@ -171,7 +171,7 @@ class Requirement:
             return np.full(len(Mt), np.inf)
         forward = multiply(loops.numerator, np.tile(self.lags, (len(Mt), 1)))
         displayed = multiply(forward, np.stack([Mt, Bt], axis=1))
-        low, high = extremes(displayed, loops.closed, self.bandwidth)
+        low, high = gain_extremes(displayed, loops.closed, self.bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
         return np.where(loops.stable, error, np.inf)
 

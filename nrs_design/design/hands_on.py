@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.design.loops import Loops, extremes, multiply
+from nrs_design.design.loops import Loops, gain_extremes, multiply
 from nrs_design.design.transfer import FloatArray
 from nrs_design.models.contact import AbstractLinearLaw
 
@@ -24,7 +24,7 @@ def transparency(loops: Loops, bandwidth: float) -> FloatArray:
     bandwidth : float
         In rad/s.
     """
-    low, _ = extremes(*_cancelled(loops.numerator, loops.closed), bandwidth)
+    low, _ = gain_extremes(*_cancelled(loops.numerator, loops.closed), bandwidth)
     return np.where(loops.stable, low, 0.0)
 
 
@@ -51,7 +51,7 @@ def hand_effort(loops: Loops, hand: AbstractLinearLaw, bandwidth: float) -> Floa
     )
     if not np.all(denominator[:, -1]):
         return np.full(len(numerator), np.inf)
-    _, high = extremes(numerator, denominator, bandwidth)
+    _, high = gain_extremes(numerator, denominator, bandwidth)
     return np.where(loops.stable, high, np.inf)
 
 

@@ -114,7 +114,7 @@ def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
     return TransferFunction(tuple(numerator.tolist()), tuple(loop.free(Mt, Bt).tolist()))
 
 
-def displayed_impedance(
+def displayed_impedance_at(
     loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike
 ) -> ComplexArray:
     """Evaluate ``Zdisp = G Ze / (1 + G Ze H Y)`` (thesis 6.3).
@@ -142,17 +142,17 @@ def displayed_impedance(
 
 
 def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze H Y)`` (thesis 6.5); parameters as `displayed_impedance`.
+    """Evaluate ``L = 1 / (1 + G Ze H Y)`` (thesis 6.5); parameters as `displayed_impedance_at`.
 
     Parameters
     ----------
     loop, Mt, Bt, omega
-        As for `displayed_impedance`.
+        As for `displayed_impedance_at`.
     """
     return _over_characteristic(loop, Mt, Bt, loop.free(Mt, Bt), omega)
 
 
-def characteristic_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
+def closed_loop_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
     """Return the closed loop's characteristic polynomial, highest power first.
 
     Its degree is that of ``G Ze Y``: with a spring two more than the motion loop's order, and one
@@ -221,7 +221,7 @@ def characteristic_polynomials(basis: FloatArray, Mt: FloatArray, Bt: FloatArray
 def _over_characteristic(
     loop: ImpedanceLoop, Mt: float, Bt: float, numerator: FloatArray, omega: ArrayLike
 ) -> ComplexArray:
-    closed = characteristic_polynomial(loop, Mt, Bt)
+    closed = closed_loop_polynomial(loop, Mt, Bt)
     ratio = TransferFunction(tuple(numerator.tolist()), tuple(closed.tolist()))
     return frequency_response(ratio, omega)
 

@@ -88,7 +88,7 @@ class Loops:
         return _ratio(self.numerator, self.denominator, omega)
 
 
-def extremes(
+def gain_extremes(
     numerator: FloatArray, denominator: FloatArray, bandwidth: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the smallest and largest ``|numerator/denominator|`` on 0 to `bandwidth`.

@@ -107,7 +107,7 @@ def real_part(loop: MotionLoop, Mt: Fraction, Bt: Fraction) -> Polynomial:
     return terms
 
 
-def positive_roots(P: Sequence[Fraction], end: Fraction) -> int:
+def count_positive_roots(P: Sequence[Fraction], end: Fraction) -> int:
     """Count the different roots in (0, end] by Sturm's theorem.
 
     Parameters

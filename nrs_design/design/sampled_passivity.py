@@ -44,7 +44,7 @@ from nrs_design.design.enclosed_polynomial import (
     negative,
     numbers,
     plus,
-    shortened,
+    rounded_outwards,
     times,
 )
 from nrs_design.design.passivity import evaluate, first_root, root_below
@@ -161,8 +161,8 @@ def _band(
 ) -> SampledBand:
     """Bracket the first frequency at which the real part may be negative."""
     signs = sign_polynomials(*_admittance(loop, law, age), 2 * tau / period)
-    lowest = [[low for low, _ in reversed(shortened(P))] for P in signs]
-    highest = [[high for _, high in reversed(shortened(P))] for P in signs]
+    lowest = [[low for low, _ in reversed(rounded_outwards(P))] for P in signs]
+    highest = [[high for _, high in reversed(rounded_outwards(P))] for P in signs]
     if min(P[-1] for P in lowest) <= 0:
         return SampledBand(age, ZERO)
     brackets = [bracket for P in lowest if (bracket := first_root(_trimmed(P))) is not None]

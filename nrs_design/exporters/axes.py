@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from nrs_design.controllers.axes_law import build_axes_law, lacks_axes
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.errors import DesignError
-from nrs_design.exporters.c_names import CNames, comment
+from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.c_step import (
     FLAGS,
     MAGNITUDE_WITHIN,
@@ -78,7 +78,7 @@ def header_text(program: Program, law: StepLaw) -> str:
     names = names_of(program.names.spec)
     guard = f"{names.upper}_H"
     lines = [
-        comment((*_about(program), *_use(names)), C_AXES_HEADER),
+        block_comment((*_about(program), *_use(names)), C_AXES_HEADER),
         f"#ifndef {guard}\n#define {guard}\n",
         "#include <stdbool.h>\n#include <stdint.h>\n",
         *declarations(law, names),
@@ -99,7 +99,7 @@ def source_text(program: Program, law: StepLaw) -> str:
     """
     spec = program.names.spec
     lines = [
-        comment((*_about(program), f"More is in {spec}_axes.h."), C_AXES),
+        block_comment((*_about(program), f"More is in {spec}_axes.h."), C_AXES),
         f'#include "{spec}_axes.h"\n\n#include <float.h>\n#include <math.h>\n',
         REFUSALS,
         *helpers(law, within=MAGNITUDE_WITHIN),

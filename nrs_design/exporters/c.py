@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.c_logic import logic_declarations, logic_definitions, logic_lines
-from nrs_design.exporters.c_names import CNames, comment
+from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.c_step import FLAGS, REFUSALS, declarations, definitions, helpers
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
@@ -50,7 +50,7 @@ def header_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
     """
     guard = f"{names.upper}_H"
     lines = [
-        comment(_header_lines(record, law, names), C_HEADER),
+        block_comment(_header_lines(record, law, names), C_HEADER),
         f"#ifndef {guard}\n#define {guard}\n",
         "#include <stdbool.h>\n#include <stdint.h>\n",
         *declarations(law, names),
@@ -73,7 +73,7 @@ def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
         Of this spec.
     """
     lines = [
-        comment((*header_lines(record), f"More is in {record.spec.name}.h."), C_SOURCE),
+        block_comment((*header_lines(record), f"More is in {record.spec.name}.h."), C_SOURCE),
         f'#include "{record.spec.name}.h"\n\n#include <float.h>\n',
         REFUSALS,
         *helpers(law),

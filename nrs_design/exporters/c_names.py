@@ -122,7 +122,7 @@ def literal(value: Fraction) -> str:
     return f"({text})" if value < 0 else text
 
 
-def comment(lines: Iterable[str], first: bytes) -> str:
+def block_comment(lines: Iterable[str], first: bytes) -> str:
     """Return a block comment that its lines cannot end.
 
     Parameters

@@ -20,10 +20,9 @@ from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.deployed_c import code_differences, macro_differences
 from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.monitor_limits import limits_of
-from nrs_design.exporters.program import program_of
+from nrs_design.exporters.monitor_limits import monitor_limits
+from nrs_design.exporters.program import law_of, program_of
 from nrs_design.exporters.record import ExportRecord, Gain
-from nrs_design.exporters.shipped import law_of
 from nrs_design.files import open_regular
 from nrs_design.spec import InteractionDesignSpec
 
@@ -103,11 +102,11 @@ def _record(spec: InteractionDesignSpec, certificate: Certificate) -> ExportReco
 def _of_monitor(text: str, export: Export, file: Path) -> Iterator[str]:
     """Compare all macros of its header, or all code of its source, where the tables are."""
     program = program_of(export)
-    limits, names = limits_of(export, program.law.modes), program.names
+    limits, names = monitor_limits(export, program.law.modes), program.names
     if file.suffix == ".c":
         yield from code_differences(text, monitor.source_text(program, limits))
         return
-    wanted = monitor.numbers_of(names, limits)
+    wanted = monitor.macro_numbers(names, limits)
     guard = f"{names.upper}_MONITOR_H"
     yield from macro_differences(text, guard, wanted, (f"{names.spec}.h",))
 

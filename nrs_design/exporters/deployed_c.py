@@ -56,7 +56,7 @@ def macro_differences(
 
 
 def code_differences(text: str, wanted: str) -> Iterator[str]:
-    """Yield the first place in which C code differs from what was exported; comments are none.
+    """Yield the first place in which C code differs from what was exported; comments do not count.
 
     Parameters
     ----------

@@ -12,7 +12,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline import Designed, Progress, run_certification, run_design, wrong_kind
+from nrs_design.pipeline import Designed, run_certification, run_design, wrong_kind
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
@@ -77,7 +78,7 @@ class Execution:
 def export_design(
     loaded: LoadedSpec,
     certificate: Path | None = None,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
     execution: Execution | None = None,
 ) -> Export:
     """Design a spec and return its export record, if the design is proved.
@@ -151,6 +152,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     found, design = checked.certificate, designed.design
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)
+    if found.verdict != "proved":
+        return Export("inconclusive", None, found, f"{file} proves nothing", design)
     fault = find_mismatch(design, found)
     if fault is None and found.coordinates != designed.spec.coordinates:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"

@@ -6,7 +6,7 @@ Numbers pass as doubles and are rounded to single precision where the law takes 
 from __future__ import annotations
 
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.c_names import comment
+from nrs_design.exporters.c_names import block_comment
 from nrs_design.exporters.fmu_instance import INSTANCE
 from nrs_design.exporters.fmu_interface import INTERFACE
 from nrs_design.exporters.fmu_steps import STEPS
@@ -31,7 +31,9 @@ def wrapper_text(program: Program, guid: str, period: str) -> str:
     law, names = program.law, program.names
     variables = Variables.of(law)
     parts = {
-        "ABOUT": comment((*program.about, "It makes a model by FMI 2.0 of the law."), C_SOURCE),
+        "ABOUT": block_comment(
+            (*program.about, "It makes a model by FMI 2.0 of the law."), C_SOURCE
+        ),
         "SPEC": names.spec,
         "OWN": names.lower,
         "GUID": guid,

@@ -36,4 +36,4 @@ def _sample_time(record: ExportRecord) -> str:
         return text
     least, most = record.delay
     ages = str(least) if least == most else f"{least} to {most}"
-    return f"{text}, force sample {ages} samples old"
+    return f"{text}, force sample {ages} sample{'' if most == 1 else 's'} old"

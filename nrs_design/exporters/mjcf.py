@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nrs_design.exporters.robot_tree import RobotExport, comment
+from nrs_design.exporters.robot_tree import RobotExport, xml_comment
 from nrs_design.models.robot import LEAST, robot_model
 
 _LINES = (
@@ -16,5 +16,5 @@ _LINES = (
 
 def render(export: RobotExport) -> dict[str, bytes]:
     """Return the file of a robot, by its ending."""
-    head = comment(export, "mjcf", _LINES)
+    head = xml_comment(export, "mjcf", _LINES)
     return {".mjcf.xml": (head + robot_model(export.robot, export.loaded.spec.name)).encode()}

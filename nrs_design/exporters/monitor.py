@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.exporters.c_names import CNames, comment, harmless, literal
+from nrs_design.exporters.c_names import CNames, block_comment, harmless, literal
 from nrs_design.exporters.c_step import FINITE
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.monitor_limits import CHANCE, MonitorLimits, limits_of
+from nrs_design.exporters.monitor_limits import CHANCE, MonitorLimits, monitor_limits
 from nrs_design.exporters.monitor_source import KEPT, SOURCE
 from nrs_design.exporters.program import Program, program_of
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
@@ -47,7 +47,7 @@ def render(export: Export) -> dict[str, bytes]:
         If there is no program of a controller yet.
     """
     program = program_of(export)
-    limits = limits_of(export, program.law.modes)
+    limits = monitor_limits(export, program.law.modes)
     return {
         "_monitor.h": header_text(program, limits).encode(),
         "_monitor.c": source_text(program, limits).encode(),
@@ -71,7 +71,7 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
     text = text.replace("@SPEED@", "" if limits.speed is None else _SPEED)
     text = text.replace("@GUARD@", guard).replace("@OWN@", names.lower)
     text = text.replace("@UP@", names.upper).replace("@SPEC@", names.spec)
-    return comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER) + text
+    return block_comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER) + text
 
 
 def source_text(program: Program, limits: MonitorLimits) -> str:
@@ -94,7 +94,7 @@ def source_text(program: Program, limits: MonitorLimits) -> str:
     text = text.replace("@CHECKS@", _checks(limits)).replace("@CONTACT@", _contact(limits))
     text = text.replace("@OWN@", names.lower).replace("@UP@", names.upper)
     about = (*program.about, f"More is in {names.spec}_monitor.h.")
-    return comment(about, C_MONITOR) + text.replace("@SPEC@", names.spec)
+    return block_comment(about, C_MONITOR) + text.replace("@SPEC@", names.spec)
 
 
 def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
@@ -129,7 +129,7 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
     yield from (f"Not monitored: {text}" for text in limits.left_out)
 
 
-def numbers_of(names: CNames, limits: MonitorLimits) -> dict[str, int | Fraction]:
+def macro_numbers(names: CNames, limits: MonitorLimits) -> dict[str, int | Fraction]:
     """Return every macro of the header with its number: what may be left, and limits."""
     kinds = {f"{names.upper}_LEFT_{kind}": k for k, kind in enumerate(_told(limits))}
     return {**kinds, **{name: number for name, number, _ in _limits(names, limits)}}

@@ -9,7 +9,7 @@ from math import ceil, floor
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below, to_float32
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.identification.running import bounds_of_spec, rules_of
+from nrs_design.identification.running import bounds_of_spec, switching_rules
 from nrs_design.identification.statistics import student_quantile
 from nrs_design.proof.evidence import Shows
 from nrs_design.spec import InteractionDesignSpec
@@ -70,7 +70,7 @@ class MonitorLimits:
     left_out: tuple[str, ...]
 
 
-def limits_of(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
+def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
     """Return what the loop of an export must keep.
 
     Parameters
@@ -128,7 +128,7 @@ def _ranges(spec: InteractionDesignSpec, name: str) -> tuple[Pair, ...] | None:
 
 
 def _stay(spec: InteractionDesignSpec, name: str, period: Fraction) -> tuple[int, int]:
-    shortest, longest = rules_of(spec).stay(name)
+    shortest, longest = switching_rules(spec).stay(name)
     return (
         0 if shortest is None else ceil(shortest.value / period),
         FOREVER if longest is None else floor(longest.value / period),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.exporters.shipped import law_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,21 @@ class Program:
     def about(self) -> tuple[str, ...]:
         """What every exported file says of itself."""
         return header_lines(self.record)
+
+
+def law_of(export: Export) -> StepLaw:
+    """Return the law of an export, as operations.
+
+    Raises
+    ------
+    DesignError
+        If nothing may be exported, or a controller has no step yet.
+    """
+    record = export.shipped()
+    assert export.spec is not None
+    assert export.design is not None
+    assert record.sample_time is not None
+    return shipped_law(export.spec, export.design, Fraction(record.sample_time.exact))
 
 
 def program_of(export: Export) -> Program:

@@ -165,7 +165,7 @@ def dump_record(record: ExportRecord) -> str:
     return json.dumps(record.model_dump(mode="json", by_alias=True), indent=2) + "\n"
 
 
-def schema_text() -> str:
+def record_schema_text() -> str:
     """Return the JSON Schema (draft 2020-12) that every record keeps, as the text of a file."""
     described = ExportRecord.model_json_schema(mode="serialization")
     head = {

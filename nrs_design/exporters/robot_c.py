@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 
 from nrs_design import __version__
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.c_names import CNames, comment, harmless
+from nrs_design.exporters.c_names import CNames, block_comment, harmless
 from nrs_design.exporters.c_step import (
     FLAGS,
     MAGNITUDE_WITHIN,
@@ -130,7 +130,7 @@ def header_text(export: RobotExport, laws: Mapping[str, StepLaw]) -> str:
         "#include <stdbool.h>\n",
     ]
     for law, operations in laws.items():
-        lines.append(comment([PURPOSES[law]], f"/* {law}\n".encode()))
+        lines.append(block_comment([PURPOSES[law]], f"/* {law}\n".encode()))
         lines += declarations(operations, names_of(name, law))
     return "\n".join([*lines, "#endif\n"])
 
@@ -184,4 +184,4 @@ def _comment(export: RobotExport, more: tuple[str, ...], first: bytes) -> str:
         *more,
     )
     place = f" * {MARK}{harmless(export.origin)}\n"
-    return comment(lines, first).replace(f" * {_PLACE}\n", place, 1)
+    return block_comment(lines, first).replace(f" * {_PLACE}\n", place, 1)

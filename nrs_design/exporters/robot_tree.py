@@ -36,7 +36,7 @@ def home_joints(robot: Robot) -> list[float]:
     return [float(angle) for angle in inverse_kinematics(robot, robot.home)]
 
 
-def comment(export: RobotExport, format_: str, lines: Sequence[str]) -> str:
+def xml_comment(export: RobotExport, format_: str, lines: Sequence[str]) -> str:
     """Return the comment that a file begins with, as XML.
 
     Parameters

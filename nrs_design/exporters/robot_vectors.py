@@ -10,7 +10,7 @@ from nrs_design import __version__
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.robot_c import UNPROVED, laws_of
 from nrs_design.exporters.robot_tree import RobotExport
-from nrs_design.exporters.vectors import law_document, make_vectors, rows_of
+from nrs_design.exporters.vectors import law_document, make_vectors, vector_rows
 from nrs_design.ownership import MARK
 
 SCHEMA = "nrs-design/robot-vectors/1"
@@ -62,5 +62,5 @@ def text(export: RobotExport, laws: Mapping[str, StepLaw], count: int = COUNT) -
 
 def _document(law: StepLaw, count: int) -> dict[str, Any]:
     vectors = make_vectors(law, count)
-    cases = [" ".join(map(str, row)) for row in rows_of(vectors)]
+    cases = [" ".join(map(str, row)) for row in vector_rows(vectors)]
     return law_document(law, vectors) | {"cases": cases}

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.c_names import CNames, comment
+from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.output import C_TEST, C_TEST_HEADER
 
 
@@ -54,7 +54,7 @@ def program_macro(names: CNames) -> str:
 def _header(count: int, size: int, names: CNames, about: tuple[str, ...]) -> str:
     guard = f"{names.upper}_TEST_H"
     return f"""\
-{comment((*about, *_words(count, size, names)), C_TEST_HEADER)}
+{block_comment((*about, *_words(count, size, names)), C_TEST_HEADER)}
 #ifndef {guard}
 #define {guard}
 
@@ -107,7 +107,7 @@ def _source(
 ) -> str:
     table = ",\n".join("    {" + ", ".join(f"0x{n:x}U" for n in row) + "}" for row in rows.tolist())
     return f"""\
-{comment((*about, f"More is in {names.spec}_test.h."), C_TEST)}
+{block_comment((*about, f"More is in {names.spec}_test.h."), C_TEST)}
 #include "{names.spec}.h"
 #include "{names.spec}_test.h"
 

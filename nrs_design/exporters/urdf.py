@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi
 
-from nrs_design.exporters.robot_tree import RobotExport, comment, home_joints
-from nrs_design.models.robot import Leg, Robot, links_of, numbers, tree_angles
+from nrs_design.exporters.robot_tree import RobotExport, home_joints, xml_comment
+from nrs_design.models.robot import Leg, Robot, attribute_text, links_of, tree_angles
 
 _LOSS = (
     "LOST: the closed loops. URDF describes trees, so the three legs are open chains: the frames "
@@ -28,14 +28,15 @@ def _document(export: RobotExport) -> Iterator[str]:
         *_LOSS,
         f"gravity: {robot.gravity!r} m/s^2, which URDF does not hold, along -z of world; the base "
         "is tilted by theta4",
-        f"closed in the middle of the workspace: {numbers(*tree_angles(robot, robot.home))}, "
-        f"with theta1 to theta3 {numbers(*home_joints(robot))}",
+        "closed in the middle of the workspace: "
+        f"{attribute_text(*tree_angles(robot, robot.home))}, "
+        f"with theta1 to theta3 {attribute_text(*home_joints(robot))}",
     )
     yield '<?xml version="1.0"?>\n'
-    yield comment(export, "urdf", lines)
+    yield xml_comment(export, "urdf", lines)
     yield f'<robot name="{export.loaded.spec.name}">\n'
     yield '  <link name="world"/>\n  <link name="base"/>\n'
-    tilt = numbers(0.0, robot.base_tilt, 0.0)
+    tilt = attribute_text(0.0, robot.base_tilt, 0.0)
     yield _joint("base_tilt", "fixed", "world", "base", _ZERO, tilt)
     for leg in robot.legs:
         yield from _leg(robot, leg)
@@ -47,16 +48,16 @@ def _leg(robot: Robot, leg: Leg) -> Iterator[str]:
     tensor = ((leg.axis_inertia, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     yield _link(parent, 0.0, (0.0, 0.0, 0.0), tensor)
     # x along the base axis, y along z of the base.
-    turned = numbers(pi / 2, 0.0, leg.azimuth)
+    turned = attribute_text(pi / 2, 0.0, leg.azimuth)
     yield _joint(plane, "continuous", "base", parent, _ZERO, turned, "1 0 0")
     for link in links_of(robot, leg):
         child = f"{link.name}_link"
         yield _link(child, link.mass, link.center, link.inertia)
-        place = numbers(link.offset, 0.0, 0.0)
+        place = attribute_text(link.offset, 0.0, 0.0)
         yield _joint(link.name, "continuous", parent, child, place, _ZERO, "0 0 1")
         parent = child
     yield f'  <link name="{leg.name}_tip"/>\n'
-    place = numbers(leg.l3, 0.0, 0.0)
+    place = attribute_text(leg.l3, 0.0, 0.0)
     yield _joint(f"{leg.name}_end", "fixed", parent, f"{leg.name}_tip", place, _ZERO)
 
 
@@ -65,11 +66,11 @@ def _link(
 ) -> str:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia
     entries = {"ixx": xx, "ixy": xy, "ixz": xz, "iyy": yy, "iyz": yz, "izz": zz}
-    tensor = " ".join(f'{key}="{numbers(value)}"' for key, value in entries.items())
+    tensor = " ".join(f'{key}="{attribute_text(value)}"' for key, value in entries.items())
     return (
         f'  <link name="{name}">\n    <inertial>\n'
-        f'      <origin xyz="{numbers(*center)}"/>\n'
-        f'      <mass value="{numbers(mass)}"/>\n'
+        f'      <origin xyz="{attribute_text(*center)}"/>\n'
+        f'      <mass value="{attribute_text(mass)}"/>\n'
         f"      <inertia {tensor}/>\n    </inertial>\n  </link>\n"
     )
 

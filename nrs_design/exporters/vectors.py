@@ -63,7 +63,7 @@ def render(export: Export) -> dict[str, bytes]:
     law, names, lines = program.law, program.names, program.about
     vectors = make_vectors(law)
     return {
-        ".vectors.json": json_text(law, vectors, lines).encode(),
+        ".vectors.json": vectors_text(law, vectors, lines).encode(),
         ".vectors.csv": csv_text(vectors, lines).encode(),
         **self_test(law, vectors.columns, vectors.rows, names, lines),
         "_test.py": pytest_text(names, lines).encode(),
@@ -118,7 +118,7 @@ def _bits(values: Single) -> NDArray[np.uint32]:
     return np.ascontiguousarray(values, np.float32).view(np.uint32)
 
 
-def json_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
+def vectors_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
     """Return the JSON document.
 
     Parameters
@@ -141,7 +141,7 @@ def json_text(law: StepLaw, vectors: Vectors, about: tuple[str, ...]) -> str:
     if law.logic is not None:
         head["logic"] = logic_document(law.logic)
     text = json.dumps(head, indent=2).removesuffix("\n}")
-    rows = ",\n".join(f"    {json.dumps(row)}" for row in rows_of(vectors))
+    rows = ",\n".join(f"    {json.dumps(row)}" for row in vector_rows(vectors))
     return f'{text},\n  "cases": [\n{rows}\n  ]\n}}\n'
 
 
@@ -171,10 +171,10 @@ def csv_text(vectors: Vectors, about: tuple[str, ...]) -> str:
         *(f"# {line}" for line in about),
         ",".join(vectors.columns),
     ]
-    return "\n".join([*lines, *(",".join(map(str, row)) for row in rows_of(vectors))]) + "\n"
+    return "\n".join([*lines, *(",".join(map(str, row)) for row in vector_rows(vectors))]) + "\n"
 
 
-def rows_of(vectors: Vectors) -> Iterator[list[int | str]]:
+def vector_rows(vectors: Vectors) -> Iterator[list[int | str]]:
     """Yield the cases: mode and valid as integers, all others as bits in hexadecimal."""
     whole = [name in ("mode", "valid") for name in vectors.columns]
     for row in vectors.rows.tolist():

@@ -11,7 +11,7 @@ from nrs_design.exporters import Format
 from nrs_design.output import check_place, write_outputs
 from nrs_design.ownership import check_name
 
-# Of a file, such as .txt or .h5; a version of a folder, such as .2, is none.
+# Of a file, such as .txt or .h5; a version of a folder, such as .2, is not one.
 _ENDING = re.compile(r"\.[A-Za-z]\w{0,7}")
 
 

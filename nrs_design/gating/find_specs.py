@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from nrs_design.errors import NrsDesignError, SpecError
 
 SUFFIXES = (".nrs.yaml", ".nrs.yml")
+YAML = (".yaml", ".yml")
+# A line of a spec, somewhere in so many bytes from its beginning.
+_KIND = re.compile(rb"^kind: *(interaction-design|switched-system|robot)\b", re.MULTILINE)
+_LOOKED_AT = 16_384
 
 
 def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
     """List the spec files of files and folders, sorted, each once.
 
     A folder stands for all ``*.nrs.yaml`` and ``*.nrs.yml`` below it, in capitals too. Hidden
-    folders and links to folders are passed over; `find_passed_over` lists them. A file is taken
+    folders and links to folders are passed over; `find_passed_over` lists them, and
+    `find_misnamed` what seems to be a spec by another name. A file is taken
     as it is named, whether it exists or not: reading it is where that shows.
 
     Raises
@@ -43,6 +49,31 @@ def find_passed_over(paths: Iterable[Path]) -> tuple[Path, ...]:
             if name.startswith(".") or os.path.islink(os.path.join(folder, name))
         )
     )
+
+
+def find_misnamed(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """List the files below folders that read like specs, and are passed over for their names."""
+    return tuple(
+        sorted(
+            file
+            for path in filter(os.path.isdir, paths)
+            for folder, _, files in _walk(path)
+            for file in (Path(folder, name) for name in files)
+            if file.name.lower().endswith(YAML)
+            and not file.name.lower().endswith(SUFFIXES)
+            and _reads_like_a_spec(file)
+        )
+    )
+
+
+def _reads_like_a_spec(file: Path) -> bool:
+    if not file.is_file():
+        return False
+    try:
+        with file.open("rb") as stream:
+            return _KIND.search(stream.read(_LOOKED_AT)) is not None
+    except OSError:
+        return False
 
 
 def _specs_of(path: Path) -> list[Path]:

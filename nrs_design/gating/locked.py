@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from nrs_design import __version__
 from nrs_design.certificates.bounds import bounds_summary
@@ -17,11 +16,9 @@ from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_loc
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
 from nrs_design.gating.recorded import hash_recorded
 from nrs_design.gating.rules import LOCKED, RULES, SCENARIO_LIMIT, SWITCHING_STABLE
+from nrs_design.progress import Progress, silent
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.document import Position
-
-if TYPE_CHECKING:
-    from nrs_design.pipeline import Progress
 
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
@@ -31,7 +28,7 @@ def run_locked(
     specs: Sequence[Path],
     lock: Lock,
     file: Path,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
     *,
     named: Sequence[Path] = (),
 ) -> GateOutcome:

@@ -28,14 +28,14 @@ from nrs_design.output import CERTIFICATE, PAGE, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
     Overrides,
-    Progress,
     Result,
-    limits_of,
     run_analysis,
     run_certification,
     run_verification,
+    search_limits,
 )
 from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
+from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ class Files:
 def run_gate(
     specs: Sequence[Path],
     files: Files,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
     overrides: Overrides | None = None,
 ) -> GateOutcome:
     """Design and certify every spec, and write its certificate and report.
@@ -173,7 +173,7 @@ def _examine(
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
     files.check_owner(loaded.path, loaded.spec.name)
-    limits = limits_of(loaded.spec, overrides)
+    limits = search_limits(loaded.spec, overrides)
     result = run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from decimal import Decimal
 from fractions import Fraction
 from math import isfinite
 from numbers import Rational, Real
@@ -38,9 +39,9 @@ def read_rows(matrix: object, name: str = "the matrix") -> list[list[Fraction]]:
     held = getattr(matrix, "A", matrix) if is_state_space(matrix) else matrix
     rows = held.tolist() if hasattr(held, "tolist") else held
     if not isinstance(rows, Sequence) or isinstance(rows, str) or not rows:
-        raise _no_matrix(name)
+        raise _no_matrix(name, held)
     if any(not isinstance(row, Sequence) or isinstance(row, str) for row in rows):
-        raise _no_matrix(name)
+        raise _no_matrix(name, held)
     if any(len(row) != len(rows[0]) or not row for row in rows):
         raise SpecError(
             f"{name} has rows of different lengths", remedy="give all rows the same length"
@@ -78,8 +79,8 @@ def read_number(value: object, name: str = "the value") -> Fraction:
     SpecError
         If it is not a finite real number.
     """
-    if isinstance(value, str):
-        return parse_exact(value)
+    if isinstance(value, str | Decimal):
+        return parse_exact(str(value))
     if isinstance(value, bool) or not isinstance(value, Real):
         raise SpecError(
             f"{name} holds {quoted(repr(value))}, which is not a real number",
@@ -122,11 +123,13 @@ def time_of(modes: Sequence[object], time: str | None) -> Time:
             f"the time {quoted(str(time))} is not known", remedy="continuous or discrete"
         )
     periods: list[Any] = [getattr(mode, "dt", None) for mode in modes if is_state_space(mode)]
-    known = {period for period in periods if period is not None}
+    known = [period for period in periods if period is not None]
     said = {Time.CONTINUOUS if period == 0 else Time.DISCRETE for period in known}
+    # True is a step of any length, though it equals one second.
+    steps = {period for period in known if period is not True}
     if time is not None:
         said.add(Time(time))
-    if len(said) > 1 or len(known - {0, True}) > 1:
+    if len(said) > 1 or len(steps) > 1:
         raise SpecError(
             "the modes are not of one time axis",
             remedy="give state spaces of one sample time dt, and the same time if it is given too",
@@ -134,5 +137,10 @@ def time_of(modes: Sequence[object], time: str | None) -> Time:
     return said.pop() if said else Time.CONTINUOUS
 
 
-def _no_matrix(name: str) -> SpecError:
-    return SpecError(f"{name} is not a matrix", remedy="give rows of numbers")
+def _no_matrix(name: str, held: object) -> SpecError:
+    remedy = "give rows of numbers"
+    if hasattr(held, "dt"):
+        remedy = "of a system, give the state space: control.ss(system)"
+    elif hasattr(held, "value"):
+        remedy = "of a variable of CVXPY, give its .value"
+    return SpecError(f"{name} is not a matrix", remedy=remedy)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -65,15 +65,7 @@ def spec_of_matrices(
     if parameters:
         document["parameters"] = {key: _parameter(value) for key, value in parameters.items()}
     if resets:
-        document["resets"] = [
-            {
-                "from": str(source),
-                "to": str(target),
-                "map": _texts(read_rows(G, f"the reset {source}-{target}")),
-            }
-            for (source, target), maps in resets.items()
-            for G in _several(maps)
-        ]
+        document["resets"] = list(_resets(resets))
     return _validated(document, name)
 
 
@@ -83,12 +75,17 @@ def name_modes(modes: Sequence[object] | Mapping[str, object]) -> dict[str, obje
     Raises
     ------
     SpecError
-        If there are none, or one matrix stands for a list of them.
+        If there are none, or something else stands for a list of them.
     """
+    if isinstance(modes, str | Path):
+        remedy = "nrs_design.load(path).certify() is for the file of a spec"
+        raise SpecError("the modes are a text, not a list of matrices", remedy=remedy)
     if isinstance(modes, Mapping):
         named = dict(modes)
     elif is_state_space(modes) or _depth(modes) == 2:
         raise SpecError("the modes are one matrix", remedy="put it into a list: [A]")
+    elif not isinstance(modes, Iterable):
+        raise SpecError("the modes are not a list of matrices", remedy="write [A1, A2]")
     else:
         named = {f"m{index + 1}": mode for index, mode in enumerate(modes)}
     if not named:
@@ -129,6 +126,19 @@ def _texts(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:
 def _text(number: Fraction) -> str:
     """Write a number in full: a decimal only where that is exact."""
     return exact_text(number)
+
+
+def _resets(resets: Mapping[tuple[str, str], object]) -> Iterator[Document]:
+    """Yield what a spec says of resets."""
+    known = isinstance(resets, Mapping)
+    if not known or any(not isinstance(key, tuple) or len(key) != 2 for key in resets):
+        raise SpecError(
+            "a reset is named by two modes", remedy="write resets={('from', 'to'): matrix}"
+        )
+    for (source, target), maps in resets.items():
+        for G in _several(maps):
+            rows = _texts(read_rows(G, f"the reset {source}-{target}"))
+            yield {"from": str(source), "to": str(target), "map": rows}
 
 
 def _several(maps: object) -> list[object]:

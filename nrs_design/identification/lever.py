@@ -82,6 +82,6 @@ def _parse(option: str, text: str, kind: QuantityKind) -> float:
         raise DataError(f"{option}: {error.message}", remedy=error.remedy) from None
 
 
-def units_of(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
+def parameter_units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:
     """Return the units of the parameters of a law, as people read them."""
     return tuple(unit.replace("*", " ") for unit in law.units(rotational=rotational))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def shortened(step: Array, limit: Array) -> Array:
+def limited_step(step: Array, limit: Array) -> Array:
     """Shorten a step as a whole until no part of it is beyond its limit.
 
     It keeps its direction, along which errors fall: parts that are cut one by one would leave a

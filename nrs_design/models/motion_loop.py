@@ -91,7 +91,7 @@ class Realization:
 
 
 @dataclass(frozen=True, slots=True)
-class JointMotion:
+class JointMotionLoop:
     """PD loop around the actuator in its physical state: the error e and the velocity omega.
 
     ``e' = u - omega`` and ``tau omega' = Km (Kp e + Kd (u - omega)) - omega - tau F/J``, u the

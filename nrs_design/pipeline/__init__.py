@@ -9,30 +9,26 @@ from nrs_design.pipeline.certification import (
     Result,
     assemble_spec,
     find_relief,
-    limits_of,
     run_certification,
     run_comparison,
     run_recorded,
     run_verification,
+    search_limits,
 )
 from nrs_design.pipeline.design import (
     Designed,
-    Progress,
     placed,
     run_analysis,
     run_design,
-    silent,
     wrong_kind,
 )
 
 __all__ = [
     "Designed",
     "Overrides",
-    "Progress",
     "Result",
     "assemble_spec",
     "find_relief",
-    "limits_of",
     "placed",
     "run_analysis",
     "run_certification",
@@ -40,6 +36,6 @@ __all__ = [
     "run_design",
     "run_recorded",
     "run_verification",
-    "silent",
+    "search_limits",
     "wrong_kind",
 ]

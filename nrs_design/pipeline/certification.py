@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import AssemblyError, CertificateError
-from nrs_design.pipeline.design import Designed, Progress, placed, run_design, silent
+from nrs_design.pipeline.design import Designed, placed, run_design
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import GIGABYTE
@@ -76,7 +77,9 @@ class Overrides:
     memory: float | None = None
 
 
-def limits_of(spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True) -> Limits:
+def search_limits(
+    spec: Spec, overrides: Overrides | None = None, optimize_rate: bool = True
+) -> Limits:
     """Return how far the search goes: by default, as the spec says, or as a command sets it.
 
     Parameters
@@ -139,7 +142,7 @@ def run_certification(
         coordinates = coordinates or designed.spec.coordinates
     with placed(loaded):
         system = assemble_spec(loaded, designed, coordinates)
-    certification = certify(system, method, limits or limits_of(loaded.spec), progress)
+    certification = certify(system, method, limits or search_limits(loaded.spec), progress)
     certificate = (
         Certificate(
             spec_name=loaded.spec.name,

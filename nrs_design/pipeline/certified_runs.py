@@ -125,7 +125,7 @@ def read_certificate(file: Path, designed: Designed) -> Certificate:
     Raises
     ------
     CertificateError
-        If it is none, or does not hold for this spec.
+        If it is not one, or does not hold for this spec.
     """
     from nrs_design.certificates.verify import verify
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -15,12 +15,6 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
-
-Progress = Callable[[str], None]
-
-
-def silent(step: str) -> None:
-    """Report no progress."""
 
 
 @dataclass(frozen=True, slots=True)

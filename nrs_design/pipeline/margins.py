@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.pipeline.certification import Result, assemble_spec, limits_of
-from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import nearly
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:
-    from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+    from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
     from nrs_design.search.margin import BoxMargin, DwellMargin
     from nrs_design.spec.sampling import SamplingSpec
 
@@ -28,7 +28,7 @@ MARGIN_BUDGET = 10.0
 
 def quick_limits(result: Result, limits: Limits | None) -> Limits:
     """Return how far one search of many goes: a proof is enough, whatever its decay rate."""
-    limits = limits or limits_of(result.loaded.spec)
+    limits = limits or search_limits(result.loaded.spec)
     return replace(limits, optimize_rate=False, budget=min(limits.budget, MARGIN_BUDGET))
 
 
@@ -38,7 +38,7 @@ class ProofMargins:
 
     Parameters
     ----------
-    loop : LoopMargins or None
+    loop : MarginBrackets or None
         Of delay, period and disturbances.
     box : BoxMargin or None
         Of the declared ranges.
@@ -46,7 +46,7 @@ class ProofMargins:
         Of the time between switches.
     """
 
-    loop: LoopMargins | None = None
+    loop: MarginBrackets | None = None
     box: BoxMargin | None = None
     dwell: DwellMargin | None = None
 
@@ -79,13 +79,33 @@ def run_proof_margins(
     DesignError
         If the spec has nothing that such a margin is about.
     """
+    check_margins(result, margin=margin, shortest_dwell=shortest_dwell)
     loop = run_loop_margins(result, limits, progress) if margin else None
-    ranged = loop is None or result.loaded.spec.has_ranges
+    ranged = result.loaded.spec.has_ranges
     return ProofMargins(
         loop=loop,
         box=run_margin(result, limits, progress) if margin and ranged else None,
         dwell=run_shortest_dwell(result, limits, progress) if shortest_dwell else None,
     )
+
+
+def check_margins(result: Result, *, margin: bool, shortest_dwell: bool) -> None:
+    """Check, before minutes of work, that a spec has what its margins would be about.
+
+    Parameters
+    ----------
+    result, margin, shortest_dwell
+        As for `run_proof_margins`.
+
+    Raises
+    ------
+    DesignError
+        As there.
+    """
+    if margin and not _has_loop(result):
+        _refuse_box(result)
+    if shortest_dwell:
+        _refuse_dwell(result)
 
 
 def run_margin(
@@ -110,8 +130,28 @@ def run_margin(
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin
 
-    spec = result.loaded.spec
-    if not spec.has_ranges:
+    _refuse_box(result)
+    quick = quick_limits(result, limits)
+    verdicts = {Fraction(1): result.certification.verdict}
+    at = Fraction(1)
+
+    def assemble_at(scale: Fraction) -> SwitchedSystem:
+        nonlocal at
+        at = scale
+        progress(f"box scaled by {nearly(scale)}{_so_far(verdicts)}")
+        return assemble_spec(result.loaded, result.designed, result.coordinates, scale)
+
+    def decide(system: SwitchedSystem) -> Certification:
+        found = certify(system, limits=quick)
+        verdicts[at] = found.verdict
+        return found
+
+    return find_margin(assemble_at, decide, result.certification)
+
+
+def _refuse_box(result: Result) -> None:
+    """Stop where no range is declared."""
+    if not result.loaded.spec.has_ranges:
         given = "modes" if result.design is None else "environments"
         with placed(result.loaded):
             raise DesignError(
@@ -119,20 +159,20 @@ def run_margin(
                 remedy="give an environment or a parameter a range",
                 at=(given,),
             )
-    quick = quick_limits(result, limits)
 
-    def assemble_at(scale: Fraction) -> SwitchedSystem:
-        progress(f"box scaled by {nearly(scale)}")
-        return assemble_spec(result.loaded, result.designed, result.coordinates, scale)
 
-    return find_margin(
-        assemble_at, lambda system: certify(system, limits=quick), result.certification
-    )
+def _so_far(verdicts: Mapping[Fraction, Verdict], unit: str = "") -> str:
+    """Say what is known already, for those who wait."""
+    proved = [number for number, verdict in verdicts.items() if verdict is Verdict.PROVED]
+    refuted = [number for number, verdict in verdicts.items() if verdict is Verdict.REFUTED]
+    known = [f"proved: {nearly(max(proved), unit)}"] if proved else []
+    known += [f"refuted: {nearly(min(refuted), unit)}"] if refuted else []
+    return f" ({', '.join(known)})" if known else ""
 
 
 def run_loop_margins(
     result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> LoopMargins | None:
+) -> MarginBrackets | None:
     """Find how far delay, period and disturbances stretch; None where a spec has none of them.
 
     Parameters
@@ -144,16 +184,21 @@ def run_loop_margins(
     progress : callable
         Told the name of each step.
     """
-    from nrs_design.search.loop_margin import LoopMargins
+    from nrs_design.search.loop_margin import MarginBrackets
 
-    spec = None if result.designed is None else result.designed.spec
-    if spec is None or (spec.sampling is None and spec.disturbances is None):
+    if result.designed is None or not _has_loop(result):
         return None
     quick = quick_limits(result, limits)
     delay = period = None
-    if result.designed is not None and spec.sampling is not None:
-        delay, period = _sampling_margins(result.designed, spec.sampling, result, quick, progress)
-    return LoopMargins(delay, period, _command_margin(result))
+    if (sampling := result.designed.spec.sampling) is not None:
+        delay, period = _sampling_margins(result.designed, sampling, result, quick, progress)
+    return MarginBrackets(delay, period, _command_margin(result))
+
+
+def _has_loop(result: Result) -> bool:
+    """Tell whether something is sampled, or disturbs."""
+    spec = None if result.designed is None else result.designed.spec
+    return spec is not None and not (spec.sampling is None and spec.disturbances is None)
 
 
 def _sampling_margins(
@@ -169,6 +214,8 @@ def _sampling_margins(
     from nrs_design.spec.sampling import LONGEST_DELAY
 
     known = result.certification.verdict
+    delays = {Fraction(sampling.delay[1]): known}
+    periods = {sampling.period.exact: known}
 
     def assemble_at(changes: Mapping[str, object], what: str) -> SwitchedSystem:
         progress(what)
@@ -186,7 +233,9 @@ def _sampling_margins(
     def at_delay(longest: int) -> Verdict:
         if longest == sampling.delay[1]:
             return known
-        return decide({"delay": (sampling.delay[0], longest)}, f"delay {longest}")
+        what = f"delay {longest}{_so_far(delays)}"
+        delays[Fraction(longest)] = decide({"delay": (sampling.delay[0], longest)}, what)
+        return delays[Fraction(longest)]
 
     def at_period(period: Fraction) -> Verdict | str:
         if period == sampling.period.exact:
@@ -197,9 +246,12 @@ def _sampling_margins(
             if (given := getattr(sampling, name)) is not None
         }
         try:
-            return decide(changes, f"period {period} s")
+            periods[period] = decide(
+                changes, f"period {nearly(period, 's')}{_so_far(periods, 's')}"
+            )
         except NrsDesignError as error:
             return error.message
+        return periods[period]
 
     delay = find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, is_unstable)
     return delay, find_longest_period(sampling.period.exact, at_period)
@@ -239,16 +291,9 @@ def run_shortest_dwell(
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_shortest_dwell
 
+    _refuse_dwell(result)
     known = result.certification
     system = known.system
-    _refuse_dwell(result.loaded, system.time)
-    if len(system.lasting_modes()) < len(system.modes):
-        with placed(result.loaded):
-            raise DesignError(
-                "a shortest dwell time is not searched beside longest ones",
-                remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
-                at=("switching", "longest_dwell_time"),
-            )
     quick = quick_limits(result, limits)
 
     def decide(candidate: SwitchedSystem) -> Certification:
@@ -258,9 +303,10 @@ def run_shortest_dwell(
     return find_shortest_dwell(system, decide, known)
 
 
-def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:
+def _refuse_dwell(result: Result) -> None:
     """Stop where a dwell time would say nothing, by the rule that a spec with one must keep."""
-    if time is not Time.CONTINUOUS:
+    loaded, system = result.loaded, result.certification.system
+    if system.time is not Time.CONTINUOUS:
         raise DesignError(
             "a shortest dwell time is for continuous time",
             path=loaded.path,
@@ -269,3 +315,10 @@ def _refuse_dwell(loaded: LoadedSpec, time: Time) -> None:
     assert loaded.spec.kind != "robot"  # It has no modes, hence no certification.
     if obstacle := loaded.spec.find_dwell_obstacle():
         raise DesignError(obstacle.message, path=loaded.path, remedy=obstacle.remedy)
+    if len(system.lasting_modes()) < len(system.modes):
+        with placed(loaded):
+            raise DesignError(
+                "a shortest dwell time is not searched beside longest ones",
+                remedy="leave longest_dwell_time out, or declare the dwell_time and certify that",
+                at=("switching", "longest_dwell_time"),
+            )

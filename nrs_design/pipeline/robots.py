@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.pipeline.design import Progress, placed, silent, wrong_kind
+from nrs_design.pipeline.design import placed, wrong_kind
+from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, read_spec
 
 if TYPE_CHECKING:

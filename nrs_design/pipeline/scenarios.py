@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.errors import DesignError
-from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
@@ -130,7 +132,7 @@ def simulate_group(
     """
     from nrs_design.simulation.bodies import simulate_on_body
     from nrs_design.simulation.exact import simulate_exactly
-    from nrs_design.simulation.run import MAX_STEPS
+    from nrs_design.simulation.run import ESTIMATOR_LEFT_OUT, MAX_STEPS
     from nrs_design.simulation.summary import summarize
 
     spec, engine = designed.spec, wanted.engine or _usual(designed.spec, group)
@@ -144,8 +146,11 @@ def simulate_group(
         timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
         arm = _arm(designed, name) if len(group) > 1 else None
         runs = simulate_on_body(timed, *given, group, engine, arm, max_steps=most, tell=tell)
+    estimated = spec.mode_logic is not None and spec.mode_logic.type == "estimator"
+    more = (ESTIMATOR_LEFT_OUT,) if estimated else ()
     for scenario, run in zip(group, runs, strict=True):
-        yield Simulated(scenario, run, summarize(spec, scenario, run))
+        told = replace(run, left_out=(*run.left_out, *more))
+        yield Simulated(scenario, told, summarize(spec, scenario, told))
 
 
 def folder_of(designed: Designed) -> Path:

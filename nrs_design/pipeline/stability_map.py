@@ -11,8 +11,9 @@ from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.plant import Plant
 from nrs_design.pipeline.certification import Result, assemble_spec
-from nrs_design.pipeline.design import Progress, placed, silent
+from nrs_design.pipeline.design import placed
 from nrs_design.pipeline.margins import quick_limits
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 from nrs_design.search.certification import Limits
 from nrs_design.spec.interval import Interval

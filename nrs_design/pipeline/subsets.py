@@ -7,8 +7,9 @@ from itertools import combinations
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.certification import Result, assemble_spec
-from nrs_design.pipeline.design import Designed, Progress, silent
+from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.margins import quick_limits
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 from nrs_design.search.certification import Limits
 

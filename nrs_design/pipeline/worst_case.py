@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline.certification import assemble_spec
-from nrs_design.pipeline.design import Designed, Progress, placed, silent
+from nrs_design.pipeline.design import Designed, placed
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ def run_worst_case(
         If what acts on the loop is not modelled for its controllers, or its rules not searched.
     """
     from nrs_design.simulation.worst_case import worst_runs
-    from nrs_design.simulation.worst_outputs import bounds_of, deflection_of, forces_by_mode
+    from nrs_design.simulation.worst_outputs import certified_bounds, deflection_of, forces_by_mode
 
     spec = designed.spec
     progress("adversary")
@@ -97,7 +98,7 @@ def run_worst_case(
         system,
         runs,
         _limits(spec, system),
-        {} if certificate is None else bounds_of(certificate.system, certificate.statements),
+        {} if certificate is None else certified_bounds(certificate.system, certificate.statements),
         spec.disturbances is not None,
     )
 

@@ -79,6 +79,10 @@ class LyapunovCheck:
     rate: Fraction | None
     counterexample: Counterexample | None
 
+    def __bool__(self) -> bool:
+        """Whether it holds."""
+        return self.holds
+
 
 def check_quadratic(
     modes: Sequence[Mode], P: RationalMatrix, time: Time, rate: Fraction | None = None

@@ -9,8 +9,6 @@ from itertools import product
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.noun import dataclass
 
-Rows = list[list[Fraction]]
-
 # There are two to this power of matrices for each mode.
 MOST_SIGNALS = 4
 
@@ -131,10 +129,10 @@ class Saturation:
             The h of every signal.
         """
         rows = A.fractions()
-        linear = self._signals(k, rows, held, (False,) * len(self.signals))
+        linear = self._signals(k, held, (False,) * len(self.signals))
         for replaced in product((False, True), repeat=len(self.signals)):
             moved = [list(row) for row in rows]
-            taken = self._signals(k, rows, held, replaced)
+            taken = self._signals(k, held, replaced)
             for signal, new, old in zip(self.signals, taken, linear, strict=True):
                 for row, (c,) in zip(moved, signal.columns[k].fractions(), strict=True):
                     for j, (other, own) in enumerate(zip(new, old, strict=True)):
@@ -142,19 +140,14 @@ class Saturation:
             yield RationalMatrix.from_rows(moved)
 
     def _signals(
-        self,
-        k: int,
-        A: Rows,
-        held: Sequence[Sequence[Fraction]],
-        replaced: Sequence[bool],
-    ) -> Rows:
+        self, k: int, held: Sequence[Sequence[Fraction]], replaced: Sequence[bool]
+    ) -> list[list[Fraction]]:
         """Return every signal as a row over the state: its argument, or the h in its place."""
-        n = len(A)
-        found: Rows = []
+        found: list[list[Fraction]] = []
         for signal, h, other in zip(self.signals, held, replaced, strict=True):
             row = signal.rows[k].fractions()[0]
-            argument = row[:n]
-            for share, before in zip(row[n:], found, strict=True):
+            argument = row[: len(h)]
+            for share, before in zip(row[len(h) :], found, strict=True):
                 argument = [a + share * b for a, b in zip(argument, before, strict=True)]
             found.append(list(h) if other else argument)
         return found

@@ -13,14 +13,10 @@ from nrs_design.reporting.figures.identification import draw_bode, draw_fit
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.identification import (
     DRAWN,
-    FOOTER,
-    IDENTIFIED,
-    data_lights,
-    facts_of,
     figure_names,
+    identification_page,
     in_interval,
     label_of,
-    source_section,
 )
 
 if TYPE_CHECKING:
@@ -39,21 +35,17 @@ def actuator_report(found: ActuatorIdentification) -> Report:
         values.append(f"friction {in_interval(fit.friction)} {unit}")
     if fit.dead_time:
         values.append(f"dead time {in_interval(fit.dead_time)} s")
-    return Report(
+    return identification_page(
         name="actuator",
         title=f"Velocity model of order {fit.order} with Coulomb friction and dead time",
-        verdict=IDENTIFIED,
-        claim=f"{label_of(found.synthetic)}{', '.join(values)}. {found.reason}",
+        claim=f"{', '.join(values)}. {found.reason}",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
-        lights=data_lights(found.sources, len(found.doubts)),
-        facts=facts_of(found.sources),
+        sources=found.sources,
         sections=(
             Section("Fits", (_fits(found), *_ranges(found), *_derived(found))),
             *_bode(found),
             *_actuator_records(found),
-            source_section(found.sources),
         ),
-        footer=FOOTER,
     )
 
 

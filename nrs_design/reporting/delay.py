@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.figures.delay import draw_delay, draw_following
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.identification import (
-    FOOTER,
-    IDENTIFIED,
-    data_lights,
-    facts_of,
-    label_of,
-    source_section,
-)
+from nrs_design.reporting.identification import identification_page, label_of
 
 if TYPE_CHECKING:
     from nrs_design.identification.delay import DelayIdentification
@@ -41,17 +34,15 @@ def delay_report(found: DelayIdentification) -> Report:
         for fit in found.fits
     )
     table = Table("Delay beside each model", ("Beside", "Samples", "BIC - least"), rows)
-    return Report(
+    return identification_page(
         name="delay",
         title=f"Delay from {sent} to {seen}",
-        verdict=IDENTIFIED,
-        claim=f"{label_of(record.source.synthetic)}{number(samples.value, 4)} "
+        claim=f"{number(samples.value, 4)} "
         f"[{number(samples.low, 4)}, {number(samples.high, 4)}] samples of "
         f"{number(record.step, 4)} s, beside {found.chosen.follower.name}. Whole samples that hold "
         f"it and every part of the record: {low} to {high}.",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
-        facts=facts_of([record.source]),
-        lights=data_lights([record.source], len(found.doubts)),
+        sources=[record.source],
         sections=(
             Section("Models", (table,)),
             Section(
@@ -72,7 +63,5 @@ def delay_report(found: DelayIdentification) -> Report:
                 ),
             ),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
-            source_section([record.source]),
         ),
-        footer=FOOTER,
     )

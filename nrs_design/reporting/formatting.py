@@ -26,7 +26,7 @@ def roots(values: Iterable[complex], digits: int = 4) -> str:
     return ", ".join(root(z, digits) for z in values if z.imag >= -1e-9 * abs(z))
 
 
-def polynomial(coefficients: Sequence[float], digits: int = 5) -> str:
+def polynomial_text(coefficients: Sequence[float], digits: int = 5) -> str:
     """Write a polynomial in s, highest power first."""
     degree = len(coefficients) - 1
     powers = {0: "", 1: " s"}

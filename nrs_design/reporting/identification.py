@@ -1,4 +1,4 @@
-"""What pages of identifications share: the data, its lights, and estimates in words."""
+"""What pages of identifications share: head, data, lights and foot, and estimates in words."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.reporting.document import Light, Section, State, Table
+from nrs_design.reporting.document import Light, Report, Section, State, Table
 from nrs_design.reporting.formatting import number, plural
 
 if TYPE_CHECKING:
@@ -33,16 +33,41 @@ def facts_of(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
     )
 
 
-def data_lights(sources: Iterable[Source], doubts: int) -> tuple[Light, Light]:
-    """Return the lights of a page about data: what it is, and how much of it is doubtful.
+def identification_page(
+    name: str,
+    title: str,
+    claim: str,
+    remarks: Sequence[str],
+    sources: Sequence[Source],
+    sections: Iterable[Section],
+) -> Report:
+    """Return the page about what was found from data; the claim begins with what they are.
 
     Parameters
     ----------
-    sources : iterable of Source
-        The files.
-    doubts : int
-        How many doubts there are.
+    name, title, claim : str
+        Of the page.
+    remarks : sequence of str
+        Doubts, in full sentences; the lights count them.
+    sources : sequence of Source
+        The files, which the last section names.
+    sections : iterable of Section
+        What stands before that.
     """
+    return Report(
+        name=name,
+        title=title,
+        verdict=IDENTIFIED,
+        claim=f"{label_of(any(source.synthetic for source in sources))}{claim}",
+        remarks=tuple(remarks),
+        lights=_lights(sources, len(remarks)),
+        facts=facts_of(sources),
+        sections=(*sections, source_section(sources)),
+        footer=FOOTER,
+    )
+
+
+def _lights(sources: Iterable[Source], doubts: int) -> tuple[Light, Light]:
     synthetic = any(source.synthetic for source in sources)
     data = Light("Data", State.GOOD, "measured", FILES)
     if synthetic:

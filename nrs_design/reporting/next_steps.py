@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
@@ -14,7 +16,11 @@ if TYPE_CHECKING:
 
 
 def next_steps(
-    result: Result, *, margin: bool = False, shortest_dwell: bool = False
+    result: Result,
+    *,
+    margin: bool = False,
+    shortest_dwell: bool = False,
+    spec: Path | None = None,
 ) -> tuple[str, ...]:
     """Return what to do next, the most promising first; nothing where stability is proved.
 
@@ -24,17 +30,20 @@ def next_steps(
         Of the certification.
     margin, shortest_dwell : bool
         What was looked for just now, and need not be told to be.
+    spec : Path, optional
+        The spec as it was named; else its file name alone, which is the same wherever it lies.
     """
     verdict = result.certification.verdict
     if verdict is Verdict.PROVED:
         return ()
-    asked = (margin, shortest_dwell)
-    return (*_steps(result, *asked), "Do not ship this design: a gate must treat it as a failure.")
+    name = quote(str(spec or result.loaded.path.name))
+    steps = _steps(result, name, margin, shortest_dwell)
+    return (*steps, "Do not ship this design: a gate must treat it as a failure.")
 
 
-def _steps(result: Result, margin: bool, shortest_dwell: bool) -> Iterator[str]:
+def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Iterator[str]:
     certification, spec = result.certification, result.loaded.spec
-    command = f"nrs-design certify-switching {result.loaded.path.name}"
+    command = f"nrs-design certify-switching {name}"
     evidence = certification.evidence
     alone = evidence is not None and evidence.names_unstable_mode
     if alone:
@@ -43,13 +52,13 @@ def _steps(result: Result, margin: bool, shortest_dwell: bool) -> Iterator[str]:
             "its controller, or narrow the range that makes it unstable."
         )
     if certification.verdict is Verdict.INCONCLUSIVE:
-        yield f"Search longer: {command} --budget 600, with more --memory or a --max-degree."
+        yield f"Search longer: {command} --budget 600 (or more --memory, or a --max-degree)"
     if spec.has_ranges and not margin:
-        yield f"Find the largest ranges that are proved: {command} --margin."
+        yield f"Find the largest ranges that are proved: {command} --margin"
     if not alone and not shortest_dwell and _takes_dwell(result):
-        yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell."
+        yield f"Find the shortest dwell time that is proved: {command} --shortest-dwell"
     if result.designed is not None:
-        yield f"See which gains the goals allow: nrs-design optimize {result.loaded.path.name}."
+        yield f"See which gains the goals allow: nrs-design optimize {name}"
 
 
 def _takes_dwell(result: Result) -> bool:

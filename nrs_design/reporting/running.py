@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
-from nrs_design.reporting.figures.running import draw_run, draw_stiffness
+from nrs_design.reporting.figures.running import draw_judgement, draw_stiffness
 from nrs_design.reporting.identification import facts_of, label_of, source_section
 
 if TYPE_CHECKING:
@@ -88,5 +88,5 @@ def _figures(found: RunJudgement) -> Iterator[Illustration]:
             draw_stiffness(found),
         )
     yield Illustration(
-        "run", "The log", "Dashed: the first violation, if there is one.", draw_run(found)
+        "run", "The log", "Dashed: the first violation, if there is one.", draw_judgement(found)
     )

@@ -24,7 +24,7 @@ def metric_rows(metrics: Mapping[str, Any], limits: Mapping[str, float]) -> list
     return list(_rows(metrics, limits))
 
 
-def rounded_up(value: float) -> str:
+def four_digits_up(value: float) -> str:
     """Return a number with four digits, rounded up."""
     return f"{float(Context(prec=4, rounding=ROUND_CEILING).create_decimal(repr(value))):.4g}"
 
@@ -32,9 +32,9 @@ def rounded_up(value: float) -> str:
 def _rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[str]]:
     limit = f"{limits.get('torque', m['torque_limit']):.4g}"
     # What has a limit is never shown below it, nor as nothing, where it is not.
-    yield ["largest torque", rounded_up(m["peak_torque"]), "N m", limit]
+    yield ["largest torque", four_digits_up(m["peak_torque"]), "N m", limit]
     above = f"time above {m['torque_limit']:.4g} N m"
-    yield [above, rounded_up(m["time_above_limit"]), "s", "0"]
+    yield [above, four_digits_up(m["time_above_limit"]), "s", "0"]
     yield _peak("largest deflection", m["peak_depth"], "deg", limits.get("deflection"))
     yield _row("time in contact", m["time_in_contact"], "s")
     if m["impedance_rmse"] is not None:
@@ -64,7 +64,7 @@ def _peak(name: str, value: float, unit: str, limit: float | None) -> list[str]:
     """Return an angle or a speed, never below a limit where it is not."""
     if limit is None:
         return _row(name, math.degrees(value), unit)
-    return [name, rounded_up(math.degrees(value)), unit, f"{math.degrees(limit):.4g}"]
+    return [name, four_digits_up(math.degrees(value)), unit, f"{math.degrees(limit):.4g}"]
 
 
 def _row(name: str, value: float, unit: str, limit: str = "") -> list[str]:

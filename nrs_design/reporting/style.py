@@ -8,7 +8,7 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from nrs_design.plotting import load_matplotlib
-from nrs_design.reporting.text import wrapped
+from nrs_design.reporting.text import wrapped_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -175,7 +175,7 @@ def curve(index: int, count: int, points: int) -> dict[str, Any]:
 
 def row_labels(names: Sequence[str]) -> tuple[list[str], float]:
     """Return names in full as labels of rows, and the height in inches that one row needs."""
-    labels = [wrapped(name, _LABEL_LETTERS) for name in names]
+    labels = [wrapped_label(name, _LABEL_LETTERS) for name in names]
     lines = max((label.count("\n") for label in labels), default=0) + 1
     return labels, 0.11 + 0.16 * lines
 
@@ -197,7 +197,7 @@ def legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
     handles, labels = axes.get_legend_handles_labels()
     if len(handles) < 2:
         return
-    texts = [wrapped(label, _LEGEND_LETTERS) for label in labels]
+    texts = [wrapped_label(label, _LEGEND_LETTERS) for label in labels]
     longest = max(len(line) for text in texts for line in text.splitlines())
     columns = max(1, min(columns, len(handles), 66 // (longest + 6)))
     rows = -(-len(handles) // columns)

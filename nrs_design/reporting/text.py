@@ -17,7 +17,7 @@ def drawable(text: str) -> str:
     return "".join(c if ord(c) in letters else escaped(c) for c in shown)
 
 
-def wrapped(text: str, width: int) -> str:
+def wrapped_label(text: str, width: int) -> str:
     """Return drawable text in full, on as many lines as it needs."""
     lines: list[str] = []
     # Names of modes are made of parts between slashes, which are the places to break at.

@@ -6,21 +6,17 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from nrs_design.identification.lever import units_of
+from nrs_design.identification.lever import parameter_units
 from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.figures.identification import draw_fit, draw_intervals, draw_loop
 from nrs_design.reporting.formatting import number, plural, shortened
 from nrs_design.reporting.identification import (
     DRAWN,
-    FOOTER,
-    IDENTIFIED,
-    data_lights,
-    facts_of,
     figure_names,
+    identification_page,
     in_interval,
     label_of,
-    source_section,
 )
 
 if TYPE_CHECKING:
@@ -55,20 +51,18 @@ def tissue_report(
     """
     chosen = found.chosen
     several = (Section("Several relaxations", (Bullets("", tuple(series)),)),) if series else ()
-    units = units_of(chosen.law, found.rotational)
+    units = parameter_units(chosen.law, found.rotational)
     names = chosen.law.parameters()
     values = ", ".join(
         f"{name} = {in_interval(estimate)} {unit}".rstrip()
         for name, estimate, unit in zip(names, chosen.ranges, units, strict=True)
     )
-    return Report(
+    return identification_page(
         name=f"tissue-{chosen.law.name}",
         title=f"Tissue law from {plural(len(found.records), 'record')}",
-        verdict=IDENTIFIED,
-        claim=f"{label_of(found.synthetic)}{chosen.law.formula} with {values}. {found.reason}",
+        claim=f"{chosen.law.formula} with {values}. {found.reason}",
         remarks=found.caveats,
-        lights=data_lights([record.source for record in found.records], len(found.caveats)),
-        facts=facts_of([record.source for record in found.records]),
+        sources=[record.source for record in found.records],
         sections=(
             Section("What of the records is used", tuple(_used(found))),
             Section("Comparison of laws", tuple(_comparison(found))),
@@ -76,9 +70,7 @@ def tissue_report(
             *several,
             Section("Measured against fitted", tuple(_tissue_figures(found))),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
-            source_section([record.source for record in found.records]),
         ),
-        footer=FOOTER,
     )
 
 
@@ -139,7 +131,7 @@ def _comparison(found: TissueIdentification) -> Iterator[Block]:
 def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Block]:
     model = found.chosen
     law = model.law
-    units = units_of(law, found.rotational)
+    units = parameter_units(law, found.rotational)
     columns = (
         "Record",
         *(f"{n} [{u or '1'}]" for n, u in zip(law.parameters(), units, strict=True)),
@@ -151,8 +143,8 @@ def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Bloc
     rows.append(("pooled", *map(in_interval, model.estimates)))
     rows.append((f"range: {found.covers}", *map(in_interval, model.ranges)))
     if arm is not None:
-        turned = [f"{number(value, 6)} {unit}" for value, unit in
-                  zip(law.at_pivot(arm).values, units_of(law, True), strict=True)]  # fmt: skip
+        named = zip(law.at_pivot(arm).values, parameter_units(law, True), strict=True)
+        turned = [f"{number(value, 6)} {unit}" for value, unit in named]
         rows.append((f"pooled, at the pivot ({number(arm)} m)", *turned))
     yield Table("Estimates [95 % interval]", columns, tuple(rows))
     notes = [model.box] if model.box else []

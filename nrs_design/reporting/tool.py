@@ -7,14 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.figures.tool import draw_errors
 from nrs_design.reporting.formatting import number, plural
-from nrs_design.reporting.identification import (
-    FOOTER,
-    IDENTIFIED,
-    data_lights,
-    facts_of,
-    label_of,
-    source_section,
-)
+from nrs_design.reporting.identification import identification_page, label_of
 
 if TYPE_CHECKING:
     from nrs_design.identification.tool import ToolIdentification
@@ -40,15 +33,13 @@ def tool_report(found: ToolIdentification) -> Report:
     )
     columns = ("Along", "Center of mass [m]", "Bias of the force [N]", "Bias of the torque [N·m]")
     force, torque = found.rmse
-    return Report(
+    return identification_page(
         name="tool",
         title=f"Tool on the force sensor, from {plural(len(found.force_errors), 'pose')}",
-        verdict=IDENTIFIED,
-        claim=f"{note}Mass {found.mass} kg; center of mass "
+        claim=f"Mass {found.mass} kg; center of mass "
         f"{', '.join(number(e.value, 4) for e in found.center)} m from the origin of the sensor.",
         remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
-        facts=facts_of(sources),
-        lights=data_lights(sources, len(found.doubts)),
+        sources=sources,
         sections=(
             Section("Tool and bias", (Table("Estimates [95 % interval]", columns, rows),)),
             Section(
@@ -64,7 +55,5 @@ def tool_report(found: ToolIdentification) -> Report:
                 ),
             ),
             Section("How to read this", (Bullets("", _MEANING),), boxed=True),
-            source_section(sources),
         ),
-        footer=FOOTER,
     )

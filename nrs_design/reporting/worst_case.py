@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.reporting.figures.release import Panel, draw_release
+from nrs_design.reporting.figures.release import ReleasePanel, draw_release
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
@@ -44,7 +44,7 @@ _TURN = 180 / math.pi
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class WorstValue:
     """One quantity: the worst found, its limit and what is certified; SI.
 
     Parameters
@@ -74,7 +74,7 @@ class Found:
         return self.limit is not None and self.value > self.limit
 
 
-def found_in(case: WorstCase) -> tuple[Found, ...]:
+def found_in(case: WorstCase) -> tuple[WorstValue, ...]:
     """Return what was found, quantity by quantity.
 
     Parameters
@@ -83,7 +83,7 @@ def found_in(case: WorstCase) -> tuple[Found, ...]:
         Of the pipeline.
     """
     return tuple(
-        Found(
+        WorstValue(
             run.output.name,
             run.output.unit,
             run.value,
@@ -161,7 +161,7 @@ def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figur
     if _COMMAND in names:
         command = _TURN * run.disturbances[:, names.index(_COMMAND)]
         held = np.append(command, command[-1:])[:, None]
-        panels.append(Panel("Command [deg/s]", held, None, None))
+        panels.append(ReleasePanel("Command [deg/s]", held, None, None))
     labels = [_controller(name) for name in _modes(case)]
     who = list(dict.fromkeys(labels))
     mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)
@@ -219,10 +219,10 @@ def _largest(values: Array) -> Array:
     return np.asarray(values[np.arange(len(values)), np.abs(values).argmax(axis=1)])
 
 
-def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> Panel:
+def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> ReleasePanel:
     factor, unit = scale_of(output.name, output.unit, lever_arm)
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
-    return Panel(
+    return ReleasePanel(
         f"{output.name.capitalize()} [{unit}]",
         factor * output_values(case.system, output, run.states),
         None if limit is None else factor * limit,

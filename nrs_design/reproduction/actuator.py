@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from nrs_design.models.actuator import armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, reproduced
+from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, misprint, reproduced
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute the actuator's constants from the frequency response and table 4.1."""
     resistance = armature_resistance(thesis.ACTUATOR, thesis.MOTOR)
     return (

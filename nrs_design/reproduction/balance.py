@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from nrs_design.models.robot import design_balance
 from nrs_design.models.robot.balance import LegBalance
-from nrs_design.reproduction.comparison import Comparison, Tolerance, misprint, omitted, reproduced
+from nrs_design.reproduction.comparison import (
+    ReproducedValue,
+    Tolerance,
+    misprint,
+    omitted,
+    reproduced,
+)
 from nrs_design.reproduction.neuroboscope import robot, robot_spec
 
 # Thesis 4.4: M_c, M_b, M_a in g, B_a in mm, k in N/mm, A0C_A in mm.
@@ -13,7 +19,7 @@ RIGHT = ("844.1", "1302.4", "2892", "113.5", "1.5919")
 TOLERANCE = Tolerance(5e-4)
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute counter-masses, springs and the two misprinted lengths."""
     ours = design_balance(robot_spec(), robot())
     # What the printed spring constant of the right leg asks for.
@@ -42,7 +48,7 @@ def rows() -> tuple[Comparison, ...]:
     )
 
 
-def _distances(ours: LegBalance) -> tuple[Comparison, ...]:
+def _distances(ours: LegBalance) -> tuple[ReproducedValue, ...]:
     """Return where the printed counter-masses must sit; the same in both legs."""
     return tuple(
         reproduced(name, "4.4", printed, 1e6 * mass * at / float(text), "mm", Tolerance(5e-3))
@@ -55,7 +61,7 @@ def _distances(ours: LegBalance) -> tuple[Comparison, ...]:
 
 def _leg(
     name: str, printed: tuple[str, ...], ours: LegBalance, distance: str
-) -> tuple[Comparison, ...]:
+) -> tuple[ReproducedValue, ...]:
     masses = {"M_c": ours.arm_mass, "M_b": ours.coupler_mass, "M_a": ours.total_mass}
     note = (
         "With the arm's center of mass 75.4 mm from the coupler's end; table 3.1 has 65.6 mm."

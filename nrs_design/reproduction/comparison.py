@@ -32,7 +32,7 @@ class PrintVerdict(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class ReproducedValue:
     """One line of the table.
 
     Parameters
@@ -101,13 +101,13 @@ def reproduced(
     *,
     right: Printed | None = None,
     note: str = "",
-) -> Comparison:
+) -> ReproducedValue:
     """Return the row of a print that the recomputed value confirms.
 
     Parameters
     ----------
     name, section, unit, note : str
-        See `Comparison`.
+        See `ReproducedValue`.
     printed : str or tuple of str
         Numbers, ``a +- bj`` for a pair of poles.
     value : number or sequence of numbers
@@ -137,7 +137,7 @@ def derived(
     tolerance: Tolerance | None = None,
     holds: bool = True,
     note: str,
-) -> Comparison:
+) -> ReproducedValue:
     """Return the row of a result that the thesis prints no number for.
 
     Parameters
@@ -159,12 +159,12 @@ def derived(
     """
     if isinstance(value, str):
         verdict = PrintVerdict.DERIVED if holds else PrintVerdict.DRIFT
-        return Comparison(name, section, printed, value, unit, None, verdict, note)
+        return ReproducedValue(name, section, printed, value, unit, None, verdict, note)
     values, tolerance = _sequence(value), tolerance or Tolerance(STANDARD)
     confirmed = holds and tolerance.allows(values, _numbers(right or ()))
     verdict = PrintVerdict.DERIVED if confirmed else PrintVerdict.DRIFT
     text = ", ".join(format_number(number) for number in values)
-    return Comparison(name, section, printed, text, unit, None, verdict, note, str(tolerance))
+    return ReproducedValue(name, section, printed, text, unit, None, verdict, note, str(tolerance))
 
 
 def near(
@@ -176,7 +176,7 @@ def near(
     tolerance: Tolerance,
     *,
     note: str,
-) -> Comparison:
+) -> ReproducedValue:
     """Return the row of a print that is met but for data which the thesis does not give.
 
     Parameters
@@ -202,7 +202,7 @@ def misprint(
     *,
     right: Printed,
     note: str,
-) -> Comparison:
+) -> ReproducedValue:
     """Return the row of a print that is wrong; parameters as in `reproduced`.
 
     The row is a drift if the value leaves the tolerance around what is `right`, or if the print
@@ -264,23 +264,25 @@ def claim(
     verdict: PrintVerdict,
     holds: bool,
     note: str,
-) -> Comparison:
+) -> ReproducedValue:
     """Return the row of a statement in words.
 
     Parameters
     ----------
     name, section, printed, value, unit, note : str
-        See `Comparison`; `value` says what was found.
+        See `ReproducedValue`; `value` says what was found.
     verdict : PrintVerdict
         What is on record.
     holds : bool
         Whether the computation still says so; if not, the row is a drift.
     """
     verdict = verdict if holds else PrintVerdict.DRIFT
-    return Comparison(name, section, printed, value, unit, None, verdict, note)
+    return ReproducedValue(name, section, printed, value, unit, None, verdict, note)
 
 
-def hardware_only(name: str, section: str, printed: str, unit: str, note: str = "") -> Comparison:
+def hardware_only(
+    name: str, section: str, printed: str, unit: str, note: str = ""
+) -> ReproducedValue:
     """Return the row of a measurement on the robot.
 
     Parameters
@@ -290,10 +292,12 @@ def hardware_only(name: str, section: str, printed: str, unit: str, note: str = 
     note : str
         What it would take.
     """
-    return Comparison(name, section, printed, None, unit, None, PrintVerdict.HARDWARE_ONLY, note)
+    return ReproducedValue(
+        name, section, printed, None, unit, None, PrintVerdict.HARDWARE_ONLY, note
+    )
 
 
-def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Comparison:
+def omitted(name: str, section: str, printed: str, unit: str, note: str) -> ReproducedValue:
     """Return the row of a number whose data the thesis does not give.
 
     Parameters
@@ -303,10 +307,10 @@ def omitted(name: str, section: str, printed: str, unit: str, note: str) -> Comp
     note : str
         What is missing.
     """
-    return Comparison(name, section, printed, None, unit, None, PrintVerdict.NEEDS_DATA, note)
+    return ReproducedValue(name, section, printed, None, unit, None, PrintVerdict.NEEDS_DATA, note)
 
 
-def drifted(rows: Sequence[Comparison]) -> tuple[Comparison, ...]:
+def drifted(rows: Sequence[ReproducedValue]) -> tuple[ReproducedValue, ...]:
     """Return the rows that no longer agree with what is on record."""
     return tuple(row for row in rows if row.verdict is PrintVerdict.DRIFT)
 
@@ -327,12 +331,14 @@ def _row(
     verdict: PrintVerdict,
     note: str,
     tolerance: Tolerance,
-) -> Comparison:
+) -> ReproducedValue:
     text = printed if isinstance(printed, str) else ", ".join(printed)
     deviation = _deviation(values, _numbers(printed)) if _is_numeric(printed) else None
     digits = max(DIGITS, _significant_digits(text)) if _is_numeric(printed) else DIGITS
     value = ", ".join(format_number(number, digits) for number in values)
-    return Comparison(name, section, text, value, unit, deviation, verdict, note, str(tolerance))
+    return ReproducedValue(
+        name, section, text, value, unit, deviation, verdict, note, str(tolerance)
+    )
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:

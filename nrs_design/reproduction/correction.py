@@ -7,7 +7,7 @@ import numpy as np
 from nrs_design.models.robot import Correction, correction_coefficients
 from nrs_design.models.robot.correction import DEPTH_SINES, TABLE_3_5, WHOLE_WORKSPACE, Sine
 from nrs_design.reproduction.comparison import (
-    Comparison,
+    ReproducedValue,
     Tolerance,
     meets_standard,
     misprint,
@@ -54,7 +54,7 @@ _AXIAL = (
 )
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute tables 3.5 and 3.7 along slow sines in phase."""
     sines = (_sine(sine, print_) for sine, print_ in zip(TABLE_3_5, SINES, strict=True))
     figure = (
@@ -65,7 +65,7 @@ def rows() -> tuple[Comparison, ...]:
     return (*sines, *figure, _whole(), _final(), *tilts)
 
 
-def _sine(sine: Sine, printed: tuple[str, str, str]) -> Comparison:
+def _sine(sine: Sine, printed: tuple[str, str, str]) -> ReproducedValue:
     low, high = (1e3 * d for d in sine.d)
     return near(
         f"K_corr, phi {sine.phi:g}, psi {sine.psi:g} rad, d {low:.0f} - {high:.0f} mm",
@@ -78,7 +78,7 @@ def _sine(sine: Sine, printed: tuple[str, str, str]) -> Comparison:
     )
 
 
-def _whole() -> Comparison:
+def _whole() -> ReproducedValue:
     found = correction_coefficients(robot(), WHOLE_WORKSPACE)
     return omitted(
         "K_corr over the whole workspace",
@@ -91,7 +91,7 @@ def _whole() -> Comparison:
     )
 
 
-def _final() -> Comparison:
+def _final() -> ReproducedValue:
     printed = [*SINES, *(tuple(print_.split(", ")) for _, print_ in FIGURE), WHOLE]
     means = np.array([[float(k) for k in row] for row in printed]).mean(axis=0)
     return misprint(
@@ -108,7 +108,7 @@ def _final() -> Comparison:
 
 def _tilt(
     degrees: float, section: str, sides: tuple[str, str], middle: str
-) -> tuple[Comparison, Comparison]:
+) -> tuple[ReproducedValue, ReproducedValue]:
     tilted = robot().tilted(float(np.radians(degrees)))
     depth = correction_coefficients(tilted, DEPTH_SINES)
     angles = correction_coefficients(tilted, TABLE_3_5)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from statistics import fmean
 
 from nrs_design.reproduction.comparison import (
-    Comparison,
+    ReproducedValue,
     Tolerance,
     hardware_only,
     near,
@@ -33,12 +33,12 @@ TIMES = ((0.75, 0.61), (0.53, 0.41), (0.09, 0.07), (0.16, 0.13))
 GAINS = ("19", "21", "20", "20")
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """List the measurements, and recompute the gains from the printed times."""
     return (*(hardware_only(*measurement) for measurement in MEASUREMENTS), *_gains())
 
 
-def _gains() -> tuple[Comparison, Comparison]:
+def _gains() -> tuple[ReproducedValue, ReproducedValue]:
     gains = tuple(100 * (1 - fast / slow) for slow, fast in TIMES)
     return (
         near(

@@ -8,7 +8,7 @@ from nrs_design.design.force_limit import Approach, peak_force, steady_force_err
 from nrs_design.design.force_loop import force_loop_response
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import (
-    Comparison,
+    ReproducedValue,
     Tolerance,
     derived,
     misprint,
@@ -17,7 +17,7 @@ from nrs_design.reproduction.comparison import (
 from nrs_design.spec.controllers import Offset
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute the open loop 6.33 and the poles that Kp = 0.02 gives."""
     stiffness = float(thesis.SOFT)
     loop = thesis.EXACT_LOOP
@@ -60,7 +60,7 @@ def rows() -> tuple[Comparison, ...]:
     )
 
 
-def _offset_rows() -> tuple[Comparison, Comparison]:
+def _offset_rows() -> tuple[ReproducedValue, ReproducedValue]:
     """Recompute the force limit of 6.3.3.3 for both readings of X_i in 6.41."""
     speeds = (3.0, 5.0, 8.0)
     peak, left = _limited("reference", 5.0)

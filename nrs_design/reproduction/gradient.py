@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.reproduction.comparison import Comparison, derived
+from nrs_design.reproduction.comparison import ReproducedValue, derived
 from nrs_design.reproduction.switching import tool_and_tissue, withdrawal
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import find_by_gradient
@@ -19,7 +19,7 @@ NEVER = (
 SOON = "Other coordinates of the same pair; how many updates it takes depends on rounding, too."
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Run the iteration on both pairs, in the states of the thesis and in others."""
     pairs = (
         ("6.3.2.2", "Bt 2.15 and 1.04", withdrawal()),
@@ -32,7 +32,9 @@ def rows() -> tuple[Comparison, ...]:
     )
 
 
-def _row(section: str, name: str, system: SwitchedSystem, coordinates: Coordinates) -> Comparison:
+def _row(
+    section: str, name: str, system: SwitchedSystem, coordinates: Coordinates
+) -> ReproducedValue:
     ways = [Gradient(order=order, coordinates=coordinates, max_updates=UPDATES) for order in Order]
     found = [find_by_gradient(Family.of(system, gradient=way)) for way in ways]
     printed = coordinates == Coordinates.GIVEN

@@ -16,7 +16,7 @@ import numpy as np
 
 from nrs_design.models.motion_loop import realize
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
+from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, derived
 from nrs_design.reproduction.hands_on import ADMITTANCES
 from nrs_design.simulation.metrics import Effort, effort
 from nrs_design.simulation.time_response import Array
@@ -99,7 +99,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
     return HandRun(t, z[:, angle], speed, torque, found, float(z[-1, velocity]))
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Simulate the six experiments with both operators."""
     pushed = [move(*admittance) for admittance in ADMITTANCES]
     led = [move(*admittance, HAND) for admittance in ADMITTANCES]
@@ -120,7 +120,7 @@ def changes(values: list[float]) -> tuple[float, ...]:
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 
-def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comparison]:
+def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[ReproducedValue, ReproducedValue]:
     low, high = (changes([WAY / run.time for run in runs]) for runs in (pushed, led))
     printed = ", ".join(map(str, SPEEDS))
     return (
@@ -157,7 +157,7 @@ def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comp
     )
 
 
-def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Comparison]:
+def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[ReproducedValue, ReproducedValue]:
     low, high = (changes([run.effort.total for run in runs]) for runs in (pushed, led))
     printed = ", ".join(map(str, TORQUES))
     balance = (
@@ -194,7 +194,7 @@ def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[Comparison, Com
     )
 
 
-def _efforts(pushed: list[HandRun]) -> Comparison:
+def _efforts(pushed: list[HandRun]) -> ReproducedValue:
     found = [run.effort for run in pushed]
     totals, energies = tuple(e.total for e in found), tuple(e.energy for e in found)
     return derived(

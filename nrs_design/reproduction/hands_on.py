@@ -11,7 +11,7 @@ from nrs_design.design.passivity import passive_band
 from nrs_design.design.root_locus import motion_loop_response
 from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
+from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, derived
 
 # Mt in kg m^2 and Bt in kg m^2/s of each experiment.
 ADMITTANCES = ((1, 4), (2, 4), (3, 4), (1, 8), (2, 8), (3, 8))
@@ -20,7 +20,7 @@ PRINTED = "Mt 1, 2, 3, 1, 2, 3; Bt 4, 4, 4, 8, 8, 8"
 LOOP = ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(thesis.SOFT)))
 
 
-def rows() -> tuple[Comparison, Comparison, Comparison]:
+def rows() -> tuple[ReproducedValue, ReproducedValue, ReproducedValue]:
     """Compute the poles of G Y, the hand that destabilizes the robot, and where it is passive."""
     poles = tuple(-Bt / Mt for Mt, Bt in ADMITTANCES)
     motion = motion_loop_response(thesis.EXACT_LOOP).poles

@@ -10,7 +10,13 @@ from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, derived, misprint, reproduced
+from nrs_design.reproduction.comparison import (
+    ReproducedValue,
+    Tolerance,
+    derived,
+    misprint,
+    reproduced,
+)
 
 LOOPS = (("G as in 6.1", thesis.PRINTED_LOOP), ("G exact", thesis.EXACT_LOOP))
 ZDES = thesis.TORQUE / thesis.VELOCITY
@@ -48,12 +54,12 @@ LIMITS = (
 HAND = tuple(k * 0.24**2 for k in (1002 - 568, 1002 + 568))
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute what is desired, the four optima with either G, and how stiff is too stiff."""
     return (*_goals(), *_optima(), *_limits())
 
 
-def _goals() -> tuple[Comparison, ...]:
+def _goals() -> tuple[ReproducedValue, ...]:
     tight = Tolerance(1e-5)
     return (
         reproduced(
@@ -89,7 +95,7 @@ def _goals() -> tuple[Comparison, ...]:
     )
 
 
-def _optima() -> tuple[Comparison, ...]:
+def _optima() -> tuple[ReproducedValue, ...]:
     return tuple(
         reproduced(
             f"Mt, Bt: {name}; {source}",
@@ -119,11 +125,11 @@ def _optimum(
     return optimum.Mt, optimum.Bt
 
 
-def _limits() -> tuple[Comparison, ...]:
+def _limits() -> tuple[ReproducedValue, ...]:
     return tuple(_limit(*entry) for entry in LIMITS)
 
 
-def _limit(Bt: float, used: str, section: str, right: str, tolerance: float) -> Comparison:
+def _limit(Bt: float, used: str, section: str, right: str, tolerance: float) -> ReproducedValue:
     limit = stiffness_limit(ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(used))), 0.01, Bt)
     hand = (
         f" A surgeon's hand, {HAND[0]:.1f} to {HAND[1]:.1f} N m/rad by the thesis's own figures, "

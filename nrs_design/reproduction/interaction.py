@@ -67,7 +67,7 @@ scenarios: {{run: {{{scenario}}}}}
 """
 
 
-def simulated(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
+def run_scenario(controllers: dict[str, str], scenario: str, more: str = "") -> Run:
     """Simulate it with the exact engine.
 
     Parameters
@@ -132,7 +132,7 @@ def withdrawals(speed: float) -> tuple[Run, Run]:
     both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
     command = ((0, 8), (1, 8), (1, -speed), (2, -speed))
     without, switched = (
-        simulated(both, into(0.5, *command, control=control))
+        run_scenario(both, into(0.5, *command, control=control))
         for control in ("{fixed: insertion}", BY_SIGN)
     )
     return without, switched
@@ -148,7 +148,7 @@ def two_contacts(soft: float, stiff: float, *pairs: tuple[float, float]) -> Run:
     *pairs : tuple of (float, float)
         Of the command, s and deg/s.
     """
-    return simulated(
+    return run_scenario(
         {"tissue": admittance("0.01", "2.15"), "tool": admittance("0.01", "2.11", "stiff")},
         f"command: {{{points(*pairs)}}}, surfaces: [{{environment: soft, at: {soft} deg}}, "
         f"{{environment: stiff, at: {stiff} deg, side: below}}], "

@@ -8,9 +8,9 @@ from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import (
-    Comparison,
     Number,
     PrintVerdict,
+    ReproducedValue,
     Tolerance,
     claim,
     format_number,
@@ -31,12 +31,12 @@ WRONG_SIGN = (
 )
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute the matrices entry by entry, and their eigenvalues."""
     return (*_realization(), *_entries(), *_eigenvalues())
 
 
-def _realization() -> tuple[Comparison, ...]:
+def _realization() -> tuple[ReproducedValue, ...]:
     num, den = thesis.EXACT_LOOP.numerator, thesis.EXACT_LOOP.denominator
     return (
         reproduced(
@@ -58,7 +58,7 @@ def _realization() -> tuple[Comparison, ...]:
     )
 
 
-def _entries() -> tuple[Comparison, ...]:
+def _entries() -> tuple[ReproducedValue, ...]:
     soft = impedance_rows(thesis.SOFT, "0.01", "2.15", "force")
     stiff = impedance_rows(thesis.STIFF, "0.01", "2.11", "force")
     return (
@@ -114,7 +114,7 @@ def _entries() -> tuple[Comparison, ...]:
     )
 
 
-def _eigenvalues() -> tuple[Comparison, ...]:
+def _eigenvalues() -> tuple[ReproducedValue, ...]:
     return (
         misprint(
             "eigenvalues of A1 as printed",
@@ -134,7 +134,7 @@ def _eigenvalues() -> tuple[Comparison, ...]:
     )
 
 
-def _not_hurwitz(name: str, section: str, rows: Rows) -> Comparison:
+def _not_hurwitz(name: str, section: str, rows: Rows) -> ReproducedValue:
     system = family(name, rows)
     return claim(
         f"eigenvalues of {name} as printed",
@@ -148,7 +148,7 @@ def _not_hurwitz(name: str, section: str, rows: Rows) -> Comparison:
     )
 
 
-def _hurwitz(Bt: str, right: tuple[str, ...]) -> Comparison:
+def _hurwitz(Bt: str, right: tuple[str, ...]) -> ReproducedValue:
     return reproduced(
         f"eigenvalues at k_soft, Mt 0.01, Bt {Bt}",
         "6.3.2.2",

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from nrs_design import __version__
-from nrs_design.reproduction.comparison import Comparison
+from nrs_design.reproduction.comparison import ReproducedValue
 from nrs_design.reproduction.table import count_verdicts
 
 
-def render_page(table: tuple[Comparison, ...], gallery: str | None = None) -> str:
+def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) -> str:
     """Return the page; the same rows give the same bytes.
 
     Parameters
     ----------
-    table : tuple of Comparison
+    table : tuple of ReproducedValue
         Its rows.
     gallery : str, optional
         Where the page of figures is, seen from this one.

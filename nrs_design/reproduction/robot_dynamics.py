@@ -13,7 +13,7 @@ from nrs_design.models.robot import (
 )
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import (
-    Comparison,
+    ReproducedValue,
     Tolerance,
     derived,
     omitted,
@@ -40,7 +40,7 @@ NEEDS_THE_FIGURE = (
 )
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute torque shares and inertia ratios, and list what lacks its trajectory."""
     return (
         _shares(robot()),
@@ -50,7 +50,7 @@ def rows() -> tuple[Comparison, ...]:
     )
 
 
-def _shares(ours: Robot) -> Comparison:
+def _shares(ours: Robot) -> ReproducedValue:
     means = torque_shares(ours, thesis_grid()).means
     return reproduced(
         "torque shares of gravity, Coriolis and inertia",
@@ -64,7 +64,7 @@ def _shares(ours: Robot) -> Comparison:
     )
 
 
-def _angular_velocity(ours: Robot) -> Comparison:
+def _angular_velocity(ours: Robot) -> ReproducedValue:
     poses = thesis_grid()
     right = simplified_dynamics(ours, poses).Ms
     printed = simplified_dynamics(ours, poses, printed=True).Ms
@@ -81,7 +81,7 @@ def _angular_velocity(ours: Robot) -> Comparison:
     )
 
 
-def _inertia_ratio(ours: Robot) -> tuple[Comparison, ...]:
+def _inertia_ratio(ours: Robot) -> tuple[ReproducedValue, ...]:
     reflected = 1 / (905**2 * thesis.MOTOR.inertia)
     full = float(mass_matrix(ours, ours.home)[0, 0])
     return (

@@ -17,8 +17,8 @@ from nrs_design.models.robot import (
 from nrs_design.models.robot.geometry import direction
 from nrs_design.models.robot.vectors import Array
 from nrs_design.reproduction.comparison import (
-    Comparison,
     PrintVerdict,
+    ReproducedValue,
     Tolerance,
     claim,
     misprint,
@@ -33,12 +33,12 @@ _ROUNDING = 1e-12
 ACCELERATION_PER_SPEED = 3.7
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute the crank angle, the orientation and the joint speeds."""
     return (_crank_angle(robot()), _crank_range(robot()), *_orientation(), *_speeds(robot()))
 
 
-def _crank_angle(ours: Robot) -> Comparison:
+def _crank_angle(ours: Robot) -> ReproducedValue:
     return misprint(
         "theta3 at phi 0.1, psi -0.2 rad, d 200 mm",
         "3.10",
@@ -51,7 +51,7 @@ def _crank_angle(ours: Robot) -> Comparison:
     )
 
 
-def _crank_range(ours: Robot) -> Comparison:
+def _crank_range(ours: Robot) -> ReproducedValue:
     space = ours.workspace
     poses = pose_grid([0.0], (-space.psi, 0.0, space.psi), np.linspace(*space.d, 101))
     crank = np.degrees(inverse_kinematics(ours, poses)[..., 2])
@@ -66,7 +66,7 @@ def _crank_range(ours: Robot) -> Comparison:
     )
 
 
-def _orientation() -> tuple[Comparison, Comparison]:
+def _orientation() -> tuple[ReproducedValue, ReproducedValue]:
     pose = np.array(POSE)
     W = np.array(direction(pose))
     phi, psi, _ = POSE
@@ -110,7 +110,7 @@ def _pointing(x: float, y: float) -> Array:
     return np.array([np.sin(y), -np.sin(x) * np.cos(y), np.cos(x) * np.cos(y)])
 
 
-def _speeds(ours: Robot) -> tuple[Comparison, ...]:
+def _speeds(ours: Robot) -> tuple[ReproducedValue, ...]:
     limits = ours.task_limits
     v = np.array([limits.angular_velocity] * 2 + [limits.linear_velocity])
     depths = np.linspace(*ours.workspace.d, 1001)
@@ -152,7 +152,7 @@ def _speeds(ours: Robot) -> tuple[Comparison, ...]:
     )
 
 
-def _hand(angular: float, linear: float) -> tuple[Comparison, Comparison]:
+def _hand(angular: float, linear: float) -> tuple[ReproducedValue, ReproducedValue]:
     """Relate the speeds of a surgeon's hand and its accelerations."""
     return (
         reproduced(

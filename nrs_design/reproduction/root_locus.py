@@ -6,10 +6,10 @@ from math import degrees, exp, pi, sqrt
 
 from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, derived, reproduced
+from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, derived, reproduced
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute the design by angle and magnitude condition, then what it really gives."""
     return (*_error_dynamics(), *_design(), *_closed_loop())
 
@@ -19,7 +19,7 @@ def _pd(time_constant: float) -> PdDesign:
     return design_pd(gain, time_constant, thesis.DAMPING_RATIO, thesis.SETTLING_TIME)
 
 
-def _error_dynamics() -> tuple[Comparison, ...]:
+def _error_dynamics() -> tuple[ReproducedValue, ...]:
     """Recompute the gains of computed torque from damping ratio and settling time."""
     wn, tolerance = _pd(float(thesis.ACTUATOR.time_constant)).natural_frequency, Tolerance(1e-4)
     damping = 2 * thesis.DAMPING_RATIO * wn
@@ -30,7 +30,7 @@ def _error_dynamics() -> tuple[Comparison, ...]:
     )
 
 
-def _design() -> tuple[Comparison, ...]:
+def _design() -> tuple[ReproducedValue, ...]:
     # The thesis places the zero with the pole of 4.26b, the gain with the rounded 0.0351 s of 4.29.
     unrounded, rounded = _pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant))
     return (
@@ -76,7 +76,7 @@ def _design() -> tuple[Comparison, ...]:
     )
 
 
-def _closed_loop() -> tuple[Comparison, ...]:
+def _closed_loop() -> tuple[ReproducedValue, ...]:
     loop = thesis.EXACT_LOOP
     response = motion_loop_response(loop)
     second_order = exp(-pi * thesis.DAMPING_RATIO / sqrt(1 - thesis.DAMPING_RATIO**2))

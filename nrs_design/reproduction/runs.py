@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, Tolerance, derived
+from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, derived
 from nrs_design.reproduction.interaction import (
     BLEEDING,
     BY_THRESHOLD,
@@ -21,7 +21,7 @@ from nrs_design.reproduction.interaction import (
     admittance,
     away,
     into,
-    simulated,
+    run_scenario,
     tissue_and_tool,
     withdrawals,
 )
@@ -37,18 +37,18 @@ from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Simulate insertion and withdrawal, the limit on the force, and tissue and tool."""
     return (*_profile_rows(), *_withdrawals(), *_limits(), _tissue_and_tool())
 
 
-def _profile_rows() -> tuple[Comparison, Comparison]:
+def _profile_rows() -> tuple[ReproducedValue, ReproducedValue]:
     scenario = into(8, *PROFILE)
-    stiff = simulated({"position": POSITION}, scenario)
-    run = simulated({"insertion": admittance("0", "2.15")}, scenario)
+    stiff = run_scenario({"position": POSITION}, scenario)
+    run = run_scenario({"insertion": admittance("0", "2.15")}, scenario)
     peaks = tuple(float(np.abs(r.response["torque"]).max()) for r in (stiff, run))
     constant = into(1, (0, 4), (2, 4))
-    settled = simulated({"insertion": admittance("0", "2.15")}, constant).response
+    settled = run_scenario({"insertion": admittance("0", "2.15")}, constant).response
     shown, _ = displayed_impedance(settled["hand"], settled["torque"])
     hand, torque = run.response["hand"], run.response["torque"]
     error = impedance_rmse(run.response.t, hand, torque, DESIRED)
@@ -81,7 +81,7 @@ def _profile_rows() -> tuple[Comparison, Comparison]:
     )
 
 
-def _withdrawals() -> tuple[Comparison, ...]:
+def _withdrawals() -> tuple[ReproducedValue, ...]:
     printed = {
         5: "0.75, 0.61, 19 in phi; 0.09, 0.07, 20 in psi",
         3: "0.53, 0.41, 21; 0.16, 0.13, 20",
@@ -115,7 +115,7 @@ def _withdrawal(run: Run) -> float:
     return time
 
 
-def _limits() -> tuple[Comparison, ...]:
+def _limits() -> tuple[ReproducedValue, ...]:
     row = partial(derived, section="6.3.3.3", unit="N m, %", tolerance=Tolerance(1e-3, 1e-6))
     return (
         row(
@@ -147,7 +147,7 @@ def _limits() -> tuple[Comparison, ...]:
 def _limited(force: str, more: str = "") -> tuple[float, float]:
     """Return the peak torque in N m and the steady error in % of force control."""
     scenario = into(1, (0, 5), (2, 5), control=BY_THRESHOLD)
-    run = simulated({"position": POSITION, "force": force}, scenario, more)
+    run = run_scenario({"position": POSITION, "force": force}, scenario, more)
     ((begin, _),) = run.switches
     inside = run.response.t >= begin
     t, torque = run.response.t[inside], run.response["torque"][inside]
@@ -156,7 +156,7 @@ def _limited(force: str, more: str = "") -> tuple[float, float]:
     return peak, round(100 * steady_state_error(t, torque, thesis.TORQUE), 6)
 
 
-def _tissue_and_tool() -> Comparison:
+def _tissue_and_tool() -> ReproducedValue:
     """Judge the run of 6.4."""
     run = tissue_and_tool()
     t, hand, torque = run.response.t, run.response["hand"], run.response["torque"]

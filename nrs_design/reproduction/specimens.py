@@ -6,7 +6,7 @@ from statistics import fmean
 
 from nrs_design.models.contact import Elastic, KelvinBoltzmann
 from nrs_design.reproduction.comparison import (
-    Comparison,
+    ReproducedValue,
     Tolerance,
     derived,
     format_number,
@@ -53,16 +53,16 @@ _SHORT = 1e-5
 ARM = 0.24
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Recompute the means; the fits themselves rest on records that are not printed."""
     return tuple(row for name, (fits, mean) in FITS.items() for row in _specimen(name, fits, mean))
 
 
-def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...]:
+def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[ReproducedValue, ...]:
     return (*_means(name, fits, mean), _voigt(name), *_boltzmann(name), *_measured(name))
 
 
-def _voigt(name: str) -> Comparison:
+def _voigt(name: str) -> ReproducedValue:
     """Return the time constants of the Kelvin-Voigt fits."""
     times = [b / k for k, b in VOIGT[name]]
     same = [k == eta[0] and b == eta[1] for (k, b), eta in zip(VOIGT[name], ETA[name], strict=True)]
@@ -78,14 +78,14 @@ def _voigt(name: str) -> Comparison:
     )
 
 
-def _boltzmann(name: str) -> tuple[Comparison, ...]:
+def _boltzmann(name: str) -> tuple[ReproducedValue, ...]:
     """Return the elements behind the printed coefficients, where there are any."""
     return tuple(
         _elements(name, experiment, eta) for experiment, eta in enumerate(ETA[name], start=1)
     )
 
 
-def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Comparison:
+def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> ReproducedValue:
     eta1, eta2, eta3 = eta
     exists = eta2 / eta3 > eta1
     if exists:
@@ -107,7 +107,7 @@ def _elements(name: str, experiment: int, eta: tuple[float, float, float]) -> Co
     )
 
 
-def _measured(name: str) -> tuple[Comparison, ...]:
+def _measured(name: str) -> tuple[ReproducedValue, ...]:
     return tuple(
         omitted(
             f"RMSE of the {law} law, {name} specimen, each experiment",
@@ -120,7 +120,7 @@ def _measured(name: str) -> tuple[Comparison, ...]:
     )
 
 
-def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...]:
+def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[ReproducedValue, ...]:
     return (
         omitted(
             f"elastic fits, {name} specimen",
@@ -141,7 +141,7 @@ def _means(name: str, fits: tuple[str, ...], mean: str) -> tuple[Comparison, ...
     )
 
 
-def _at_pivot(name: str, fits: tuple[str, ...]) -> Comparison:
+def _at_pivot(name: str, fits: tuple[str, ...]) -> ReproducedValue:
     turned = Elastic(fmean(map(float, fits))).at_pivot(ARM)
     printed = {"soft": "43.0356", "stiff": "61.6608"}[name]
     return reproduced(

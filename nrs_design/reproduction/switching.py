@@ -5,7 +5,7 @@ from __future__ import annotations
 from nrs_design.proof.evidence.fields import rate_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reproduction import thesis
-from nrs_design.reproduction.comparison import Comparison, PrintVerdict, claim
+from nrs_design.reproduction.comparison import PrintVerdict, ReproducedValue, claim
 from nrs_design.reproduction.matrices import family, hybrid_rows, impedance_rows, printed_rows
 from nrs_design.search.certification import Certification
 from nrs_design.search.certify import certify
@@ -13,7 +13,7 @@ from nrs_design.search.certify import certify
 STABLE = "stable under arbitrary switching"
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Prove or refute every claim about stability under switching, exactly."""
     return (*_designs(), _as_printed(), _zero_mass())
 
@@ -30,14 +30,14 @@ def tool_and_tissue() -> SwitchedSystem:
     return family("tool", tool, impedance_rows(thesis.SOFT, "0.01", "2.15", "force"))
 
 
-def _designs() -> tuple[Comparison, ...]:
+def _designs() -> tuple[ReproducedValue, ...]:
     agility = ("insertion and withdrawal, Bt 2.15 and 1.04", "6.3.2.2", withdrawal())
     hybrid = ("position and force control, Kp 0.02", "6.3.3.2", family("hybrid", *hybrid_rows()))
     both = ("tool and tissue, Bt 2.11 and 2.15", "6.4.1", tool_and_tissue())
     return tuple(_proved(*entry) for entry in (agility, hybrid, both))
 
 
-def _proved(name: str, section: str, system: SwitchedSystem) -> Comparison:
+def _proved(name: str, section: str, system: SwitchedSystem) -> ReproducedValue:
     found = certify(system)
     return claim(
         name,
@@ -51,7 +51,7 @@ def _proved(name: str, section: str, system: SwitchedSystem) -> Comparison:
     )
 
 
-def _as_printed() -> Comparison:
+def _as_printed() -> ReproducedValue:
     force = ("70183.13", "1231.97")
     found = certify(family("print", printed_rows("-215", force), printed_rows("-104", force)))
     return claim(
@@ -65,7 +65,7 @@ def _as_printed() -> Comparison:
     )
 
 
-def _zero_mass() -> Comparison:
+def _zero_mass() -> ReproducedValue:
     without, with_mass = certify(withdrawal("0")), certify(withdrawal())
     return claim(
         "Bt 2.15 and 1.04 without virtual mass",

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from nrs_design.progress import Progress, silent
 from nrs_design.reproduction import (
     actuator,
     balance,
@@ -24,7 +23,7 @@ from nrs_design.reproduction import (
     tissue,
     tracking,
 )
-from nrs_design.reproduction.comparison import Comparison, PrintVerdict
+from nrs_design.reproduction.comparison import PrintVerdict, ReproducedValue
 
 # In the order of the thesis.
 TOPICS = (
@@ -49,7 +48,7 @@ TOPICS = (
 )
 
 
-def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Comparison, ...]:
+def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
     """Recompute every number of every topic.
 
     Parameters
@@ -57,14 +56,14 @@ def reproduce(progress: Callable[[str], None] = lambda topic: None) -> tuple[Com
     progress : callable
         Told the name of each topic as it begins.
     """
-    table: list[Comparison] = []
+    table: list[ReproducedValue] = []
     for topic in TOPICS:
         progress(topic.__name__.rpartition(".")[2].replace("_", " "))
         table.extend(topic.rows())
     return tuple(table)
 
 
-def count_verdicts(table: tuple[Comparison, ...]) -> dict[str, int]:
+def count_verdicts(table: tuple[ReproducedValue, ...]) -> dict[str, int]:
     """Return how many rows have each verdict that occurs."""
     found = [row.verdict for row in table]
     return {str(verdict): found.count(verdict) for verdict in PrintVerdict if verdict in found}

@@ -7,8 +7,8 @@ from statistics import fmean
 
 from nrs_design.models.contact import KelvinBoltzmann, Maxwell
 from nrs_design.reproduction.comparison import (
-    Comparison,
     PrintVerdict,
+    ReproducedValue,
     Tolerance,
     claim,
     derived,
@@ -50,7 +50,7 @@ _TABLE = {"nose": "table 2.4", "concha": "table 2.5"}
 _RECORD = "The length of the records is not printed."
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """Convert the coefficients, and hold the text against the tables."""
     return tuple(
         row
@@ -67,7 +67,7 @@ def rows() -> tuple[Comparison, ...]:
     )
 
 
-def _eta(tissue: str) -> Comparison:
+def _eta(tissue: str) -> ReproducedValue:
     law = BOLTZMANN[tissue]
     return derived(
         f"eta1, eta2, eta3 of the {tissue}",
@@ -81,7 +81,7 @@ def _eta(tissue: str) -> Comparison:
     )
 
 
-def _round_trip(tissue: str) -> Comparison:
+def _round_trip(tissue: str) -> ReproducedValue:
     law = BOLTZMANN[tissue]
     back = KelvinBoltzmann.from_eta(*law.eta)
     printed = (f"{law.k1:g}", f"{law.k2:g}", f"{law.b:g}")
@@ -95,7 +95,7 @@ def _round_trip(tissue: str) -> Comparison:
     )
 
 
-def _memory(tissue: str) -> Comparison:
+def _memory(tissue: str) -> ReproducedValue:
     """Show what k2 and the elastic fit together imply."""
     law, elastic = BOLTZMANN[tissue], ELASTIC[tissue]
     relaxed = law.eta[0]
@@ -111,7 +111,7 @@ def _memory(tissue: str) -> Comparison:
     )
 
 
-def _maxwell(tissue: str) -> Comparison:
+def _maxwell(tissue: str) -> ReproducedValue:
     law = MAXWELL[tissue]
     return derived(
         f"relaxation time b/k of the Maxwell {tissue}",
@@ -124,7 +124,7 @@ def _maxwell(tissue: str) -> Comparison:
     )
 
 
-def _voigt(tissue: str) -> Comparison:
+def _voigt(tissue: str) -> ReproducedValue:
     k, b = VOIGT[tissue]
     others = [damping / stiffness for stiffness, damping in VOIGT.values()]
     return derived(
@@ -138,7 +138,7 @@ def _voigt(tissue: str) -> Comparison:
     )
 
 
-def _worst(tissue: str) -> Comparison:
+def _worst(tissue: str) -> ReproducedValue:
     means = {law: fmean(values) for law, values in RMSE[tissue].items()}
     worst, best = max(means, key=means.__getitem__), min(means, key=means.__getitem__)
     said = {"nose": "Maxwell", "concha": "Kelvin-Voigt"}[tissue]
@@ -153,7 +153,7 @@ def _worst(tissue: str) -> Comparison:
     )
 
 
-def _measured(tissue: str) -> tuple[Comparison, ...]:
+def _measured(tissue: str) -> tuple[ReproducedValue, ...]:
     return tuple(
         omitted(
             f"RMSE of the {law} {tissue}, each experiment",

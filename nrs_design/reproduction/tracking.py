@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nrs_design.models.robot import Robot
-from nrs_design.reproduction.comparison import Comparison, hardware_only
+from nrs_design.reproduction.comparison import ReproducedValue, hardware_only
 from nrs_design.reproduction.neuroboscope import robot, robot_spec
 from nrs_design.simulation.tracking import (
     CONTROLLERS,
@@ -34,7 +34,7 @@ MEASURED = (
 )
 
 
-def rows() -> tuple[Comparison, ...]:
+def rows() -> tuple[ReproducedValue, ...]:
     """List the root mean square errors of tables 4.2 to 4.10."""
     return tuple(
         hardware_only(

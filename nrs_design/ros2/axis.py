@@ -93,7 +93,7 @@ def square_root_between(value: Fraction) -> Interval:
     return Interval(below, below, below + Fraction(1, q << BITS))
 
 
-def damping_of(axis: Axis) -> Interval:
+def axis_damping(axis: Axis) -> Interval:
     """Return where the damping of an axis lies, in N*s/m or N*m*s/rad."""
     root, factor = square_root_between(axis.mass * axis.stiffness), 2 * axis.damping_ratio
     ends = sorted((factor * root.low, factor * root.high))
@@ -185,7 +185,7 @@ def close_axis(law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Switched
     """
     low, high = around.of(axis) or (Fraction(0), Fraction(0))
     frame = _Frame(axis, law.joint_damping, law.filter_coefficient, around)
-    others = Box({"D": damping_of(axis), "E": around.kept})
+    others = Box({"D": axis_damping(axis), "E": around.kept})
     box = Box({"k": Interval(low, low, high)}).beside(others)
     modes = tuple(_modes(frame, box, around.delays, "contact"))
     free = None
@@ -227,6 +227,6 @@ def assumptions(around: Surroundings) -> tuple[str, ...]:
         follows,
         "each axis acts by itself: the control frame is aligned with the base, the Jacobian is "
         "square and regular and does not change, and its damped inverse (alpha) is its inverse",
-        "the parameters are not changed while the controller runs",
+        "the parameters are those of this file, and are not changed while the controller runs",
         "nothing is limited on the way, and arithmetic is not rounded",
     )

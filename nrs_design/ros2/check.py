@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -11,17 +11,19 @@ from pathlib import Path
 from nrs_design.errors import Fault, SpecError
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
 from nrs_design.gating.rules import ROS_AXIS, ROS_PARAMETERS
+from nrs_design.progress import Progress
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
-from nrs_design.ros2.law import TYPE, AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.law import CHAIN, LAW, TYPE, AdmittanceLaw, Axis, is_admittance, read_law
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
 from nrs_design.ros2.traps import find_traps, has_chain
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.margin import find_margin
 
+MANAGER = "controller_manager"
 # For each of the proofs by which a safe range is looked for.
 MARGIN_BUDGET = 2.0
 # Of the ends of a range that was looked for.
@@ -68,7 +70,7 @@ class _Asker:
 
     path: Path
     limits: Limits
-    progress: Callable[[str], None]
+    progress: Progress
     known: dict[tuple[object, ...], tuple[Status, str]] = field(default_factory=dict)
 
     def obligation(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> Obligation:
@@ -154,9 +156,7 @@ class _Asker:
         return said
 
 
-def check_file(
-    path: Path, question: Question, limits: Limits, progress: Callable[[str], None]
-) -> GateOutcome:
+def check_file(path: Path, question: Question, limits: Limits, progress: Progress) -> GateOutcome:
     """Read every admittance controller of a file, and decide each of its axes.
 
     Parameters
@@ -176,8 +176,7 @@ def check_file(
         If the file cannot be read, holds no admittance controller, or does not say its rate.
     """
     nodes = read_nodes(path)
-    types, manager = _managed(nodes)
-    controllers = [node for node in nodes if is_admittance(node, types)]
+    controllers = [n for n in nodes if is_admittance(n, _types(_manager_of(n, nodes)))]
     if not controllers:
         names = ", ".join(node.name for node in nodes)
         raise SpecError(
@@ -190,17 +189,20 @@ def check_file(
     cautions: list[Caution] = []
     notes: dict[str, None] = {}
     for node in controllers:
+        if shared := [*_shared(node, nodes)]:
+            obligations += [_unreadable(path, node, fault) for fault in shared]
+            continue
         try:
             law = read_law(node)
         except SpecError as error:
             obligations += [_unreadable(path, node, fault) for fault in error.faults]
             continue
-        around = question.around(1 / _rate(law, manager, question.rate, path))
+        around = question.around(1 / _rate(law, _manager_of(node, nodes), question.rate, path))
         notes |= dict.fromkeys(assumptions(around))
         obligations.append(_readable(path, node))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
-    cautions += _absent(path, nodes, types, manager)
+    cautions += _absent(path, nodes)
     verdicts = {item.status for item in obligations if item.rule is ROS_AXIS}
     worst = next((status for status in _ORDER if status in verdicts), None)
     verdict = None if worst is None else str(worst)
@@ -208,29 +210,49 @@ def check_file(
     return GateOutcome((outcome,), tuple(f"taken for granted: {note}" for note in notes))
 
 
-def _managed(nodes: tuple[RosNode, ...]) -> tuple[dict[str, str], RosNode | None]:
-    """Return the types of controllers, and the node of their manager."""
-    manager = next((n for n in nodes if n.name.rpartition("/")[2] == "controller_manager"), None)
-    if manager is None:
-        return {}, None
+def _manager_of(node: RosNode, nodes: tuple[RosNode, ...]) -> RosNode | None:
+    """Return the controller manager in the namespace of a node, or the only one."""
+    managers = [n for n in nodes if n.name.rpartition("/")[2] == MANAGER]
+    near = [n for n in managers if n.namespace == node.namespace]
+    found = near or managers
+    return found[0] if len(found) == 1 else None
+
+
+def _types(manager: RosNode | None) -> dict[str, str]:
+    """Return the types of controllers, as their manager says."""
     types: dict[str, str] = {}
-    for name, value in manager.values.items():
+    for name, value in () if manager is None else manager.values.items():
         listed = texts(value)
         if name.endswith(".type") and listed:
             types[name.removesuffix(".type")] = listed[0].text
-    return types, manager
+    return types
 
 
-def _absent(
-    path: Path, nodes: tuple[RosNode, ...], types: Mapping[str, str], manager: RosNode | None
-) -> Iterator[Caution]:
-    """Yield the admittance controllers that the manager runs, and this file says nothing of."""
+def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
+    """Yield what the law depends on and another node may say of it, too."""
+    for other in nodes:
+        if other is node or other.name.rpartition("/")[2] == MANAGER or not node.may_share(other):
+            continue
+        for name in other.values:
+            if name in LAW or name.startswith(f"{CHAIN}."):
+                yield other.fault(
+                    name,
+                    f"counts for {node.name}, too; if both say it, releases differ in which counts",
+                    f"write it at {node.name} alone",
+                )
+
+
+def _absent(path: Path, nodes: tuple[RosNode, ...]) -> Iterator[Caution]:
+    """Yield the admittance controllers that a manager runs, and this file says nothing of."""
     named = {node.name.rpartition("/")[2] for node in nodes}
-    for name, kind in types.items():
-        if manager is not None and kind == TYPE and not named & {name, "**"}:
-            place = manager.place(f"{name}.type")
-            message = f"{name}: runs as an admittance controller, but no node of this name is here"
-            yield Caution(path, message, place.line, place.column)
+    for manager in (node for node in nodes if node.name.rpartition("/")[2] == MANAGER):
+        for name, kind in _types(manager).items():
+            if kind == TYPE and not named & {name, "**"}:
+                place = manager.place(f"{name}.type")
+                message = (
+                    f"{name}: runs as an admittance controller, but no node of this name is here"
+                )
+                yield Caution(path, message, place.line, place.column)
 
 
 def _rate(
@@ -248,6 +270,16 @@ def _rate(
             line=law.node.position.line,
             column=law.node.position.column,
             remedy="give --rate '500 1/s', or add update_rate of controller_manager",
+        )
+    if 0 < own < found and found % own:
+        place = law.node.place("update_rate")
+        raise SpecError(
+            f"update_rate: {own} does not divide {found}, the rate of the control loop: the "
+            "controller runs at uneven periods, or at another rate",
+            path=path,
+            line=place.line,
+            column=place.column,
+            remedy="write a rate that divides it, or give the rate at which it runs as --rate",
         )
     return min(found, own) if own else found
 

@@ -42,6 +42,21 @@ class RosNode:
     values: Mapping[str, Node]
     places: Mapping[str, Position]
 
+    @property
+    def namespace(self) -> str:
+        """Its name but for the last part."""
+        return self.name.rpartition("/")[0]
+
+    def may_share(self, other: RosNode) -> bool:
+        """Tell whether parameters of one may count for the other: by a wildcard, or the same name.
+
+        Which of two counts depends on the release of ROS 2 and on their order.
+        """
+        if self.name == other.name:
+            return True
+        last = self.name.rpartition("/")[2], other.name.rpartition("/")[2]
+        return "*" in self.name + other.name and (last[0] == last[1] or "*" in "".join(last))
+
     def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
         """Return a fault at a parameter, or at one item of its list.
 
@@ -157,7 +172,7 @@ def read_integer(text: str) -> Fraction:
     Raises
     ------
     SpecError
-        If it is none.
+        If it is not one.
     """
     if not _INTEGER.fullmatch(text):
         raise SpecError(f"{quoted(text)} is no integer", remedy="write digits without a point")
@@ -170,7 +185,7 @@ def read_bool(text: str) -> Fraction:
     Raises
     ------
     SpecError
-        If it is none.
+        If it is not one.
     """
     if text in _TRUE or text in _FALSE:
         return Fraction(text in _TRUE)

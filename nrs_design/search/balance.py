@@ -49,7 +49,9 @@ def balance(matrices: NDArray[np.float64]) -> NDArray[np.int64]:
     return exponents
 
 
-def scale(matrices: NDArray[np.float64], exponents: NDArray[np.int64]) -> NDArray[np.float64]:
+def scale_states(
+    matrices: NDArray[np.float64], exponents: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """Return ``2^-d A 2^d`` for every matrix; exact but for under- and overflow."""
     scaled: NDArray[np.float64] = np.ldexp(matrices, exponents[None, :] - exponents[:, None])
     return scaled
@@ -71,7 +73,13 @@ def mean_norm_coordinates(matrices: NDArray[np.float64], time: Time) -> NDArray[
 
 
 def round_coordinates(P: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return T such that ``x' P x`` is ``|z|^2`` for ``x = T z``; P is positive definite."""
+    """Return an upper triangular T such that ``x' P x`` is ``|z|^2`` for ``x = T z``.
+
+    Parameters
+    ----------
+    P : ndarray, shape (n, n)
+        Positive definite.
+    """
     return np.asarray(np.linalg.inv(np.linalg.cholesky(P)).T)
 
 

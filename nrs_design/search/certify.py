@@ -15,6 +15,7 @@ from nrs_design.certificates.certificate import (
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
@@ -31,8 +32,6 @@ from nrs_design.search.method import Method
 from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
 
-Progress = Callable[[str], None]
-
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
@@ -44,7 +43,7 @@ def certify(
     system: SwitchedSystem,
     method: Method = Method.AUTO,
     limits: Limits | None = None,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
 ) -> Certification:
     """Prove or refute uniform exponential stability under arbitrary switching.
 

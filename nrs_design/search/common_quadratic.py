@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
-from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale
+from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.family import Family
@@ -105,7 +105,7 @@ def search_raw(family: Family) -> Candidates[CommonQuadratic]:
     time = family.system.time
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    matrices = scale(family.matrices, -family.exponents)
+    matrices = scale_states(family.matrices, -family.exponents)
     least = rate_at(0.0, family.limit, time)
     Q = find_raw_quadratic(matrices, time, least, family.allowance)
     if Q is None:

@@ -7,17 +7,17 @@ from dataclasses import replace
 from itertools import product
 
 from nrs_design.errors import DesignError
+from nrs_design.progress import Progress, silent
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 from nrs_design.search.method_run import MethodRun
 
-Progress = Callable[[str], None]
 Decide = Callable[[Method, Limits], Certification]
 
 
 def compare_methods(
-    decide: Decide, limits: Limits, progress: Progress = lambda step: None
+    decide: Decide, limits: Limits, progress: Progress = silent
 ) -> tuple[MethodRun, ...]:
     """Run the LMI once, and the iteration in all coordinates and orders.
 

@@ -35,7 +35,7 @@ SHARE = 0.25
 
 
 @dataclass(frozen=True)
-class Solution:
+class ConewiseModeSolution:
     """Functions in contact and free, and a multiplier for each free mode, in floating point."""
 
     touching: list[Array]
@@ -43,7 +43,7 @@ class Solution:
     multipliers: Array
 
 
-class Program:
+class ConewiseModeProgram:
     """The semidefinite program for any rate, in coordinates that keep the deflection apart."""
 
     def __init__(self, family: Family) -> None:
@@ -116,7 +116,7 @@ class Program:
                 inner = touching[j][..., :-1, :-1]
                 yield m + g, [before, (j, image(N[:-1], inner))]
 
-    def solve(self, rate: float, allowance: Allowance) -> Solution | None:
+    def solve(self, rate: float, allowance: Allowance) -> ConewiseModeSolution | None:
         """Maximize the margin at a rate; None if it is not positive.
 
         Raises
@@ -158,9 +158,9 @@ class Program:
             np.tensordot(x[place], basis, axes=1)
             for place, basis in zip(places, [outer] * m + [inner] * f, strict=False)
         ]
-        return Solution(found[:m], found[m:], x[ends[m + f] : -1])
+        return ConewiseModeSolution(found[:m], found[m:], x[ends[m + f] : -1])
 
-    def own_rate(self, solution: Solution) -> float:
+    def own_rate(self, solution: ConewiseModeSolution) -> float:
         """Return the contraction per step that a solution shows."""
         touching = np.array(solution.touching)[:, None]
         flying = np.array(solution.flying)[:, None]
@@ -173,7 +173,9 @@ class Program:
             least = min(least, float(np.linalg.eigvalsh(inverse @ form @ inverse.T)[0]))
         return float(np.sqrt(max(1.0 - least, 0.0)))
 
-    def roundings(self, solution: Solution, claim: Fraction) -> Iterator[ConewiseModeQuadratic]:
+    def roundings(
+        self, solution: ConewiseModeSolution, claim: Fraction
+    ) -> Iterator[ConewiseModeQuadratic]:
         """Yield roundings of all functions to integers over one denominator."""
         inverse, d = np.linalg.inv(self.T), self.family.exponents
         touching = [inverse.T @ Q @ inverse for Q in solution.touching]
@@ -214,7 +216,7 @@ def search_conewise_modes(family: Family) -> Candidates[ConewiseModeQuadratic]:
     time = family.system.time
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
-    program = Program(family)
+    program = ConewiseModeProgram(family)
     if not program.is_finite:
         return OUT_OF_RANGE
     allowance = family.allowance.part(SHARE)

@@ -24,7 +24,7 @@ from nrs_design.search.lifted import Lift, lift_family, vanishing_in
 from nrs_design.search.polynomial import (
     FEWEST_BITS,
     NEAREST,
-    Solution,
+    PolynomialSolution,
     decrease_blocks,
     round_vanishing,
     shown_rate,
@@ -41,7 +41,7 @@ BACK_OFF = 0.995
 
 
 @dataclass(frozen=True)
-class Program:
+class ConewisePolynomialProgram:
     """The motions in contact and free, lifted to degree d, in coordinates that they share.
 
     Parameters
@@ -61,7 +61,7 @@ class Program:
     kept: tuple[int, ...]
 
     @classmethod
-    def of(cls, family: Family, degree: int) -> Program:
+    def of(cls, family: Family, degree: int) -> ConewisePolynomialProgram:
         """Lift a family in which contact is lost to degree d."""
         system, exponents = family.system, family.exponents
         assert system.contact is not None  # the ladder
@@ -74,7 +74,9 @@ class Program:
         """Return what belongs to the monomials without the deflection."""
         return np.asarray(Q[..., self.kept, :][..., self.kept])
 
-    def solve(self, rate: float, allowance: Allowance) -> tuple[Solution, Solution] | None:
+    def solve(
+        self, rate: float, allowance: Allowance
+    ) -> tuple[PolynomialSolution, PolynomialSolution] | None:
         """Maximize the margin at a rate; return Q and its block, each with vanishing forms.
 
         Raises
@@ -101,12 +103,12 @@ class Program:
             return None
         Q = np.tensordot(x[:size], basis, axes=1)
         return (
-            Solution(Q, vanishing_in(self.contact, x[size : size + own])),
-            Solution(self.block(Q), vanishing_in(self.free, x[size + own : -1])),
+            PolynomialSolution(Q, vanishing_in(self.contact, x[size : size + own])),
+            PolynomialSolution(self.block(Q), vanishing_in(self.free, x[size + own : -1])),
         )
 
     def roundings(
-        self, solution: tuple[Solution, Solution], limit: float
+        self, solution: tuple[PolynomialSolution, PolynomialSolution], limit: float
     ) -> Iterator[ConewisePolynomial]:
         """Yield roundings to integers at rates just below the one that a solution shows itself."""
         touching, flying = solution
@@ -142,7 +144,7 @@ def search_conewise_polynomial(family: Family, degree: int) -> Candidates[Conewi
     """
     time, allowance = family.system.time, family.allowance
     allowance.require(*conewise_cost(family.system, degree))
-    program = Program.of(family, degree)
+    program = ConewisePolynomialProgram.of(family, degree)
     solution = program.solve(rate_at(0.0, family.limit, time), allowance)
     if solution is None:
         return NO_MARGIN
@@ -154,10 +156,12 @@ def search_conewise_polynomial(family: Family, degree: int) -> Candidates[Conewi
     return None
 
 
-def _faster(family: Family, program: Program) -> tuple[Solution, Solution] | None:
+def _faster(
+    family: Family, program: ConewisePolynomialProgram
+) -> tuple[PolynomialSolution, PolynomialSolution] | None:
     """Bisect for the largest rate, and solve for one a little below it."""
 
-    def solve(position: float) -> tuple[Solution, Solution] | None:
+    def solve(position: float) -> tuple[PolynomialSolution, PolynomialSolution] | None:
         return program.solve(rate_at(position, family.limit, family.system.time), family.allowance)
 
     best = bisect_position(lambda s: solve(s) is not None, 0.0, SMALLEST)

@@ -72,7 +72,7 @@ class Motions:
 
 
 @dataclass(frozen=True)
-class Solution:
+class ConewiseSolution:
     """A quadratic function and its multipliers, in floating point."""
 
     Q: Array
@@ -92,7 +92,7 @@ def separating_coordinates(motions: Motions) -> Array:
 
 def find_conewise_quadratic(
     motions: Motions, rate: float, allowance: Allowance | None = None
-) -> Solution | None:
+) -> ConewiseSolution | None:
     """Look for a function that decreases at a rate in contact and free.
 
     Parameters
@@ -106,7 +106,7 @@ def find_conewise_quadratic(
 
     Returns
     -------
-    Solution or None
+    ConewiseSolution or None
         With positive margins in floating point.
 
     Raises
@@ -148,17 +148,17 @@ def find_conewise_quadratic(
     if not y[-1] > 0:
         return None
     Q = np.asarray(np.tensordot(y[: len(basis)], basis, axes=1))
-    return Solution(Q, np.ldexp(y[len(basis) : -1], -unit))
+    return ConewiseSolution(Q, np.ldexp(y[len(basis) : -1], -unit))
 
 
-def best_rate(motions: Motions, solution: Solution) -> float:
+def best_rate(motions: Motions, solution: ConewiseSolution) -> float:
     """Return the rate that a solution shows: alpha in 1/s, or rho per step.
 
     Parameters
     ----------
     motions : Motions
         For which it was found.
-    solution : Solution
+    solution : ConewiseSolution
         With a positive definite Q.
     """
     continuous, Q = motions.time is Time.CONTINUOUS, solution.Q

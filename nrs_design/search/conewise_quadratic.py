@@ -15,8 +15,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import (
+    ConewiseSolution,
     Motions,
-    Solution,
     best_rate,
     find_conewise_quadratic,
     separating_coordinates,
@@ -119,7 +119,7 @@ def _fastest(
 ) -> Iterator[Candidate[Quadratic]]:
     """Yield functions for the largest rates that fit into the time."""
 
-    def solve(rate: float, allowance: Allowance) -> Solution | None:
+    def solve(rate: float, allowance: Allowance) -> ConewiseSolution | None:
         return find_conewise_quadratic(own, rate, allowance)
 
     try:
@@ -133,7 +133,11 @@ def _fastest(
 
 
 def _roundings(
-    family: Family, solution: Solution, T: Array, claim: Fraction, errors: RoundingErrors | None
+    family: Family,
+    solution: ConewiseSolution,
+    T: Array,
+    claim: Fraction,
+    errors: RoundingErrors | None,
 ) -> Iterator[Quadratic]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 

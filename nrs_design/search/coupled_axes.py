@@ -38,7 +38,7 @@ SMALLEST = 2.0**-12
 
 
 @dataclass(frozen=True)
-class Solution:
+class CoupledSolution:
     """A quadratic function and its multipliers, in floating point."""
 
     Q: Array
@@ -47,7 +47,7 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Problem:
+class CoupledProblem:
     """Motions and couplings in floating point.
 
     Parameters
@@ -68,7 +68,7 @@ class Problem:
     scales: Array
 
     @classmethod
-    def of(cls, family: Family, motions: Motions, T: Array) -> Problem:
+    def of(cls, family: Family, motions: Motions, T: Array) -> CoupledProblem:
         """Convert the couplings of a system to coordinates ``x = T z`` of a family.
 
         Parameters
@@ -98,13 +98,13 @@ def search_coupled_axes(family: Family) -> Candidates[CoupledAxes]:
     motions = Motions.of(family)
     T = separating_coordinates(motions)
     own = motions.transformed(T)
-    problem = Problem.of(family, own, T)
+    problem = CoupledProblem.of(family, own, T)
     parts = (T, own.contact, own.free, own.pulls, problem.columns, problem.rows)
     if not all(np.isfinite(part).all() for part in parts):
         return OUT_OF_RANGE
     family.allowance.take(Cost(LOADING), "loading CVXPY")
 
-    def solve(rate: float, allowance: Allowance) -> Solution | None:
+    def solve(rate: float, allowance: Allowance) -> CoupledSolution | None:
         return _solve(problem, rate, allowance)
 
     time = family.system.time
@@ -121,8 +121,8 @@ def search_coupled_axes(family: Family) -> Candidates[CoupledAxes]:
 
 def _fastest(
     family: Family,
-    problem: Problem,
-    solve: Callable[[float, Allowance], Solution | None],
+    problem: CoupledProblem,
+    solve: Callable[[float, Allowance], CoupledSolution | None],
     T: Array,
 ) -> Iterator[Candidate[CoupledAxes]]:
     """Yield functions for the largest rates that fit into the time."""
@@ -138,7 +138,7 @@ def _fastest(
 
 
 def _roundings(
-    family: Family, problem: Problem, solution: Solution, T: Array, claim: Fraction
+    family: Family, problem: CoupledProblem, solution: CoupledSolution, T: Array, claim: Fraction
 ) -> Iterator[CoupledAxes]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 
@@ -157,14 +157,14 @@ def _roundings(
         yield CoupledAxes(rows, max(log2, 0), claim, whole, multipliers)
 
 
-def best_rate(problem: Problem, solution: Solution) -> float:
+def best_rate(problem: CoupledProblem, solution: CoupledSolution) -> float:
     """Return the rate in 1/s that a solution shows; the multipliers of forces are left alone.
 
     Parameters
     ----------
-    problem : Problem
+    problem : CoupledProblem
         For which it was found.
-    solution : Solution
+    solution : CoupledSolution
         With positive definite Q and positive multipliers.
     """
     lowest = []
@@ -180,7 +180,7 @@ def best_rate(problem: Problem, solution: Solution) -> float:
 
 
 def _situations(
-    problem: Problem,
+    problem: CoupledProblem,
 ) -> Iterator[tuple[int, Array, Array, Array, tuple[int, Array] | None]]:
     """Yield how many states move, their A, B and q, and where a force could pull, which and how."""
     motions = problem.motions
@@ -194,7 +194,7 @@ def _situations(
         yield n, A, problem.columns[k], problem.rows[k], (i, pull)
 
 
-def _solve(problem: Problem, rate: float, allowance: Allowance) -> Solution | None:
+def _solve(problem: CoupledProblem, rate: float, allowance: Allowance) -> CoupledSolution | None:
     """Look for a function that decreases at a rate in floating point, with the largest margin."""
     import cvxpy
 
@@ -227,4 +227,4 @@ def _solve(problem: Problem, rate: float, allowance: Allowance) -> Solution | No
     found = Q.value, taus.value, multipliers.value if f * p else np.zeros(0), t.value
     if any(part is None or not np.isfinite(part).all() for part in found) or t.value <= 0:
         return None
-    return Solution(*map(np.asarray, found[:3]))
+    return CoupledSolution(*map(np.asarray, found[:3]))

@@ -15,7 +15,14 @@ from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.decay import bisect_position
-from nrs_design.search.disturbed import Found, Problem, balanced, problem_of, roundings, transformed
+from nrs_design.search.disturbed import (
+    DisturbedProblem,
+    DisturbedSolution,
+    balanced,
+    problem_of,
+    roundings,
+    transformed,
+)
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import claims, rate_at
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
@@ -61,7 +68,7 @@ def search_coupled_steps(family: Family) -> Candidates[CoupledAxes]:
     return None
 
 
-def _solve(own: Problem, rate: float, allowance: Allowance) -> Found | None:
+def _solve(own: DisturbedProblem, rate: float, allowance: Allowance) -> DisturbedSolution | None:
     """Look for a function that keeps a share of itself, with as much to spare as possible."""
     n, lost, basis = own.order, own.multipliers, symmetric_basis(own.order)
     k, unknowns = len(basis), len(basis) + lost + own.errors + 1
@@ -93,4 +100,4 @@ def _solve(own: Problem, rate: float, allowance: Allowance) -> Found | None:
         return None
     Q = np.asarray(np.tensordot(x[:k], basis, axes=1))
     crossings, taus = np.split(x[k:-1], [lost])
-    return Found(Q, crossings, np.zeros(0), taus, float(x[-1]))
+    return DisturbedSolution(Q, crossings, np.zeros(0), taus, float(x[-1]))

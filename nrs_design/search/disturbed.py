@@ -26,7 +26,7 @@ BITS = (30, 40, 50, 60)
 
 
 @dataclass(frozen=True)
-class Problem:
+class DisturbedProblem:
     """The conditions in coordinates where the state, disturbances and output are about one.
 
     Parameters
@@ -80,7 +80,7 @@ class Problem:
             return len(self.free) * len(self.pulls)
         return 1 + 3 * len(self.pulls)
 
-    def without_roundings(self) -> Problem:
+    def without_roundings(self) -> DisturbedProblem:
         """Return the conditions of exact arithmetic."""
         count = self.couplings
         width = self.order + self.disturbances + count
@@ -92,7 +92,7 @@ class Problem:
             free_sizes=self.free_sizes[:, :count],
         )
 
-    def distinct(self) -> Problem:
+    def distinct(self) -> DisturbedProblem:
         """Return the conditions with motions that floating point cannot tell apart left out."""
         touching = _distinct(self.contact, self.contact_sizes)
         # In continuous time, every free motion has multipliers of its own for what lags.
@@ -106,39 +106,41 @@ class Problem:
             free_sizes=self.free_sizes[flying],
         )
 
-    def conditions(self, Q: Array, share: float) -> Iterator[Condition]:
+    def conditions(self, Q: Array, share: float) -> Iterator[MatrixInequality]:
         """Yield the forms of all motions, for a stack of Q and the sum of the shares."""
         n = self.order
         inner, last = Q[:, :-1, :-1], np.zeros(self.contact.shape[2])
         last[n - 1] = 1.0
         if self.time is Time.CONTINUOUS:
             for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
-                yield Condition(_flow(Q, A, share), n, sizes=sizes)
+                yield MatrixInequality(_flow(Q, A, share), n, sizes=sizes)
             for A, sizes in zip(self.free, self.free_sizes, strict=True):
                 moved, own = np.delete(A[:-1], n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
-                yield Condition(_flow(inner, moved, share), n - 1, sizes=own)
+                yield MatrixInequality(_flow(inner, moved, share), n - 1, sizes=own)
             for k, (i, j) in enumerate(np.ndindex(len(self.free), len(self.pulls))):
                 pull = _crossing(last, np.pad(self.pulls[j], (0, len(last) - n)))
-                yield Condition(_flow(Q, self.free[i], share), n, {k: pull}, self.free_sizes[i])
+                yield MatrixInequality(
+                    _flow(Q, self.free[i], share), n, {k: pull}, self.free_sizes[i]
+                )
             return
         for A, sizes in zip(self.contact, self.contact_sizes, strict=True):
-            yield Condition(_step(Q, A, Q, share), n, sizes=sizes)
+            yield MatrixInequality(_step(Q, A, Q, share), n, sizes=sizes)
             if self.losable:
                 lost = _step(Q, A[:-1], inner, share)
-                yield Condition(lost, n, {0: _crossing(last, A[-1])}, sizes)
+                yield MatrixInequality(lost, n, {0: _crossing(last, A[-1])}, sizes)
         for A, sizes in zip(self.free, self.free_sizes, strict=True):
             moved, own = np.delete(A, n - 1, axis=1), np.delete(sizes, n - 1, axis=1)
-            yield Condition(_step(inner, moved[:-1], inner, share), n - 1, sizes=own)
-            yield Condition(_step(inner, moved, Q, share), n - 1, sizes=own)
+            yield MatrixInequality(_step(inner, moved[:-1], inner, share), n - 1, sizes=own)
+            yield MatrixInequality(_step(inner, moved, Q, share), n - 1, sizes=own)
             for k, q in enumerate(self.pulls):
                 pulled = _crossing(last, np.pad(q, (0, len(last) - n)))
-                yield Condition(_step(Q, A, Q, share), n, {3 * k + 1: pulled}, sizes)
+                yield MatrixInequality(_step(Q, A, Q, share), n, {3 * k + 1: pulled}, sizes)
                 crossings = {3 * k + 2: pulled, 3 * k + 3: _crossing(last, A[-1])}
-                yield Condition(_step(Q, A[:-1], inner, share), n, crossings, sizes)
+                yield MatrixInequality(_step(Q, A[:-1], inner, share), n, crossings, sizes)
 
 
 @dataclass(frozen=True)
-class Condition:
+class MatrixInequality:
     """One form that must be positive: images of a stack of Q, and what the multipliers add.
 
     Parameters
@@ -207,7 +209,7 @@ def _step(before: Array, A: Array, after: Array, share: float) -> Array:
 
 
 @dataclass(frozen=True)
-class Found:
+class DisturbedSolution:
     """A solution in floating point: Q, the multipliers, and what was to be large or small.
 
     That is the square of the level, or what is left to spare.
@@ -225,7 +227,7 @@ def problem_of(
     motions: Motions,
     channels: Sequence[Channel] = (),
     output: Output | None = None,
-) -> Problem:
+) -> DisturbedProblem:
     """Join disturbances, couplings, roundings and output, in the coordinates of the family.
 
     Disturbances go up to one. Columns are those of the modes in contact, then of the free ones.
@@ -258,7 +260,7 @@ def problem_of(
     shown = () if output is None else output.rows
     rows = np.array([to_floats([q])[0, 0] for q in shown]).reshape(-1, n)
     rows = np.ldexp(rows, d[None, :])
-    return Problem(
+    return DisturbedProblem(
         system.time,
         maps[:count],
         maps[count:],
@@ -272,12 +274,14 @@ def problem_of(
     )
 
 
-def transformed(problem: Problem, T: Array, size: float = 1.0, level: float = 1.0) -> Problem:
+def transformed(
+    problem: DisturbedProblem, T: Array, size: float = 1.0, level: float = 1.0
+) -> DisturbedProblem:
     """Return the problem in coordinates ``x = size T z``, with outputs divided by a level.
 
     Parameters
     ----------
-    problem : Problem
+    problem : DisturbedProblem
         In the coordinates of a family.
     T : ndarray, shape (n, n)
         Invertible.
@@ -305,14 +309,14 @@ def transformed(problem: Problem, T: Array, size: float = 1.0, level: float = 1.
     )
 
 
-def balanced(problem: Problem) -> tuple[Problem, Array]:
+def balanced(problem: DisturbedProblem) -> tuple[DisturbedProblem, Array]:
     """Return the problem with every error in units of its own, and what a tau is in them.
 
     In them, what an error does to the state and what the state does to it are of like size.
 
     Parameters
     ----------
-    problem : Problem
+    problem : DisturbedProblem
         In coordinates of like size.
     """
     start = problem.order + problem.disturbances
@@ -348,7 +352,7 @@ class Rounded:
 
 
 def roundings(
-    family: Family, found: Found, T: Array, units: Array, size: float = 1.0
+    family: Family, found: DisturbedSolution, T: Array, units: Array, size: float = 1.0
 ) -> Iterator[Rounded]:
     """Yield roundings of a solution in coordinates ``x = size T z`` of the family.
 
@@ -358,7 +362,7 @@ def roundings(
     ----------
     family : Family
         Of the system.
-    found : Found
+    found : DisturbedSolution
         In these coordinates.
     T : ndarray, shape (n, n)
         Invertible.

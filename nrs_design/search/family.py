@@ -16,7 +16,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
-from nrs_design.search.balance import balance, scale
+from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.gradient_settings import Gradient
 
@@ -89,7 +89,7 @@ class Family:
         matrices = to_floats([mode.A for mode in system.modes])
         limit = _limit(system, [matrices])
         exponents = balance(matrices)
-        scaled = scale(matrices, exponents)
+        scaled = scale_states(matrices, exponents)
         if not np.isfinite(scaled).all():
             scaled, exponents = matrices, np.zeros_like(exponents)
         return cls(system, scaled, exponents, limit, allowance, optimize_rate, gradient)

@@ -22,7 +22,14 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
-from nrs_design.search.disturbed import Found, Problem, balanced, problem_of, roundings, transformed
+from nrs_design.search.disturbed import (
+    DisturbedProblem,
+    DisturbedSolution,
+    balanced,
+    problem_of,
+    roundings,
+    transformed,
+)
 from nrs_design.search.family import Family
 from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
 
@@ -105,7 +112,7 @@ def _short(number: float) -> Fraction:
     return Fraction(f"{number:.6e}")
 
 
-def _reach(problem: Problem, T: Array) -> tuple[float, float]:
+def _reach(problem: DisturbedProblem, T: Array) -> tuple[float, float]:
     """Return how far state and output go under one mode alone, in coordinates ``x = T z``."""
     n = problem.order
     inverse = np.linalg.inv(T)
@@ -128,7 +135,7 @@ def _reach(problem: Problem, T: Array) -> tuple[float, float]:
     return size, level
 
 
-def _best_share(own: Problem, limit: float, allowance: Allowance) -> tuple[float, float]:
+def _best_share(own: DisturbedProblem, limit: float, allowance: Allowance) -> tuple[float, float]:
     """Return the least square of the level, relative to the scale, and its share."""
     top = 2 * limit if own.time is Time.CONTINUOUS else 1 - limit**2
     tried: dict[float, float] = {}
@@ -153,8 +160,8 @@ def _best_share(own: Problem, limit: float, allowance: Allowance) -> tuple[float
 
 
 def _solve(
-    own: Problem, share: float, allowance: Allowance, level: float | None = None
-) -> Found | None:
+    own: DisturbedProblem, share: float, allowance: Allowance, level: float | None = None
+) -> DisturbedSolution | None:
     """Minimize the square of the level; or, for a given one, leave as much to spare as possible."""
     n, lost, c, basis = own.order, own.multipliers, own.disturbances, symmetric_basis(own.order)
     k, unknowns = len(basis), len(basis) + lost + c + own.errors + 1
@@ -196,4 +203,4 @@ def _solve(
         return None
     Q = np.asarray(np.tensordot(x[:k], basis, axes=1))
     crossings, shares, taus = np.split(x[k:-1], [lost, lost + c])
-    return Found(Q, crossings, shares, taus, float(-x[-1]))
+    return DisturbedSolution(Q, crossings, shares, taus, float(-x[-1]))

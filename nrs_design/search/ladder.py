@@ -137,7 +137,7 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "parameter quadratic",
         Method.PARAMETER_QUADRATIC,
-        lambda f: f.has_constant and f.leaves_stable,
+        lambda f: f.has_values and f.is_continuous,
         _in("parameter_quadratic", "search_parameter_quadratic"),
     ),
     Rung(

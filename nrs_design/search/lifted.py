@@ -12,7 +12,7 @@ from nrs_design.proof.lift import derivative_lift, monomials, power_lift
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import scale
+from nrs_design.search.balance import scale_states
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.sdp import (
     pack,
@@ -74,7 +74,7 @@ def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Li
     matrices = np.ldexp(lifted, scaling[:, None] - scaling[None, :])
     # The unit of the modes themselves: lifted entries, and margins with them, grow with degree.
     given = np.array([mode.A.floats() for mode in system.modes])
-    unit = time_unit(scale(given, exponents), system.time)
+    unit = time_unit(scale_states(given, exponents), system.time)
     forms = _differences(system.order, degree, scaling)
     return Lift(system.order, degree, np.ldexp(matrices, unit), forms, scaling, unit)
 

@@ -28,7 +28,7 @@ Solve = Callable[[Matrices, Time, float, Matrices, Allowance], Matrices | None]
 FIRST_MODES = 8
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
 ENTRY_LOG2 = 3
-# A smaller margin is none, relative to Q, for the modes that the solver knew.
+# A smaller margin counts as zero, relative to Q, for the modes that the solver knew.
 MARGIN_FLOOR = 1e-10
 # The start lies below the margin of its Q by at least this.
 START_FLOOR = 1e-3

@@ -54,7 +54,7 @@ class CommandMargin:
 
 
 @dataclass(frozen=True)
-class LoopMargins:
+class MarginBrackets:
     """What `--margin` finds beside the box of ranges.
 
     Parameters
@@ -83,7 +83,8 @@ def find_longest_delay(
 
     The modes of a range of delays are those of every shorter range, and more: a proof for one is a
     proof for those, and a refutation one for every longer range. So beyond the delays that are
-    decided, one that is unstable by itself refutes all ranges that reach it.
+    decided, one that is unstable by itself refutes all ranges that reach it; and between the
+    declared one and the longest, both ends are found by bisection.
 
     Parameters
     ----------
@@ -98,21 +99,25 @@ def find_longest_delay(
     is_unstable : callable
         Tells whether the loop is refuted where all samples have one age, by a test that is quick.
     """
-    proved: int | None = None
-    refuted: int | None = None
-    for delay in [declared, *range(declared - 1, shortest - 1, -1)]:
-        verdict = decide(delay)
-        if verdict is Verdict.PROVED:
-            proved = delay
+    tried: dict[int, Verdict] = {}
+
+    def is_found(delay: int, verdict: Verdict) -> bool:
+        if delay not in tried:
+            tried[delay] = decide(delay)
+        return tried[delay] is verdict
+
+    for delay in range(declared, shortest - 1, -1):
+        if is_found(delay, Verdict.PROVED):
             break
-        refuted = delay if verdict is Verdict.REFUTED else refuted
-    for delay in range(declared + 1, longest + 1):
-        if refuted is not None:
-            break
-        verdict = decide(delay)
-        if verdict is Verdict.PROVED:
-            proved = delay
-        refuted = delay if verdict is Verdict.REFUTED else None
+    if tried[declared] is not Verdict.REFUTED and longest > declared:
+        if not is_found(longest, Verdict.PROVED):
+            _halve(declared, longest, lambda delay: is_found(delay, Verdict.PROVED))
+        if Verdict.REFUTED in tried.values():
+            beyond = min(delay for delay in tried if tried[delay] is Verdict.REFUTED)
+            below = max(delay for delay in tried if delay < beyond)
+            _halve(below, beyond, lambda delay: not is_found(delay, Verdict.REFUTED))
+    proved = max((d for d in tried if tried[d] is Verdict.PROVED), default=None)
+    refuted = min((d for d in tried if tried[d] is Verdict.REFUTED), default=None)
     if refuted is None:
         refuted = _first_unstable(longest, is_unstable)
     end = (
@@ -125,6 +130,17 @@ def find_longest_delay(
     return Bracket(ends[0], ends[1], end)
 
 
+def _halve(inside: int, outside: int, accepts: Callable[[int], bool]) -> int:
+    """Bisect between a delay that is accepted and one that is not; return the first that is not."""
+    while outside - inside > 1:
+        middle = (inside + outside) // 2
+        if accepts(middle):
+            inside = middle
+        else:
+            outside = middle
+    return outside
+
+
 def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | None:
     """Return a short delay that is unstable, beyond one that is not: by doubling and bisecting."""
     unstable = stable
@@ -132,13 +148,7 @@ def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | No
         if unstable == FARTHEST_DELAY:
             return None
         stable, unstable = unstable, min(2 * unstable, FARTHEST_DELAY)
-    while unstable - stable > 1:
-        middle = (stable + unstable) // 2
-        if is_unstable(middle):
-            unstable = middle
-        else:
-            stable = middle
-    return unstable
+    return _halve(stable, unstable, lambda delay: not is_unstable(delay))
 
 
 def find_longest_period(period: Fraction, decide: Callable[[Fraction], Verdict | str]) -> Bracket:

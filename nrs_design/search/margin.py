@@ -71,11 +71,18 @@ def find_margin(
         Decides a system.
     known : Certification, optional
         What was found at scale 1, perhaps by a longer search: no worse is reported.
+
+    Raises
+    ------
+    AssemblyError
+        If not even the nominal values make a system, so that no box does.
     """
-    faults: dict[Fraction, str] = {}
+    faults: dict[Fraction, AssemblyError] = {}
     tried = _Tried(lambda scale: _try(scale, assemble, certify, faults))
     if known is not None:
         tried.remember(Fraction(1), known)
+    elif tried.makes_no_system(Fraction(0)):
+        raise faults[Fraction(0)]
     if not tried.that_are(Verdict.PROVED) and not tried.is_proved(Fraction(0)):
         refuted = _smallest_refuted(tried, assemble, faults)
         return BoxMargin(None, refuted, None, _end(tried, faults, refuted))
@@ -89,18 +96,18 @@ def find_margin(
     return BoxMargin(low, refuted, tried.certification(low), _end(tried, faults, refuted))
 
 
-def _end(tried: _Tried, faults: Mapping[Fraction, str], refuted: Fraction | None) -> str:
+def _end(tried: _Tried, faults: Mapping[Fraction, AssemblyError], refuted: Fraction | None) -> str:
     """Say where scales that are not refuted end, and why there; nothing if one is refuted."""
     if refuted is not None:
         return ""
     longest = max(scale for scale in tried.all() if not tried.makes_no_system(scale))
-    beyond = [faults[scale] for scale in sorted(faults) if scale > longest]
+    beyond = [faults[scale].message for scale in sorted(faults) if scale > longest]
     why = f"wider ones make no system ({beyond[0]})" if beyond else "the search ends there"
     return f"none scaled by up to {nearly(longest)} is refuted: {why}"
 
 
 def _smallest_refuted(
-    tried: _Tried, assemble: Assemble, faults: dict[Fraction, str]
+    tried: _Tried, assemble: Assemble, faults: dict[Fraction, AssemblyError]
 ) -> Fraction | None:
     """Return the smallest scale found to be refuted: from what was tried, or beyond it."""
     high = max(tried.largest(), Fraction(1))
@@ -174,18 +181,18 @@ class _Tried:
 
 
 def _assembled(
-    scale: Fraction, assemble: Assemble, faults: dict[Fraction, str]
+    scale: Fraction, assemble: Assemble, faults: dict[Fraction, AssemblyError]
 ) -> SwitchedSystem | None:
     """Return the system at a scale, or note why the scale makes none."""
     try:
         return assemble(scale)
     except AssemblyError as error:
-        faults[scale] = error.message
+        faults[scale] = error
         return None
 
 
 def _try(
-    scale: Fraction, assemble: Assemble, certify: Certify, faults: dict[Fraction, str]
+    scale: Fraction, assemble: Assemble, certify: Certify, faults: dict[Fraction, AssemblyError]
 ) -> Outcome:
     """Return the verdict at a scale; None if the scale makes no system."""
     system = _assembled(scale, assemble, faults)

@@ -19,7 +19,7 @@ from nrs_design.proof.evidence import PeriodicQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
-from nrs_design.search.balance import own_norm, scale
+from nrs_design.search.balance import own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions
 from nrs_design.search.conewise_quadratic import (
@@ -51,7 +51,7 @@ MOST_ROUNDED = 250
 
 
 @dataclass(frozen=True)
-class Solution:
+class PeriodicSolution:
     """The functions of all steps and their multipliers, in floating point."""
 
     functions: list[Array]
@@ -59,7 +59,7 @@ class Solution:
 
 
 @dataclass(frozen=True)
-class Condition:
+class StepInequality:
     """One form that must be positive, of the functions before and after a step.
 
     Parameters
@@ -89,7 +89,7 @@ class Condition:
         return np.asarray(self.map.T @ Q[..., :m, :m] @ self.map)
 
 
-class Program:
+class PeriodicProgram:
     """The semidefinite program for any rate, in coordinates of each step."""
 
     def __init__(self, family: Family, clock: Clock) -> None:
@@ -103,7 +103,7 @@ class Program:
 
     def _part(self, step: int) -> Family:
         part = on_turn(self.family.system, self.clock, step)
-        matrices = scale(to_floats([mode.A for mode in part.modes]), self.family.exponents)
+        matrices = scale_states(to_floats([mode.A for mode in part.modes]), self.family.exponents)
         return Family(part, matrices, self.family.exponents, self.family.limit)
 
     @staticmethod
@@ -158,24 +158,24 @@ class Program:
                 slowest = max(slowest, limit_rate(whole[None], Time.DISCRETE))
         return float(slowest ** (1 / self.clock.length))
 
-    def conditions(self) -> Iterator[Condition]:
+    def conditions(self) -> Iterator[StepInequality]:
         """Yield every condition but that of the functions themselves."""
         n, last = self.n, np.eye(self.n)[-1]
         for step in range(self.clock.length):
             own = self.motions[min(step, 1)]
             T, inverse = self.T[step], np.linalg.inv(self.T[(step + 1) % self.clock.length])
             for A in inverse @ own.contact @ T:
-                yield Condition(step, A)
+                yield StepInequality(step, A)
                 if self.contact is not None:
-                    yield Condition(step, A[:-1], crossings=((0, _crossing(last, A[-1])),))
+                    yield StepInequality(step, A[:-1], crossings=((0, _crossing(last, A[-1])),))
             for F in inverse @ own.free @ T:
-                yield Condition(step, F[: n - 1, :-1], undeflected=True)
-                yield Condition(step, F[:, :-1], undeflected=True)
+                yield StepInequality(step, F[: n - 1, :-1], undeflected=True)
+                yield StepInequality(step, F[:, :-1], undeflected=True)
                 for k, q in enumerate(own.pulls @ T):
                     pulled = _crossing(last, q)
-                    yield Condition(step, F, crossings=((3 * k + 1, pulled),))
+                    yield StepInequality(step, F, crossings=((3 * k + 1, pulled),))
                     lost = (3 * k + 2, pulled), (3 * k + 3, _crossing(last, F[-1]))
-                    yield Condition(step, F[:-1], crossings=lost)
+                    yield StepInequality(step, F[:-1], crossings=lost)
 
     def cost(self) -> tuple[Cost, str]:
         """Predict what one solution takes; say for what."""
@@ -185,7 +185,7 @@ class Program:
         cones = [(self.n, own)] * 2 * N + [(self.n, 2 * own)] * count
         return program_cost(unknowns, own * 3, cones), f"a program with {len(cones)} blocks"
 
-    def solve(self, rate: float, allowance: Allowance) -> Solution | None:
+    def solve(self, rate: float, allowance: Allowance) -> PeriodicSolution | None:
         """Maximize the margin at a rate; None if it is not positive.
 
         Raises
@@ -225,9 +225,9 @@ class Program:
         if x is None or x[-1] <= 0:
             return None
         functions = [np.tensordot(c, basis, axes=1) for c in x[: N * own].reshape(N, own)]
-        return Solution(functions, x[N * own : -1].reshape(N, lost))
+        return PeriodicSolution(functions, x[N * own : -1].reshape(N, lost))
 
-    def own_rate(self, solution: Solution) -> float:
+    def own_rate(self, solution: PeriodicSolution) -> float:
         """Return the contraction per step that a solution shows."""
         worst = 0.0
         for item in self.conditions():
@@ -240,13 +240,13 @@ class Program:
         return float(np.sqrt(worst))
 
     def roundings(
-        self, solution: Solution, claim: Fraction, *, errors: bool
+        self, solution: PeriodicSolution, claim: Fraction, *, errors: bool
     ) -> Iterator[PeriodicQuadratic]:
         """Yield roundings of all functions to integers over one denominator.
 
         Parameters
         ----------
-        solution : Solution
+        solution : PeriodicSolution
             For which the claim holds in floating point.
         claim : Fraction
             The contraction rho per step.
@@ -311,7 +311,7 @@ def _crossing(last: Array, row: Array) -> Array:
 
 
 def _fastest(
-    program: Program, limit: float, *, errors: bool
+    program: PeriodicProgram, limit: float, *, errors: bool
 ) -> Iterator[Candidate[PeriodicQuadratic]]:
     """Yield functions for the largest rates that fit into half of the time."""
     half = program.family.allowance.part(0.5)
@@ -345,7 +345,7 @@ def search_periodic_quadratic(family: Family) -> Candidates[PeriodicQuadratic]:
     system, clock = family.system, family.system.clock
     if clock is None:
         return NO_MARGIN
-    program = Program(family, clock)
+    program = PeriodicProgram(family, clock)
     if not program.is_finite:
         return OUT_OF_RANGE
     limit = program.limit()

@@ -50,7 +50,7 @@ HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_D
 
 
 @dataclass(frozen=True)
-class Solution:
+class PolynomialSolution:
     """Gram matrix Q, shape (K, K), and one vanishing form per mode, shape (m, K, K)."""
 
     Q: Array
@@ -82,11 +82,11 @@ def search_polynomial(family: Family, degree: int) -> Candidates[CommonPolynomia
     return None
 
 
-def _faster(family: Family, lift: Lift) -> Solution | None:
+def _faster(family: Family, lift: Lift) -> PolynomialSolution | None:
     """Bisect for the largest rate, and solve for one a little below it."""
     time = family.system.time
 
-    def solve(position: float) -> Solution | None:
+    def solve(position: float) -> PolynomialSolution | None:
         rate = rate_at(position, family.limit, time)
         return find_common_polynomial(lift, time, rate, family.allowance)
 
@@ -130,7 +130,7 @@ def family_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
 
 def find_common_polynomial(
     lift: Lift, time: Time, rate: float, allowance: Allowance | None = None
-) -> Solution | None:
+) -> PolynomialSolution | None:
     """Maximize the margin by semidefinite programming.
 
     Parameters
@@ -146,7 +146,7 @@ def find_common_polynomial(
 
     Returns
     -------
-    Solution or None
+    PolynomialSolution or None
         None if the margin is not positive.
 
     Raises
@@ -169,7 +169,7 @@ def find_common_polynomial(
     )
     if x is None or x[-1] <= 0:
         return None
-    return Solution(np.tensordot(x[:size], basis, axes=1), vanishing_in(lift, x[size:-1]))
+    return PolynomialSolution(np.tensordot(x[:size], basis, axes=1), vanishing_in(lift, x[size:-1]))
 
 
 def decrease_blocks(
@@ -208,7 +208,9 @@ def decrease_blocks(
     return blocks
 
 
-def _roundings(family: Family, lift: Lift, solution: Solution) -> Iterator[CommonPolynomial]:
+def _roundings(
+    family: Family, lift: Lift, solution: PolynomialSolution
+) -> Iterator[CommonPolynomial]:
     """Yield roundings to integers at rates just below the one that a solution shows itself."""
     system = family.system
     own = shown_rate(lift, solution, system.time)
@@ -218,14 +220,14 @@ def _roundings(family: Family, lift: Lift, solution: Solution) -> Iterator[Commo
             yield _integers(system, lift, solution, claim, bits)
 
 
-def shown_rate(lift: Lift, solution: Solution, time: Time) -> float:
+def shown_rate(lift: Lift, solution: PolynomialSolution, time: Time) -> float:
     """Return the rate that Q and the vanishing forms show, by generalized eigenvalues.
 
     Parameters
     ----------
     lift : Lift
         The modes.
-    solution : Solution
+    solution : PolynomialSolution
         In their coordinates.
     time : Time
         Continuous or discrete.
@@ -239,7 +241,7 @@ def shown_rate(lift: Lift, solution: Solution, time: Time) -> float:
 
 
 def _integers(
-    system: SwitchedSystem, lift: Lift, solution: Solution, rate: Fraction, bits: int
+    system: SwitchedSystem, lift: Lift, solution: PolynomialSolution, rate: Fraction, bits: int
 ) -> CommonPolynomial:
     lowest, normalized = int(lift.exponents.min()), int(np.frexp(np.abs(solution.Q).max())[1])
     return CommonPolynomial(
@@ -252,7 +254,12 @@ def _integers(
 
 
 def round_vanishing(
-    system: SwitchedSystem, lift: Lift, solution: Solution, rate: Fraction, bits: int, lowest: int
+    system: SwitchedSystem,
+    lift: Lift,
+    solution: PolynomialSolution,
+    rate: Fraction,
+    bits: int,
+    lowest: int,
 ) -> tuple[tuple[tuple[int, ...], ...], ...]:
     """Round the vanishing form of each mode so that it vanishes exactly.
 
@@ -262,7 +269,7 @@ def round_vanishing(
         The exact modes.
     lift : Lift
         Of them.
-    solution : Solution
+    solution : PolynomialSolution
         In its coordinates.
     rate : Fraction
         The claim.

@@ -23,6 +23,7 @@ from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.allowance import Allowance
+from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import round_rate, unscale
@@ -176,7 +177,7 @@ def search_saturated(
     if first is None:
         return NO_MARGIN
     # A triangular change of coordinates leaves the deflection alone, which is zero in free motion.
-    T = T @ _triangular(first)
+    T = T @ round_coordinates(first)
     T /= np.linalg.norm(raw.linear @ T, axis=-1).max()
     own = raw.transformed(T)
     if not all(np.isfinite(part).all() for part in (T, own.A, own.columns, *own.rows)):
@@ -290,7 +291,8 @@ def _rounded(
     assert system.saturation is not None
     limits = np.array([float(s.limit) for s in system.saturation.signals])
     H = limits[:, None] * (region.H @ np.linalg.inv(T))
-    T = np.asarray(T @ _triangular(np.linalg.inv(region.S)), dtype=np.float64)
+    shape = np.asarray(np.linalg.inv(region.S), dtype=np.float64)
+    T = np.asarray(T @ round_coordinates(shape), dtype=np.float64)
     log2 = max(0, H_DIGITS - int(np.frexp(np.abs(H).max())[1]))
     rows = tuple(tuple(round(float(v)) for v in row) for row in np.ldexp(H, log2))
     kept = np.ldexp(np.array(rows, dtype=float), -log2) / limits[:, None] @ T
@@ -334,11 +336,6 @@ def _fitted(
     return None if x is None else np.asarray(np.tensordot(x, Q, axes=1))
 
 
-def _triangular(Q: Any) -> Array:
-    """Return an upper triangular T with ``T' Q T = I``."""
-    return np.asarray(np.linalg.inv(np.linalg.cholesky(Q).T))
-
-
 def _unknowns(n: int, rows: int) -> tuple[Array, list[Array]]:
     """Return what each unknown makes of a symmetric matrix, and of rows; the last one of neither.
 
@@ -376,9 +373,8 @@ def _bordered(S: Array, y: Array) -> Array:
 
 def _decrease(A: Array, Q: Array, t: Array, rate: float) -> tuple[Array, Array]:
     """Return the block that wants a decrease of at least t."""
-    half = Q @ A
-    size = np.eye(len(A))
-    return 0.0 * size, -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q - t * size
+    half, identity = Q @ A, np.eye(len(A))
+    return np.zeros_like(A), -(half + np.swapaxes(half, -1, -2)) - 2 * rate * Q - t * identity
 
 
 def _solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:

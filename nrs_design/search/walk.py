@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,6 +99,8 @@ class _Beam:
         parts = []
         for k, jump in enumerate(self.graph.jumps):
             rows = np.flatnonzero(walks.ends[:, 1] == jump.source)
+            if not len(rows):
+                continue
             times, powers = self.times[jump.target], self.powers[jump.target]
             products = powers[None] @ (jump.map @ walks.products[rows])[:, None]
             repeated = np.repeat(rows, len(times))
@@ -127,13 +129,29 @@ class _Beam:
         """Return how fast states grow when a walk is repeated, -inf if it cannot, and the jump."""
         rates = np.full(len(walks.jumps), -np.inf)
         closing = np.zeros(len(walks.jumps), dtype=np.int64)
+        rows_between = self._rows_between(walks)
         for k, jump in enumerate(self.graph.jumps):
-            rows = np.flatnonzero((walks.ends == (jump.target, jump.source)).all(axis=1))
+            rows = rows_between(jump.target, jump.source)
+            if not len(rows):
+                continue
             radii = np.maximum(spectral_radii(jump.map @ walks.products[rows]), 1e-300)
             found = np.log(radii) / np.maximum(walks.times[rows].sum(axis=1), 1e-300)
             better = found > rates[rows]
             rates[rows[better]], closing[rows[better]] = found[better], k
         return rates, closing
+
+    def _rows_between(self, walks: _Walks) -> Callable[[int, int], Indices]:
+        """Return what tells the walks from one mode to another; all are sorted once."""
+        pairs = walks.ends @ np.array([len(self.times), 1])
+        order = np.argsort(pairs, kind="stable")
+        ordered = pairs[order]
+
+        def rows(first: int, last: int) -> Indices:
+            pair = first * len(self.times) + last
+            begin, end = np.searchsorted(ordered, (pair, pair + 1))
+            return order[begin:end]
+
+        return rows
 
 
 def _coordinates(graph: Graph) -> Array:

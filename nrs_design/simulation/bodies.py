@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
+from nrs_design.progress import Progress, silent
 from nrs_design.simulation.mujoco_body import MujocoBody
-from nrs_design.simulation.processor import Body, Motors, Tell, run_axes, silent
+from nrs_design.simulation.processor import AbstractBody, Motors, run_axes
 from nrs_design.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, MAX_STEPS, Deviation, Run
 from nrs_design.simulation.sampled import sampled_axis
@@ -28,7 +29,7 @@ def simulate_on_body(
     arm: Arm | None = None,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Tell = silent,
+    tell: Progress = silent,
 ) -> tuple[Run, ...]:
     """Simulate one axis, or three axes of a robot, with the law that ships.
 
@@ -93,7 +94,7 @@ def deviation(run: Run, other: Run) -> Deviation:
     )
 
 
-def _body(name: str, axes: Sequence[SampledAxis], plant: Plant, arm: Arm | None) -> Body:
+def _body(name: str, axes: Sequence[SampledAxis], plant: Plant, arm: Arm | None) -> AbstractBody:
     if name == MUJOCO:
         return MujocoBody(axes, plant, arm)
     return Motors() if arm is None else RobotBody(arm, plant, axes)

@@ -9,7 +9,7 @@ import numpy as np
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Norm
-from nrs_design.simulation.switched import SwitchedRun, times, transition_matrices
+from nrs_design.simulation.switched import SwitchedRun, sampling_instants, transition_matrices
 
 
 def with_free_modes(system: SwitchedSystem) -> SwitchedSystem:
@@ -74,4 +74,4 @@ def worst_contact(
         chosen.append(first + best)
         states.append(candidates[best])
     unit = 1.0 if system.time is Time.DISCRETE else step
-    return SwitchedRun(times(unit, steps), np.array(states), np.array(chosen))
+    return SwitchedRun(sampling_instants(unit, steps), np.array(states), np.array(chosen))

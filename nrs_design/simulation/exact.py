@@ -8,13 +8,14 @@ when the next one comes.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
+from nrs_design.progress import Progress
 from nrs_design.simulation.flow import CHUNK, Flow
 from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.run import (
@@ -44,7 +45,6 @@ OUTPUTS = (
     Signal("reference", "rad"),
 )
 INPUTS = (Signal("hand", "rad/s"),)
-Tell = Callable[[str], None]
 
 
 def _silent(step: str) -> None:
@@ -58,7 +58,7 @@ def simulate_exactly(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Tell = _silent,
+    tell: Progress = _silent,
 ) -> Run:
     """Simulate a scenario in continuous time, without what acts on the sampled loop alone.
 
@@ -91,7 +91,7 @@ class _Engine:
 
     loop: Loop
     max_steps: int
-    tell: Tell
+    tell: Progress
     ways: dict[tuple[object, ...], Way] = field(default_factory=dict)
     switches: list[tuple[float, str]] = field(default_factory=list)
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)

@@ -66,7 +66,7 @@ class Game:
         touching, flying = maps[: len(system.modes)], maps[len(system.modes) :]
         pulls = () if contact is None else contact.pulls
         rows = np.array([row.floats()[0] for row in pulls]).reshape(-1, system.order)
-        flights = flying[free_modes(system)] if free else flying
+        flights = flying[free_counterparts(system)] if free else flying
         return cls(touching, flights, rows, Rules.of(system, step))
 
     @property
@@ -220,7 +220,7 @@ def _step(game: Game, x: Array, action: Indices, shares: Array) -> Array:
     return np.asarray((maps @ full[:, :, None])[:, :, 0])
 
 
-def free_modes(system: SwitchedSystem) -> Indices:
+def free_counterparts(system: SwitchedSystem) -> Indices:
     """Return which free mode takes the place of each mode where contact is lost; shape (m,).
 
     It is of the same controller, with the same gains, motor and delay: of all free modes the one

@@ -102,7 +102,7 @@ class MujocoBody:
         self.data.qpos[:] = start
 
     def move(self, axes: Sequence[SampledAxis], commands: Sequence[float], width: float) -> None:
-        """Step until the next sample; see `nrs_design.simulation.processor.Body`.
+        """Step until the next sample; see `nrs_design.simulation.processor.AbstractBody`.
 
         Parameters
         ----------

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Protocol
 
 from nrs_design.errors import PoseError
+from nrs_design.progress import Progress
 from nrs_design.simulation.fate import Fate
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.sampled_axis import SampledAxis
 
 # Samples after which it is told how far the run is.
 _OFTEN = 20_000
-Tell = Callable[[str], None]
 
 
-def silent(step: str) -> None:
-    """Report no progress."""
-
-
-class Body(Protocol):
+class AbstractBody(Protocol):
     """What the commands of all axes move, and what touches them."""
 
     def move(self, axes: Sequence[SampledAxis], commands: Sequence[float], width: float) -> None:
@@ -46,7 +42,7 @@ class Motors:
     """Every axis by itself: its motor, and tissue that may load it."""
 
     def move(self, axes: Sequence[SampledAxis], commands: Sequence[float], width: float) -> None:
-        """Move every axis; see `Body`.
+        """Move every axis; see `AbstractBody`.
 
         Parameters
         ----------
@@ -58,7 +54,7 @@ class Motors:
 
 
 def run_axes(
-    axes: Sequence[SampledAxis], body: Body, engine: str, max_steps: int, tell: Tell
+    axes: Sequence[SampledAxis], body: AbstractBody, engine: str, max_steps: int, tell: Progress
 ) -> tuple[Run, ...]:
     """Run the laws of all axes on one processor, at the same samples.
 
@@ -66,7 +62,7 @@ def run_axes(
     ----------
     axes : sequence of SampledAxis
         At rest; their scenarios are equally long, and jitter is that of the first one.
-    body : Body
+    body : AbstractBody
         What they move.
     engine : str
         Its name.

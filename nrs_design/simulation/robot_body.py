@@ -113,7 +113,7 @@ class RobotBody:
         self.state = JointState(self.rest[None, :], np.zeros((1, 3)), np.zeros((1, 3)))
 
     def move(self, axes: Sequence[SampledAxis], commands: Sequence[float], width: float) -> None:
-        """Move all joints at once; see `nrs_design.simulation.processor.Body`.
+        """Move all joints at once; see `nrs_design.simulation.processor.AbstractBody`.
 
         Parameters
         ----------

@@ -10,7 +10,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.contact import with_free_modes
 from nrs_design.simulation.norms import Array, Norm
-from nrs_design.simulation.switched import SwitchedRun, times, transition_matrices
+from nrs_design.simulation.switched import SwitchedRun, sampling_instants, transition_matrices
 
 
 def all_modes(system: SwitchedSystem) -> SwitchedSystem:
@@ -56,7 +56,7 @@ def worst_rounds(
         best = int(norms[(t + 1) % clock.length](candidates).argmax())
         chosen.append(int(kept[best]))
         states.append(candidates[best])
-    return SwitchedRun(times(1.0, steps), np.array(states), np.array(chosen))
+    return SwitchedRun(sampling_instants(1.0, steps), np.array(states), np.array(chosen))
 
 
 def norms_in_rounds(response: SwitchedRun, norms: Sequence[Norm]) -> Array:

@@ -33,6 +33,7 @@ LEFT_OUT_ON_LINKS = (
     "springs and counter-masses of a balance, and tissue that couples the axes",
     "gain and time constant of the motors other than the nominal ones",
 )
+ESTIMATOR_LEFT_OUT = "the estimator of the mode logic, which would choose the controller"
 ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
 
 

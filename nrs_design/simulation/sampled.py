@@ -8,7 +8,8 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.processor import Motors, Tell, run_axes, silent
+from nrs_design.progress import Progress, silent
+from nrs_design.simulation.processor import Motors, run_axes
 from nrs_design.simulation.run import MAX_STEPS, Run
 from nrs_design.simulation.sampled_axis import SampledAxis, Turns
 from nrs_design.simulation.scenario import Scenario
@@ -23,7 +24,7 @@ def simulate_sampled(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Tell = silent,
+    tell: Progress = silent,
 ) -> Run:
     """Simulate a scenario as the processor runs it.
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Norm
-from nrs_design.simulation.switched import SwitchedRun, times
+from nrs_design.simulation.switched import SwitchedRun, sampling_instants
 
 
 def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
@@ -86,4 +86,4 @@ def worst_saturated(
         best = first + int(norm(candidates[first:last]).argmax())
         chosen.append(best)
         states.append(candidates[best])
-    return SwitchedRun(times(step, steps), np.array(states), np.array(chosen))
+    return SwitchedRun(sampling_instants(step, steps), np.array(states), np.array(chosen))

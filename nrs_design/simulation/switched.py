@@ -72,7 +72,7 @@ def simulate_switching(
     states = [initial]
     for mode in signal:
         states.append(transitions[mode] @ states[-1])
-    return SwitchedRun(times(step, len(signal)), np.array(states), signal)
+    return SwitchedRun(sampling_instants(step, len(signal)), np.array(states), signal)
 
 
 def worst_switching(
@@ -101,7 +101,7 @@ def worst_switching(
         candidates = transitions @ states[-1]
         chosen.append(int(norm(candidates).argmax()))
         states.append(candidates[chosen[-1]])
-    return SwitchedRun(times(step, steps), np.array(states), np.array(chosen))
+    return SwitchedRun(sampling_instants(step, steps), np.array(states), np.array(chosen))
 
 
 def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
@@ -187,7 +187,7 @@ def unstable_run(system: SwitchedSystem, mode: int) -> SwitchedRun:
     return simulate_switching(system, signal, initial, step)
 
 
-def times(step: float, steps: int) -> Array:
+def sampling_instants(step: float, steps: int) -> Array:
     """Return sampling instants from zero; shape (steps + 1,)."""
     return np.asarray(step * np.arange(steps + 1), dtype=float)
 

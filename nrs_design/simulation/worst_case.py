@@ -24,7 +24,7 @@ from nrs_design.simulation.adversary import (
     misjudged_signals,
     random_signals,
 )
-from nrs_design.simulation.game import Aim, Game, Signals, free_modes, play
+from nrs_design.simulation.game import Aim, Game, Signals, free_counterparts, play
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.rules import Indices, fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
@@ -333,7 +333,7 @@ def _run(
     mode = game.rules.mode[signals.actions[:, 0]]
     if system.contact is not None:
         flies = game.flies(states[:-1])
-        mode = np.where(flies, len(system.modes) + free_modes(system)[mode], mode)
+        mode = np.where(flies, len(system.modes) + free_counterparts(system)[mode], mode)
     bounds = np.array([float(channel.bound) for channel in system.channels])
     time = np.asarray(unit * np.arange(len(states)), dtype=float)
     shares = signals.shares[:, 0]

@@ -98,7 +98,9 @@ def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> ND
     return np.asarray(found | ~found.any(axis=1, keepdims=True))
 
 
-def bounds_of(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> dict[str, float]:
+def certified_bounds(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> dict[str, float]:
     """Return what is certified about every output, not below it, and about the deflection.
 
     Where the force is a stiffness times the deflection, the bound holds for every stiffness in its

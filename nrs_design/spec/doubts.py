@@ -7,13 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec.quantity import is_less
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.load import Spec
 
-# Beyond a lever arm in m and a time constant in s, another unit was probably meant.
-_LONGEST, _SLOWEST = 2, 1
+# Beyond a lever arm in m, a time constant in s, and a force that a motion begins with, in limits of
+# the torque, another unit was probably meant.
+_LONGEST, _SLOWEST, _HARDEST = 2, 1, 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,7 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     yield from _doubt_units(spec)
     yield from _doubt_thresholds(spec)
     yield from _doubt_command(spec)
+    yield from _doubt_initial_force(spec)
     yield from _doubt_bounds(spec)
     yield from _doubt_continuous(spec)
 
@@ -113,8 +116,21 @@ def _doubt_command(spec: InteractionDesignSpec) -> Iterator[Doubt]:
         )
 
 
+def _doubt_initial_force(spec: InteractionDesignSpec) -> Iterator[Doubt]:
+    """Yield a wanted force that is out of proportion: some more than the limit is the very use."""
+    force, limit = None if spec.goals is None else spec.goals.initial_force, spec.limits.torque
+    if force is None or isinstance(force, str) or force.exact <= _HARDEST * limit.exact:
+        return
+    yield Doubt(
+        ("goals", "initial_force"),
+        f"goals.initial_force of {force.text} is more than {_HARDEST} times limits.torque of "
+        f"{limit.text}: is that its unit? (what is shown is that motions from there decay, not "
+        "that the torque is within its limit; write `largest` for as much as is found)",
+    )
+
+
 def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
-    """Yield disturbances under which no bound will be proved."""
+    """Yield what will not be proved beside two periods, and bounds that commands may leave."""
     two = spec.sampling is not None and spec.sampling.round > 1
     if two and spec.disturbances is not None:
         yield Doubt(
@@ -122,6 +138,20 @@ def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
             "beside an outer_period, the decay of the undisturbed loop is proved, and no bound "
             "under disturbances (bounds of the loop without outer_period are listed; or remove "
             "disturbances)",
+        )
+    if two and spec.coupling is not None:
+        yield Doubt(
+            ("coupling",),
+            "beside an outer_period, nothing is proved of axes that act on each other (what is "
+            "proved without the one or the other is listed; or remove outer_period or coupling)",
+        )
+    command = None if spec.disturbances is None else spec.disturbances.command
+    if command is not None and is_less(command, limit := spec.limits.velocity):
+        yield Doubt(
+            ("disturbances", "command"),
+            f"bounds are for velocity commands up to {command.text}, and limits.velocity lets them "
+            f"be {limit.text}: beyond the first, no bound holds (raise the first, or lower "
+            "limits.velocity)",
         )
 
 

@@ -321,21 +321,21 @@ def unit_at_pivot(quantity: Quantity) -> str:
     )
 
 
-def is_linear(quantity: Quantity) -> bool:
+def is_translational(quantity: Quantity) -> bool:
     """Whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
     linear = kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING, kinds.MASS
     return any(kind.accepts(quantity.dimension) for kind in linear)
 
 
 def _check_arm(quantity: RangedQuantity, name: str, arm: Quantity | None) -> None:
-    if is_linear(quantity.nominal) and arm is None:
+    if is_translational(quantity.nominal) and arm is None:
         raise fault(
             f"{quantity.nominal.text!r} is linear, and there is no lever_arm",
             "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or write "
             "the rotational value at the pivot",
             name,
         )
-    if arm is not None and not is_linear(quantity.nominal):
+    if arm is not None and not is_translational(quantity.nominal):
         raise fault(
             f"{quantity.nominal.text!r} is rotational, and a lever_arm is given",
             "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from nrs_design.spec.quantity import QuantityKind
+from nrs_design.spec.quantity import QuantityKind, written_as
 from nrs_design.spec.units import COMMAND_UNITS
 
 _FREQUENCY = "{value} 1/s names no angle: write '{value} Hz' or '{value} rad/s'"
 _STIFFNESS = "that is a torque: a rotational stiffness is per radian, write '{value} N*m/rad'"
+_GAINS = tuple(f"rad/s/{command}" for command in COMMAND_UNITS)
 
 ACTUATOR_GAIN = QuantityKind(
     "an actuator gain",
-    tuple(f"rad/s/{command}" for command in COMMAND_UNITS),
+    _GAINS,
     "4.8417e-4 rad/s/rpm",
     {
-        "rad/s": "the gain is per command unit: write '{value} rad/s/rpm'",
+        "rad/s": f"the gain is per command unit: write {written_as(_GAINS)}",
         "rpm/V": "rpm is the driver's command unit and is never converted: write rad/s/V (1 rpm is "
         "pi/30 rad/s)",
         "1/(V*s)": "name the angle: write '{value} rad/s/V'",
@@ -34,8 +35,12 @@ DERIVATIVE_GAIN = QuantityKind(
     tuple(f"{command}*s/rad" for command in COMMAND_UNITS),
     "2060 rpm*s/rad",
     {
-        "rpm": "the gain acts on an angular velocity: write '{value} rpm*s/rad'",
-        "rpm/rad": "that is a proportional gain: write '{value} rpm*s/rad'",
+        f"{command}{per}": f"{mistaken}: write '{{value}} {command}*s/rad'"
+        for command in COMMAND_UNITS
+        for per, mistaken in (
+            ("", "the gain acts on an angular velocity"),
+            ("/rad", "that is a proportional gain"),
+        )
     },
 )
 ZERO = QuantityKind(
@@ -187,7 +192,10 @@ COMMAND = QuantityKind(
     "a command of the motor",
     COMMAND_UNITS,
     "276.575 rpm",
-    {"rad/s": "the driver's command is in rpm, a unit of its own that is never converted"},
+    {
+        "rad/s": "the driver's command has a unit of its own that is never converted: write "
+        f"{written_as(COMMAND_UNITS)}"
+    },
 )
 TORQUE_GRADIENT = QuantityKind(
     "a speed-torque gradient",

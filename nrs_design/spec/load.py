@@ -102,10 +102,10 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     spec = _validate(root, syntax, file)
     sha256 = hash_meaning(to_data(root))
     if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.robot:
-        from nrs_design.spec.robot_bounds import bounds_of
+        from nrs_design.spec.robot_bounds import read_robot_bounds
 
         at = place_of(root, ("coupling", "robot"), at_key=True)
-        bounds = bounds_of(file, spec.coupling.robot, at)
+        bounds = read_robot_bounds(file, spec.coupling.robot, at)
         spec = spec.model_copy(update={"coupling": spec.coupling.bounded(bounds)})
         # What is said of the robot is a part of what the spec says.
         sha256 = hash_meaning({"spec": sha256, "bounds": bounds.id})

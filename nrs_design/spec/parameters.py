@@ -25,7 +25,7 @@ LARGEST = Fraction(10) ** 30
 _RESERVED = frozenset(["nan", "inf", "infinity", "true", "false", "yes", "no", "on", "off", "null"])
 
 
-def read_name(value: object) -> str:
+def read_parameter_name(value: object) -> str:
     """Read the name of a parameter."""
     text = as_text(value)
     if not re.fullmatch(PARAMETER_PATTERN, text):
@@ -80,7 +80,7 @@ _Range = Annotated[
 ]
 ParameterName = Annotated[
     str,
-    ReadBy(read_name),
+    ReadBy(read_parameter_name),
     WithJsonSchema({"type": "string", "pattern": PARAMETER_PATTERN}),
 ]
 Switch = Annotated[bool, ReadBy(_read_switch), WithJsonSchema({"type": "boolean"})]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from fractions import Fraction
 
@@ -12,7 +12,7 @@ from nrs_design.errors import SpecError
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
-from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit
+from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
 SMALLEST = 1e-30
@@ -24,7 +24,7 @@ PI_BETWEEN = (
     Fraction("3.14159265358979323846264338328"),
 )
 QUANTITY_PATTERN = rf"^(?:{DECIMAL_PATTERN}|{RATIO_PATTERN}) +[A-Za-z1(][A-Za-z0-9*/^()+-]*$"
-_GLUED = rf"({DECIMAL_PATTERN})([A-Za-z].*)"
+_GLUED = rf"({DECIMAL_PATTERN})((?![eE][+-]?[0-9])[A-Za-z].*)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +144,20 @@ class QuantityKind:
         for unit, advice in self.confusions.items():
             if parse_unit(unit).dimension == dimension:
                 return advice.format(value=value)
+        if self.is_about_commands:
+            return f"write {written_as(self.units).format(value=value)}"
         return f"write it in {' or '.join(self.units)}, such as {self.example!r}"
+
+    @property
+    def is_about_commands(self) -> bool:
+        """Whether its unit depends on what the motor takes."""
+        return all(any(command in unit for unit in self.units) for command in COMMAND_UNITS)
+
+
+def written_as(units: Sequence[str]) -> str:
+    """Return advice on units of which the motor decides; ``{value}`` is the number as written."""
+    written = (f"'{{value}} {unit}'" for unit in units)
+    return f"{' or '.join(written)}, whichever the motor takes"
 
 
 def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
@@ -187,7 +200,7 @@ def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
     if not kind.accepts(quantity.dimension):
         raise SpecError(
             f"{quoted(quantity.text)} is not {kind.name}, expected {' or '.join(kind.units)}",
-            remedy=kind.advice(quantity.text.partition(" ")[0], quantity.dimension),
+            remedy=kind.advice(_without_prefix(quantity), quantity.dimension),
         )
     if kind.rational and not quantity.is_exact:
         raise _irrational(quantity, kind)
@@ -197,6 +210,14 @@ def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:
             remedy=f"SI values between {SMALLEST:g} and {LARGEST:g} are read",
         )
     return quantity
+
+
+def _without_prefix(quantity: Quantity) -> str:
+    """Return the number to write where a unit is advised instead, all of which are plain."""
+    unit = parse_unit(quantity.unit)
+    if unit.pi_power or unit.factor == 1:
+        return quantity.text.partition(" ")[0]
+    return f"{quantity.si:.6g}"
 
 
 def _irrational(quantity: Quantity, kind: QuantityKind) -> SpecError:
@@ -220,8 +241,8 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
     remedy = f"write '{text} {unit}' if that is the unit meant"
     if kind.units == ("N*m/rad", "N/m"):
         remedy = f"write '{text} N/m' beside a lever_arm, '{text} N*m/rad' without one"
-    if kind.units == ("rpm", "V", "A", "counts"):
-        remedy = f"write '{text} V' or '{text} rpm', whichever the motor takes"
+    if kind.is_about_commands:
+        remedy = f"write {written_as(kind.units).format(value=text)}"
     if kind.units == ("m",):
         remedy = f"write '{text} mm' or '{text} m', whichever is meant"
     expected = " or ".join(kind.units)

@@ -150,7 +150,7 @@ def workspace_text(document: Mapping[str, Any]) -> str:
     return f"|phi| <= {phi} deg, |psi| <= {psi} deg, d from {low} to {high} mm"
 
 
-def bounds_of(spec: Path, named: str, at: Position) -> RobotBounds:
+def read_robot_bounds(spec: Path, named: str, at: Position) -> RobotBounds:
     """Read the bounds of the robot that a spec names.
 
     Parameters

@@ -252,7 +252,7 @@ def check_motor(
         if sampling is None and others and among_axes and name in loaded:
             raise fault(
                 "in continuous time, axes that act on each other are modelled for impedance "
-                f"controllers alone, and {others[0]!r} is none",
+                f"controllers alone, and {others[0]!r} is not one",
                 "prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`; or remove "
                 "coupling and load_inertia, or use impedance controllers",
                 "coupling",

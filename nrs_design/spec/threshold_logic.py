@@ -303,7 +303,7 @@ def shown_time(seconds: Fraction) -> DwellTime:
     return DwellTime(f"{exact_text(value)} s", value, "s")
 
 
-def reach(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> Mapping[str, float]:
+def values_at_switch(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> Mapping[str, float]:
     """Return how far the true value of each signal may have gone when a switch is made.
 
     That is where its condition is the last one to come true: the threshold, the noise, and what the

@@ -144,7 +144,9 @@ def assemble(
     elif coordinates in ("deflection", "force"):
         system = _assemble_continuous(spec, plant, design, coordinates, scale)
     else:
-        raise AssemblyError(f"unknown coordinates {coordinates!r}: deflection or force")
+        raise AssemblyError(
+            f"unknown coordinates {coordinates!r}", remedy="choose deflection or force"
+        )
     period = None if spec.sampling is None else spec.sampling.outer
     sensed = sensor_texts(
         design.sensor, period, disturbed=bool(system.channels) and period is not None

@@ -12,7 +12,7 @@ from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.switched import assumption_kinds as kinds
 from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.parameters import Parameter
+from nrs_design.switched.parameters import UncertainParameter
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -66,7 +66,7 @@ GIVEN_MATRICES = (
 
 
 def assume_matrices(
-    spec: SwitchedSystemSpec, parameters: Sequence[Parameter], scale: Fraction
+    spec: SwitchedSystemSpec, parameters: Sequence[UncertainParameter], scale: Fraction
 ) -> tuple[Assumption, ...]:
     """Say what holds for a `switched-system` spec.
 
@@ -74,7 +74,7 @@ def assume_matrices(
     ----------
     spec : SwitchedSystemSpec
         With the rules of switching.
-    parameters : sequence of Parameter
+    parameters : sequence of UncertainParameter
         Where they lie, already scaled.
     scale : Fraction
         By how much they are.
@@ -266,7 +266,7 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assu
         )
 
 
-def _parameter_text(parameter: Parameter) -> Assumption:
+def _parameter_text(parameter: UncertainParameter) -> Assumption:
     interval = parameter.interval
     if interval.low == interval.high:
         return kinds.RANGE.says(f"Parameter {parameter.name} is {exact_text(interval.low)}.")

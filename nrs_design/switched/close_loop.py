@@ -1,4 +1,12 @@
-"""Close the loop around every contact: the modes of one robot axis, in one state."""
+"""Close the loop around every contact: the modes of one robot axis, in one state.
+
+One mode for each controller and each corner of the box of its gains and of the parameters of each
+environment that it may touch. Every entry of A is affine in stiffness, in damping (or in one over
+it, as the law of the environment says) and in the gains (or in one over them, as the law of the
+controller says), and where the motor has ranges in its gain and in one over its time constant, each
+for itself, so A is a convex combination of the corners in the whole box, and what decreases in the
+corners decreases there, however fast the parameters move.
+"""
 
 from __future__ import annotations
 
@@ -42,14 +50,6 @@ def close_loop(
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
-    One mode for each controller and each corner of the box of its gains and of the parameters of
-    each environment that it may touch. Every entry of A is affine in stiffness, in damping (or in
-    one over it, as the law of the environment says) and in the gains (or in one over them, as the
-    law of the controller says), and where the motor has ranges in its gain and in one over its time
-    constant, each for itself, so A is a convex combination of the corners in
-    the whole box, and what decreases in the corners decreases there, however fast the parameters
-    move.
-
     Parameters
     ----------
     name : str
@@ -88,10 +88,7 @@ def close_loop(
     free = sprung and adds_free_motion(state, design, contact, rules)
     losable = None if sprung or contact == "kept" else lost_contact(state, design, boxes, contact)
     parts = {
-        controller.name: (
-            *_controller_modes(controller, plant, state, boxes[controller.name]),
-            *(free_modes(controller, state, boxes[controller.name]) if free else ()),
-        )
+        controller.name: tuple(_all_modes(controller, plant, state, boxes, free=free))
         for controller in design.controllers
     }
     if rules.names_contacts:
@@ -140,10 +137,16 @@ def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
     return found
 
 
-def _controller_modes(
-    controller: Controller, plant: Plant, state: SharedState, gains: GainBox
+def _all_modes(
+    controller: Controller,
+    plant: Plant,
+    state: SharedState,
+    boxes: Mapping[str, GainBox],
+    *,
+    free: bool,
 ) -> Iterator[Mode]:
-    law = controller.law
+    """Yield the modes of a controller in all its contacts, and free ones if they are asked for."""
+    law, gains = controller.law, boxes[controller.name]
     if not controller.contacts:
         yield Mode(controller.name, RationalMatrix.from_rows(state.placed(law)))
     for environment in map(plant.environment, controller.contacts):
@@ -151,3 +154,5 @@ def _controller_modes(
         box = state.contact_box(environment).beside(gains.box).beside(state.motor_box)
         for corner, rows in box.corners(partial(state.rows, law, environment), name):
             yield Mode(corner, RationalMatrix.from_rows(rows))
+    if free:
+        yield from free_modes(controller, state, gains)

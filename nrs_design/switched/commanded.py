@@ -9,7 +9,7 @@ from fractions import Fraction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import coordinates
-from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
@@ -108,7 +108,7 @@ def check_memory(touched: Sequence[Environment]) -> None:
 
 def outputs_of(
     states: Sequence[str],
-    motion: Realization | JointMotion,
+    motion: Realization | JointMotionLoop,
     spec: InteractionDesignSpec,
     touched: Sequence[Environment],
 ) -> tuple[Output, Output]:
@@ -118,7 +118,7 @@ def outputs_of(
     ----------
     states : sequence of str
         Names of the states.
-    motion : Realization or JointMotion
+    motion : Realization or JointMotionLoop
         The motion loop, whose states come first.
     spec : InteractionDesignSpec
         With the limit of the torque.
@@ -133,10 +133,10 @@ def outputs_of(
     )
 
 
-def _column(mode: Mode, motion: Realization | JointMotion) -> RationalMatrix:
+def _column(mode: Mode, motion: Realization | JointMotionLoop) -> RationalMatrix:
     """Return what a commanded velocity does to a mode; the motor is the one of its corner."""
     n = len(mode.A.numerators)
-    if isinstance(motion, JointMotion):
+    if isinstance(motion, JointMotionLoop):
         # The error drives the motor by Km Kp/tau, a command by Km Kd/tau.
         drive = Fraction(mode.A.numerators[1][0], mode.A.denominator) / motion.Kp
         column = [[Fraction(1)], [drive * motion.Kd]]
@@ -146,13 +146,13 @@ def _column(mode: Mode, motion: Realization | JointMotion) -> RationalMatrix:
 
 
 def force_rows(
-    motion: Realization | JointMotion, states: Sequence[str], touched: Sequence[Environment]
+    motion: Realization | JointMotionLoop, states: Sequence[str], touched: Sequence[Environment]
 ) -> Iterator[RationalMatrix]:
     """Yield the force, as a row over the states, of each corner of each contact.
 
     Parameters
     ----------
-    motion : Realization or JointMotion
+    motion : Realization or JointMotionLoop
         The motion loop, whose states come first.
     states : sequence of str
         Names of the states.

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.motion_loop import JointMotion
+from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import exact_text
@@ -28,7 +28,7 @@ class Joint:
     ranges : ActuatorRanges
         Where the motor may be.
     load_inertia : Fraction or None
-        The J of `nrs_design.models.motion_loop.JointMotion`.
+        The J of `nrs_design.models.motion_loop.JointMotionLoop`.
     """
 
     motion: ProportionalDerivative
@@ -49,12 +49,12 @@ class Joint:
         return Box({"Km": self.ranges.gain, "tau": self.ranges.time_constant}, frozenset({"tau"}))
 
     @property
-    def nominal(self) -> JointMotion:
+    def nominal(self) -> JointMotionLoop:
         """The loop that the design uses."""
         motor = self.ranges.nominal
         return self.at({"Km": motor.gain, "tau": motor.time_constant})
 
-    def at(self, values: Mapping[str, Fraction]) -> JointMotion:
+    def at(self, values: Mapping[str, Fraction]) -> JointMotionLoop:
         """Return the loop at the values of ``Km`` and ``tau``.
 
         Parameters
@@ -63,7 +63,7 @@ class Joint:
             By symbols; others are left alone.
         """
         gains = self.motion.Kp, self.motion.Kd
-        return JointMotion(*gains, values["Km"], values["tau"], self.load_inertia)
+        return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)
 
     def texts(self) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""

@@ -18,7 +18,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.matrix import RationalMatrix
 
 
-def check_mixture(coordinates: str, touched: tuple[Environment, ...]) -> None:
+def check_mixture_models(coordinates: str, touched: tuple[Environment, ...]) -> None:
     """Check that what is mixed has a model.
 
     Raises

@@ -17,14 +17,14 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import JointMotion, Realization
+from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.matrix import multiply
 
 Rows = list[LinearForm]
 
 
 def velocity_mode(
-    motion: Realization | JointMotion,
+    motion: Realization | JointMotionLoop,
     law: CompliantLaw,
     contact: AbstractLinearLaw,
     low_pass: LowPass | None = None,
@@ -35,7 +35,7 @@ def velocity_mode(
 
     Parameters
     ----------
-    motion : Realization or JointMotion
+    motion : Realization or JointMotionLoop
         The motion loop.
     law : CompliantLaw
         With its gains; it commands a velocity.
@@ -64,7 +64,7 @@ def velocity_mode(
 
 
 def _acceleration(
-    motion: Realization | JointMotion, law: CompliantLaw, state: Sequence[LinearForm]
+    motion: Realization | JointMotionLoop, law: CompliantLaw, state: Sequence[LinearForm]
 ) -> LinearForm:
     """Return the rate of the velocity, where the force does not act on it at once.
 
@@ -73,7 +73,7 @@ def _acceleration(
     AssemblyError
         If it does: the equations would be implicit.
     """
-    loaded = isinstance(motion, JointMotion) and motion.J is not None
+    loaded = isinstance(motion, JointMotionLoop) and motion.J is not None
     if not law.states or loaded:
         raise AssemblyError(
             "a hand, which has a mass, is not modelled for an admittance without virtual inertia, "
@@ -87,7 +87,7 @@ def _acceleration(
 
 
 def to_force_coordinates(
-    rows: Sequence[LinearForm], motion: Realization | JointMotion, contact: AbstractLinearLaw
+    rows: Sequence[LinearForm], motion: Realization | JointMotionLoop, contact: AbstractLinearLaw
 ) -> Rows:
     """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
 
@@ -95,7 +95,7 @@ def to_force_coordinates(
     ----------
     rows : sequence of LinearForm
         A in deflection coordinates.
-    motion : Realization or JointMotion
+    motion : Realization or JointMotionLoop
         The motion loop.
     contact : AbstractLinearLaw
         Of the environment, at fixed parameters.

@@ -76,7 +76,7 @@ def to_motion(rows: Rows, motion: Realization) -> Rows:
     return [*multiply(multiply(T, rows), inverse)]
 
 
-def names_of(order: int) -> tuple[str, ...]:
+def state_names(order: int) -> tuple[str, ...]:
     """Return the names of these states."""
     return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
 

@@ -22,7 +22,7 @@ Rows = Sequence[Sequence[Fraction]]
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class UncertainParameter:
     """An uncertain number.
 
     Parameters
@@ -56,15 +56,15 @@ class Corner:
     end: str = ""
 
 
-def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[Parameter, ...]:
+def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[UncertainParameter, ...]:
     """Return the parameters of a spec, their ranges scaled about the nominal values."""
     return tuple(
-        Parameter(name, Interval(p.nominal, *p.range).scaled(scale), p.varies)
+        UncertainParameter(name, Interval(p.nominal, *p.range).scaled(scale), p.varies)
         for name, p in spec.parameters.items()
     )
 
 
-def fixed_parameter(parameters: Sequence[Parameter]) -> FixedParameter | None:
+def fixed_parameter(parameters: Sequence[UncertainParameter]) -> FixedParameter | None:
     """Return the parameter that is unknown but constant, if there is one."""
     for name, interval, varies in ((p.name, p.interval, p.varies) for p in parameters):
         if not varies and interval.low != interval.high:
@@ -73,7 +73,7 @@ def fixed_parameter(parameters: Sequence[Parameter]) -> FixedParameter | None:
 
 
 def corner_modes(
-    mode: ModeSpec, parameters: Sequence[Parameter]
+    mode: ModeSpec, parameters: Sequence[UncertainParameter]
 ) -> tuple[tuple[Mode, ...], tuple[Corner, ...]]:
     """Return the corners of one mode.
 
@@ -81,7 +81,7 @@ def corner_modes(
     ----------
     mode : ModeSpec
         With entries that are affine in the parameters.
-    parameters : sequence of Parameter
+    parameters : sequence of UncertainParameter
         All parameters of the spec. Those that the mode does not depend on make no corners, except
         the constant one: its two ends make pairs in every mode.
 

@@ -97,6 +97,9 @@ class Frame:
         admittance is computed.
     """
 
+    # Asked for at every corner of every box, and made once for a loop.
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
     period: Fraction
     motion: SampledMotion
     has_inertia: bool

@@ -16,7 +16,7 @@ from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.matrix import RationalMatrix
@@ -28,6 +28,8 @@ from nrs_design.switched.assumption_kinds import LIMITED
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
 
+# States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
+_ERROR, _OMEGA = 0, 1
 _FILTERED = (
     " Where a motion begins with a contact force, the filter shows none of it, all of it, or any "
     "part, each lag the same."
@@ -57,6 +59,7 @@ def with_saturation(
         Gains that ship.
     """
     assert spec.goals is not None  # it is asked for
+    assert spec.goals.initial_force is not None
     assert spec.limits.command is not None
     joint = Joint.of(plant, design.motion)
     motion = realize(loop) if joint is None else joint.nominal
@@ -90,10 +93,11 @@ def with_saturation(
         "contact force",
         "N*m",
         tuple(_rest(system.states, plant.among(design.contacts), design.sensor.filter)),
-        None if wanted is None or isinstance(wanted, str) else wanted.exact,
+        None if isinstance(wanted, str) else wanted.exact,
     )
-    modelled: dict[str, str] = {NOT_MODELLED: NOT_MODELLED_BUT_LIMITS}
-    texts = (modelled.get(text, text) for text in system.assumptions)
+    texts = (
+        NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
+    )
     filtered = "" if design.sensor.filter is None else _FILTERED
     limited = LIMITED.says(
         "Where signals saturate: the velocity command of the admittance is cut off at "
@@ -108,11 +112,11 @@ def with_saturation(
 
 
 def _physical(
-    motion: Realization | JointMotion, n: int
+    motion: Realization | JointMotionLoop, n: int
 ) -> tuple[LinearForm, LinearForm, tuple[LinearForm, LinearForm]]:
     """Return e and omega as forms of the state, and what a change of each is in the state."""
     omega, unit = motion.output(n), coordinates(n)
-    error = unit[0] if isinstance(motion, JointMotion) else motion.integral(zero(n))
+    error = unit[_ERROR] if isinstance(motion, JointMotionLoop) else motion.integral(zero(n))
     (a, b), (c, d) = error[:2], omega[:2]
     determinant = a * d - b * c
     rest = zero(n - 2)
@@ -121,17 +125,17 @@ def _physical(
     return error, omega, (first, second)
 
 
-def _command(mode: Mode, motion: Realization | JointMotion) -> LinearForm:
+def _command(mode: Mode, motion: Realization | JointMotionLoop) -> LinearForm:
     """Return the velocity that the law commands in a mode: what drives its motion loop."""
     n, A = len(mode.A.numerators), mode.A.fractions()
     still = motion.rates(zero(n))
-    k = 0 if isinstance(motion, JointMotion) else motion.order - 1
+    k = _ERROR if isinstance(motion, JointMotionLoop) else motion.order - 1
     return combine((Fraction(1), A[k]), (Fraction(-1), still[k]))
 
 
 def _drive(mode: Mode, Kp: Fraction) -> Fraction:
-    """Return what a command accelerates in a mode: the error drives the motor by Km Kp/tau."""
-    return Fraction(mode.A.numerators[1][0], mode.A.denominator) / Kp
+    """Return Km/tau of a mode in the physical state, where the error accelerates by Km Kp/tau."""
+    return mode.A.fractions()[_OMEGA][_ERROR] / Kp
 
 
 def _rest(
@@ -148,7 +152,7 @@ def _rest(
     return [
         _column(combine((1 / stiffness, unit[-1]), (Fraction(1), shown)))
         for environment in touched
-        for stiffness in (environment.stiffness.low, environment.stiffness.high)
+        for _, stiffness in environment.stiffness.ends
         for shown in sensed
     ]
 

@@ -15,14 +15,14 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractLinearLaw
-from nrs_design.models.motion_loop import JointMotion, MotionLoop, Realization, realize
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.noun import dataclass
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.joint import Joint
-from nrs_design.switched.mixture import check_mixture
+from nrs_design.switched.mixture import check_mixture_models
 from nrs_design.switched.modes import (
     Rows,
     position_mode,
@@ -31,7 +31,7 @@ from nrs_design.switched.modes import (
     with_idle,
     with_memories,
 )
-from nrs_design.switched.offset import names_of, to_motion
+from nrs_design.switched.offset import state_names, to_motion
 from nrs_design.switched.parameter_box import Box
 
 # What impedance controllers in a mixture integrate their velocity to.
@@ -56,7 +56,7 @@ class SharedState:
     bleeding: tuple[str, ...] = ()
 
     @property
-    def motion(self) -> Realization | JointMotion:
+    def motion(self) -> Realization | JointMotionLoop:
         """The motion loop at its nominal values."""
         return self.realization if self.joint is None else self.joint.nominal
 
@@ -65,7 +65,7 @@ class SharedState:
         """Where the motor may be."""
         return Box({}) if self.joint is None else self.joint.box
 
-    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotion:
+    def motion_at(self, values: Mapping[str, Fraction]) -> Realization | JointMotionLoop:
         """Return the motion loop at the values of the motor."""
         return self.realization if self.joint is None else self.joint.at(values)
 
@@ -84,7 +84,7 @@ class SharedState:
     def names(self) -> tuple[str, ...]:
         """Names of the states, with units where there are any."""
         if self.offset != "none":
-            return names_of(self.realization.order)
+            return state_names(self.realization.order)
         inner = self.motion.states
         if self.idle is not None:
             inner = tuple(f"xi{i + 1}" for i in range(len(inner)))
@@ -199,7 +199,7 @@ def shared_state(
     _check_coordinates(coordinates, touched)
     _check_spring(coordinates, touched, design)
     if idle is not None:
-        check_mixture(coordinates, touched)
+        check_mixture_models(coordinates, touched)
     shared = _shared_law(design, mixed=idle is not None)
     joint = Joint.of(plant, design.motion)
     if joint is not None and (idle is not None or shared.commands != "velocity"):

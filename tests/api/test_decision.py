@@ -12,9 +12,26 @@ def test_save_and_verify(tmp_path):
     file = nrs.certify(pair(6), name="pair").save(tmp_path)
     assert file == tmp_path / "pair.cert.json"
     assert nrs.verify(file, tmp_path / "pair.nrs.yaml").fault is None
+    assert nrs.verify(file)
     other = nrs.certify(pair(5), name="pair")
     other.save(tmp_path / "other")
     assert nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml").fault is not None
+    assert not nrs.verify(file, tmp_path / "other" / "pair.nrs.yaml")
+    altered = tmp_path / "altered.cert.json"
+    altered.write_text(file.read_text().replace('"name": "pair"', '"name": "pear"', 1))
+    assert "altered" in nrs.verify(altered).fault
+    assert not nrs.verify(altered)
+
+
+def test_a_decision_is_told_in_a_line():
+    """As the prompt of Python shows it."""
+    assert repr(nrs.certify(pair(6), name="pair")) == "<Decision on pair: proved>"
+
+
+def test_a_page_is_no_pdf(tmp_path):
+    with pytest.raises(OutputError, match="not the name of a page"):
+        nrs.certify([[[-1]]]).report(tmp_path / "page.pdf")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_file_is_no_folder(tmp_path):

@@ -1,13 +1,15 @@
 """What is decided about matrices of the user's own."""
 
+from decimal import Decimal
 from fractions import Fraction
 
 import control
+import cvxpy as cp
 import numpy as np
 import pytest
 
 import nrs_design as nrs
-from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.errors import DesignError, NrsDesignError, SpecError
 from tests.api.pairs import ROTATION, pair
 
 
@@ -96,6 +98,10 @@ def test_names_may_be_numbers():
         (([[[float("nan")]]],), "not a finite"),
         (([[[1]], [[1, 0], [0, 1]]],), "states"),
         (({"a b": [[1]]},), "not a name"),
+        ((None,), "not a list of matrices"),
+        (("mine.nrs.yaml",), "a text, not a list"),
+        (([control.tf([1], [1, 1])],), r"m1 is not a matrix .*control\.ss"),
+        (([[[Decimal("NaN")]]],), "NaN"),
     ],
 )
 def test_wrong_input_is_told_in_words(arguments, said):
@@ -120,6 +126,30 @@ def test_wrong_options():
     for transitions in (["m1", "m2"], "m1"):
         with pytest.raises(SpecError, match="expected two names"):
             nrs.certify([[[-1]], [[-2]]], transitions=transitions)
+    for resets in ({"m1": [[1]]}, [("m1", "m2", [[1]])]):
+        with pytest.raises(SpecError, match="named by two modes"):
+            nrs.certify([[[-1]], [[-2]]], resets=resets)
+    for option in ({"budget": -1}, {"budget": float("nan")}, {"max_degree": 0}):
+        with pytest.raises(DesignError, match=f"{next(iter(option))} is"):
+            nrs.certify([[[-1]]], **option)
+
+
+def test_a_variable_of_cvxpy_is_told_from_its_value():
+    P = cp.Variable((2, 2), symmetric=True)
+    with pytest.raises(SpecError, match="P is not a matrix") as caught:
+        nrs.check_lyapunov(pair(5), P)
+    assert "give its .value" in caught.value.remedy
+    P.value = np.diag([1.0, 5.0])
+    assert nrs.check_lyapunov(pair(5), P.value).holds
+
+
+def test_what_a_condition_takes_for_true():
+    """``if nrs.certify(...)`` asks for a proof."""
+    assert nrs.certify([[[-1]]])
+    assert not nrs.certify([[[1]]])
+    assert not nrs.certify(pair(6), method="lmi")
+    assert nrs.check_lyapunov(pair(5), [[1, 0], [0, 5]])
+    assert not nrs.check_lyapunov(pair(5), np.eye(2))
 
 
 @pytest.mark.parametrize(
@@ -148,3 +178,17 @@ def test_check_lyapunov_says_where_it_fails():
     ):
         with pytest.raises(NrsDesignError, match=said):
             nrs.check_lyapunov(pair(5), P)
+
+
+@pytest.mark.parametrize("time", ["continuous", "discrete"])
+def test_a_constant_parameter_beside_modes_of_unequal_size(time):
+    """No function that is affine in it is looked for; that ended in an IndexError."""
+    decision = nrs.certify(
+        {"a": [["-k", 0], [0, "-k"]], "b": [["-k"]]},
+        time=time,
+        resets={("a", "b"): [["1/2", 0]], ("b", "a"): [["1/2"], [0]]},
+        parameters={"k": {"nominal": "1/2", "range": ("1/3", "2/3"), "varies": False}},
+        budget=2,
+    )
+    assert decision.verdict in ("proved", "inconclusive")
+    assert "parameter quadratic" not in {attempt.step for attempt in decision.attempts}

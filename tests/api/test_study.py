@@ -1,5 +1,7 @@
 """What can be done with a spec file."""
 
+import json
+
 import pytest
 
 import nrs_design as nrs
@@ -11,6 +13,27 @@ from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 def test_unknown_method():
     with pytest.raises(DesignError, match="no method 'foo'"):
         nrs.certify(pair(6), method="foo")
+
+
+def test_the_search_goes_as_far_as_the_spec_says(tmp_path):
+    """Like `certify-switching`: a polynomial function of degree 4 would prove it."""
+    path = nrs.certify(pair(6), name="pair").save(tmp_path).with_name("pair.nrs.yaml")
+    document = json.loads(path.read_text())
+    short = document | {"certification": {"budget": "1e-9 s"}}
+    path.write_text(json.dumps(short))
+    study = nrs.load(path)
+    assert repr(study) == "<Study of pair, switched-system>"
+    assert study.certify().verdict == "inconclusive"
+    assert study.certify(budget=60).verdict == "proved"
+
+
+def test_options_of_runs_are_checked():
+    study = nrs.load(SOFT_TISSUE)
+    for options, said in (({"period": 0}, "the period"), ({"delay": -1}, "the delay")):
+        with pytest.raises(DesignError, match=said):
+            study.simulate(**options)
+    with pytest.raises(DesignError, match="has no name"):
+        study.simulate(["one", "two"])
 
 
 def test_a_study_of_a_spec(tmp_path):

@@ -120,3 +120,16 @@ def test_report(tmp_path, ending, stiffness, code):
     done = run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path)
     assert done.returncode == code, done.stderr
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [
+        ("3000 rpm", "below 3000 rpm"),
+        ("24 V", "is in V, and the motor of the spec takes rpm"),
+        ("3000rpm", "unit"),
+    ],
+)
+def test_the_limit_of_the_driver_has_a_unit(tmp_path, limit, said):
+    done = run("audit", write(tmp_path), SOFT_TISSUE, "--command-limit", limit, cwd=tmp_path)
+    assert said in done.stdout + done.stderr

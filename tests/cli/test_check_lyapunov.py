@@ -56,6 +56,14 @@ def test_discrete(tmp_path):
     assert "rho <= 0.500001" in done.stdout
 
 
+def test_an_option_does_not_turn_a_rate_in_one_over_seconds_into_one_per_step(tmp_path):
+    file = tmp_path / "a.json"
+    file.write_text('{"A": [["-0.3"]], "P": [[1]], "rate": "0.4", "time": "continuous"}')
+    done = run("check-lyapunov", file, "--discrete", cwd=tmp_path)
+    assert done.returncode == 2, done.stdout
+    assert "its time is continuous" in done.stderr
+
+
 def test_wrong_input(tmp_path):
     for name in ("missing.mat", "missing.txt"):
         done = run("check-lyapunov", name, cwd=tmp_path)

@@ -10,13 +10,13 @@ from nrs_design.cli.margins_summary import loop_summary
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines
-from nrs_design.search.loop_margin import Bracket, CommandMargin, LoopMargins
+from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE, run
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 THIRD = Fraction(1, 3)
-FOUND = LoopMargins(
+FOUND = MarginBrackets(
     Bracket(Fraction(2), None, "none is refuted: the search ends"),
     Bracket(None, THIRD),
     CommandMargin(Fraction(3, 10), {"command": (THIRD, THIRD, "rad/s")}),
@@ -36,7 +36,7 @@ def test_doubles_stay_on_the_side_that_is_true():
     assert Fraction(summary["period"]["refuted"]) >= THIRD
     (kept,) = summary["force_limit"]["disturbances"]
     assert Fraction(kept["kept_up_to"]) < THIRD < Fraction(kept["broken_in_simulation_at"])
-    assert loop_summary(LoopMargins(None, None, None)) == {}
+    assert loop_summary(MarginBrackets(None, None, None)) == {}
 
 
 def test_what_is_not_found_is_said():

@@ -89,3 +89,10 @@ def test_the_torque_stays_below_the_limit_when_force_control_takes_over(tmp_path
     assert document["switches"][0]["reach"]["torque"] == pytest.approx(0.2968)
     assert document["used_in_proof"] is False
     assert "switching is arbitrary" in run("mode-logic", path, cwd=tmp_path).stdout
+
+
+def test_a_run_says_that_no_estimator_is_in_it(tmp_path):
+    found = run("simulate", UNKNOWN, "--json", cwd=tmp_path)
+    assert found.returncode == 0, found.stderr
+    (simulated,) = json.loads(found.stdout)["runs"]
+    assert any("the estimator of the mode logic" in line for line in simulated["not_modelled"])

@@ -79,16 +79,34 @@ def test_pdf_and_its_default_name(tmp_path, monkeypatch):
     assert (tmp_path / "reports/commuting.pdf").read_bytes().startswith(b"%PDF-")
 
 
+@pytest.mark.parametrize(
+    ("out", "said"),
+    [
+        (("--out", "page.txt"), ".txt is not a type of report"),
+        (("--out", "page.png"), "--format png takes a folder"),
+        (("--format", "png", "--out", "page.png"), "takes a folder"),
+        (("--format", "pdf", "--out", "page.html"), "ends in .html, and --format pdf"),
+        (("--format", "html", "--out", "page.PDF"), "ends in .pdf, and --format html"),
+    ],
+)
+def test_a_file_ends_as_its_format(tmp_path, monkeypatch, out, said):
+    monkeypatch.chdir(tmp_path)
+    refused = run(COMMUTING, *out)
+    assert isinstance(refused.exception, OutputError)
+    assert said in str(refused.exception) + refused.exception.remedy
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("name", ["c.html", pytest.param("c.pdf", marks=pytest.mark.slow)])
 def test_a_date_is_written_only_if_given(tmp_path, name):
     out = tmp_path / name
     pages = []
     for dates in ([], ["--date", "2026-03-01"]):
-        kind = ["--format", out.suffix[1:]]
-        assert run(COMMUTING, "--out", str(out), *kind, *dates).exit_code == 0
+        assert run(COMMUTING, "--out", str(out), *dates).exit_code == 0
         pages.append(out.read_bytes())
     assert pages[0] != pages[1]
     assert b"2026-03-01" not in pages[0]
+    assert all(page.startswith(b"%PDF-") == (out.suffix == ".pdf") for page in pages)
 
 
 def test_a_wrong_date_is_refused():

@@ -8,7 +8,7 @@ import pytest
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.shipped import limits_of, shipped_law
+from nrs_design.controllers.shipped import shipped_law, step_limits
 from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.controllers.step_parts import BEYOND
@@ -44,7 +44,7 @@ def test_limits_come_from_the_spec_and_are_not_above_it(tmp_path):
         "disturbances: {largest_angle: 20 deg}\n",
         ("bandwidth: 2 Hz", "bandwidth: 2 Hz\n  command: 3333.3 rpm"),
     )
-    limits = limits_of(found.spec)
+    limits = step_limits(found.spec)
     pi_below = Fraction(314159265, 10**8)
     # One step of single precision is a part in 2^23 at most.
     for value, written in (
@@ -67,7 +67,7 @@ def test_limits_come_from_the_spec_and_are_not_above_it(tmp_path):
 
 def test_without_limits_inputs_are_held_against_nonsense_only(tmp_path):
     found = run_design(read_spec(SOFT_TISSUE))
-    limits = limits_of(found.spec)
+    limits = step_limits(found.spec)
     assert (limits.angle, limits.command) == (BEYOND, None)
     assert law_of(found).outputs == {"command": "command"}
 

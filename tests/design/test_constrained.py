@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.goals import Requirement, corners_of
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance, stabilizes
+from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at, stabilizes
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
@@ -91,7 +91,7 @@ def on_grid(goals, Mt, Bt, slack):
                 allowed &= gains.min(axis=1) >= goal * (1 + slack)
             else:
                 for i in np.flatnonzero(allowed):
-                    Z = np.abs(displayed_impedance(loop, Mt[i], Bt[i], band))
+                    Z = np.abs(displayed_impedance_at(loop, Mt[i], Bt[i], band))
                     error = max(Z.max() / HALF, HALF / Z.min())
                     allowed[i] = error <= goal * (1 - slack)
     return allowed

@@ -12,7 +12,7 @@ from nrs_design.design.enclosed_polynomial import (
     multiply,
     negative,
     numbers,
-    shortened,
+    rounded_outwards,
 )
 
 fractions = st.fractions(-9, 9, max_denominator=50)
@@ -44,12 +44,12 @@ def test_sums_and_products_hold_those_of_members(P, Q, picks, x):
             longer[i] += a
     assert inside(longer, add(P, Q))
     assert inside([-a for a in one], [negative(a) for a in P])
-    assert inside(one, shortened(P))
+    assert inside(one, rounded_outwards(P))
 
 
 def test_shortened_goes_outwards():
     third, exact = Fraction(1, 3), Fraction(5, 2**40)
-    ((low, high), (down, up), same, zero) = shortened(
+    ((low, high), (down, up), same, zero) = rounded_outwards(
         [(third, third), (-third, -third), (exact, exact), (Fraction(0), Fraction(0))]
     )
     assert low < third < high

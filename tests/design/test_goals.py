@@ -13,7 +13,7 @@ from nrs_design.design.goals import (
     achieve_impedance,
     corners_of,
 )
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance
+from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at
 from nrs_design.design.margins import loop_margins
 from nrs_design.design.measures import (
     DELAY_MARGIN,
@@ -68,7 +68,7 @@ def test_the_impedance_error_is_taken_in_the_environment_of_the_design_only():
     omega = np.linspace(0, 4 * math.pi, 20_001)
     errors = []
     for k in (43.0, 41.5, 44.25):
-        Z = np.abs(displayed_impedance(ImpedanceLoop(EXACT, Elastic(k)), 0.01, 2.15, omega))
+        Z = np.abs(displayed_impedance_at(ImpedanceLoop(EXACT, Elastic(k)), 0.01, 2.15, omega))
         errors.append(max(Z.max() / 2.15, 2.15 / Z.min()))
     assert found.value == pytest.approx(max(errors), rel=1e-6)
     assert found.where.startswith("soft, ")

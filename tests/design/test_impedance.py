@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from nrs_design.design.impedance import (
     ImpedanceLoop,
-    characteristic_polynomial,
-    displayed_impedance,
+    closed_loop_polynomial,
+    displayed_impedance_at,
     open_loop,
     sensitivity,
     stabilizes,
@@ -29,10 +29,12 @@ def test_displayed_impedance_and_sensitivity_close_the_loop():
     Ze = SOFT / (1j * omega) + 0.4
     Y = 1 / (0.01 * 1j * omega + 2.15)
     assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + G * Ze * Y))
-    assert displayed_impedance(loop, 0.01, 2.15, omega) == pytest.approx(G * Ze / (1 + G * Ze * Y))
+    assert displayed_impedance_at(loop, 0.01, 2.15, omega) == pytest.approx(
+        G * Ze / (1 + G * Ze * Y)
+    )
     assert frequency_response(open_loop(loop, 0.01, 2.15), omega) == pytest.approx(G * Ze * Y)
     # In steady contact the robot shows its virtual damping, and the loop gain is infinite.
-    assert displayed_impedance(loop, 0.01, 2.15, 0.0) == pytest.approx(2.15)
+    assert displayed_impedance_at(loop, 0.01, 2.15, 0.0) == pytest.approx(2.15)
     assert sensitivity(loop, 0.01, 2.15, 0.0) == 0
 
 
@@ -47,14 +49,14 @@ def test_displayed_impedance_and_sensitivity_close_the_loop():
 def test_characteristic_polynomial_has_the_known_eigenvalues(Bt, expected):
     # Ap of the thesis: (tau s^2 + ... )/tau = s^2 + 56.89 s + 1618.80, Cp = [1618.80, 28.416].
     motion = TransferFunction((28.416, 1618.80), (1.0, 56.89, 1618.80))
-    roots = np.roots(characteristic_polynomial(ImpedanceLoop(motion, Elastic(SOFT)), 0.01, Bt))
+    roots = np.roots(closed_loop_polynomial(ImpedanceLoop(motion, Elastic(SOFT)), 0.01, Bt))
     assert np.sort_complex(roots) == pytest.approx(np.array(expected), rel=2e-3)
 
 
 def test_characteristic_polynomial_without_mass_has_one_degree_less():
     loop = ImpedanceLoop(EXACT, Elastic(SOFT))
-    light = np.roots(characteristic_polynomial(loop, 1e-9, 2.15))
-    none = np.roots(characteristic_polynomial(loop, 0.0, 2.15))
+    light = np.roots(closed_loop_polynomial(loop, 1e-9, 2.15))
+    none = np.roots(closed_loop_polynomial(loop, 0.0, 2.15))
     assert len(none) == 3
     slow = np.sort_complex(light[np.abs(light) < 1e6])
     assert slow == pytest.approx(np.sort_complex(none), rel=1e-5)
@@ -68,7 +70,7 @@ def test_characteristic_polynomial_without_mass_has_one_degree_less():
 )
 def test_stability_agrees_with_computed_roots(Mt, Bt, stiffness, damping):
     loop = ImpedanceLoop(EXACT, KelvinVoigt(stiffness, damping))
-    rightmost = np.roots(characteristic_polynomial(loop, Mt, Bt)).real.max()
+    rightmost = np.roots(closed_loop_polynomial(loop, Mt, Bt)).real.max()
     assume(abs(rightmost) > 1e-6)
     assert bool(stabilizes(loop, Mt, Bt)) == (rightmost < 0)
 
@@ -82,7 +84,7 @@ def test_loop_refuses_bad_input(stiffness, damping):
 @pytest.mark.parametrize(("Mt", "Bt"), [(-0.1, 1.0), (0.1, 0.0), (math.nan, 1.0)])
 def test_admittance_refuses_bad_input(Mt, Bt):
     loop = ImpedanceLoop(PRINTED, Elastic(SOFT))
-    for call in (characteristic_polynomial, open_loop):
+    for call in (closed_loop_polynomial, open_loop):
         with pytest.raises(DesignError, match="Mt >= 0 and Bt > 0"):
             call(loop, Mt, Bt)
 
@@ -104,7 +106,7 @@ def test_loop_in_viscoelastic_contact(contact, Ze):
     G, Y = frequency_response(EXACT, omega), 1 / (0.01 * 1j * omega + 2.15)
     L = G * Ze(1j * omega) * Y
     assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + L), rel=1e-4)
-    displayed = displayed_impedance(loop, 0.01, 2.15, omega)
+    displayed = displayed_impedance_at(loop, 0.01, 2.15, omega)
     assert displayed == pytest.approx(L / Y / (1 + L), rel=1e-4)
 
 
@@ -130,7 +132,7 @@ class TestSpring:
         L = forward * Y
         assert frequency_response(open_loop(self.loop, 0.01, 1.04), self.omega) == pytest.approx(L)
         assert sensitivity(self.loop, 0.01, 1.04, self.omega) == pytest.approx(1 / (1 + L))
-        displayed = displayed_impedance(self.loop, 0.01, 1.04, self.omega)
+        displayed = displayed_impedance_at(self.loop, 0.01, 1.04, self.omega)
         assert displayed == pytest.approx(forward / (1 + L))
 
     def test_poles_are_those_that_python_control_closes(self):
@@ -140,7 +142,7 @@ class TestSpring:
         Ze = (0.3 * s + SOFT) / s
         Y = s / (0.01 * s**2 + 1.04 * s + 0.8)
         wanted = np.sort_complex(control.feedback(G * Ze * Y, 1).poles())
-        found = np.roots(characteristic_polynomial(self.loop, 0.01, 1.04))
+        found = np.roots(closed_loop_polynomial(self.loop, 0.01, 1.04))
         assert np.sort_complex([*found, 0]) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
 
     def test_what_has_no_rest_position_has_no_spring(self):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.design.impedance import (
     ImpedanceLoop,
-    displayed_impedance,
+    displayed_impedance_at,
     sensitivity,
     stabilizes,
 )
@@ -51,7 +51,7 @@ def make_problem(stiffness=SOFT, desired=DESIRED, least=0.0, motion=PRINTED, **c
 def reference_cost(problem, Mt, Bt, nodes):
     """Thesis 6.4-6.7 term by term, with the midpoint rule."""
     omega = (np.arange(nodes) + 0.5) * problem.bandwidth / nodes
-    displayed = np.abs(displayed_impedance(problem.loop, Mt, Bt, omega))
+    displayed = np.abs(displayed_impedance_at(problem.loop, Mt, Bt, omega))
     robust = np.abs(sensitivity(problem.loop, Mt, Bt, omega))
     first = np.mean(np.abs(math.log10(problem.desired) - np.log10(displayed)))
     return problem.weight_displayed * first + problem.weight_sensitivity * np.mean(robust)
@@ -228,7 +228,7 @@ def test_cost_in_viscoelastic_contact_is_the_mean_of_its_parts():
     contact = KelvinBoltzmann(0.233, 0.972, 23.631)
     problem = replace(make_problem(), loop=ImpedanceLoop(EXACT, contact), desired=0.1)
     omega = np.linspace(0, BANDWIDTH, 200_001)[1:]
-    shown = np.abs(displayed_impedance(problem.loop, 0.001, 0.09, omega))
+    shown = np.abs(displayed_impedance_at(problem.loop, 0.001, 0.09, omega))
     robust = np.abs(sensitivity(problem.loop, 0.001, 0.09, omega))
     expected = 0.5 * np.abs(np.log10(0.1 / shown)).mean() + 0.5 * robust.mean()
     assert float(impedance_cost(problem, 0.001, 0.09)) == pytest.approx(expected, abs=2e-4)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance, open_loop
-from nrs_design.design.loops import Loops, extremes, multiply
+from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at, open_loop
+from nrs_design.design.loops import Loops, gain_extremes, multiply
 from nrs_design.design.margins import loop_margins
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
@@ -80,8 +80,8 @@ def test_extremes_of_the_displayed_impedance_are_those_of_a_grid(Mt):
     Bt, bandwidth = 2.15, 40.0
     batch = rows(loop, [(Mt, Bt)])
     displayed = multiply(batch.numerator, np.array([[Mt, Bt]]))
-    low, high = extremes(displayed, batch.closed, bandwidth)
-    grid = np.abs(displayed_impedance(loop, Mt, Bt, np.linspace(0, bandwidth, 40_001)))
+    low, high = gain_extremes(displayed, batch.closed, bandwidth)
+    grid = np.abs(displayed_impedance_at(loop, Mt, Bt, np.linspace(0, bandwidth, 40_001)))
     assert low[0] == pytest.approx(grid.min(), rel=1e-6)
     assert high[0] == pytest.approx(grid.max(), rel=1e-6)
     assert low[0] <= grid.min() * (1 + 1e-12)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from nrs_design.design.impedance import (
     ImpedanceLoop,
-    characteristic_polynomial,
+    closed_loop_polynomial,
     open_loop,
     stabilizes,
 )
@@ -32,7 +32,7 @@ def bisect_limit(motion, damping, Mt, Bt, high=1e7):
 
     def stable(k):
         roots = np.roots(
-            characteristic_polynomial(ImpedanceLoop(motion, KelvinVoigt(k, damping)), Mt, Bt)
+            closed_loop_polynomial(ImpedanceLoop(motion, KelvinVoigt(k, damping)), Mt, Bt)
         )
         return roots.real.max() < 0
 

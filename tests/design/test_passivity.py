@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.passivity import passive_band, positive_roots, real_part
+from nrs_design.design.passivity import count_positive_roots, passive_band, real_part
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.reproduction import thesis
 
@@ -46,7 +46,7 @@ def test_the_robot_of_the_thesis(Mt, Bt, hertz):
 def test_roots_are_counted_once():
     """(x - 1)^2 (x - 2) (x + 3)"""
     P = [Fraction(int(c)) for c in np.poly([1, 1, 2, -3]).round()]
-    counts = [positive_roots(P, Fraction(end)) for end in ("1/2", "1", "3/2", "2", "9")]
+    counts = [count_positive_roots(P, Fraction(end)) for end in ("1/2", "1", "3/2", "2", "9")]
     assert counts == [0, 1, 1, 2, 2]
 
 

@@ -1,13 +1,17 @@
 """What combines in one spec: the table says what reading and assembling do."""
 
+from xml.etree import ElementTree
+
 import pytest
-from making.combinations import FEATURES, Answer, combinations_table, pair_of, pairs, spec_of
+from making.combinations import FEATURES, Answer, pair_of, pairs, spec_of
+from making.combinations_page import combinations_tables
 
 from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design
 from nrs_design.spec import parse_spec, read_spec
 
+SIGNS = {Answer.TOGETHER: "", Answer.LISTED: "L", Answer.ALTERNATIVES: "/"}
 NAMED = {item.name: item for item in FEATURES}
 
 
@@ -22,6 +26,7 @@ def test_every_feature_is_read_alone(feature):
         ("sampling", "contact that is lost", Answer.TOGETHER, ""),
         ("varying delay", "axes that act on each other", Answer.TOGETHER, ""),
         ("two periods", "contact that is lost", Answer.TOGETHER, ""),
+        ("damped tissue", "decay although signals saturate", Answer.TOGETHER, ""),
         ("two periods", "velocity command", Answer.LISTED, ""),
         ("two periods", "axes that act on each other", Answer.LISTED, ""),
         ("two periods", "dwell times", Answer.REFUSED, "rules of switching beside"),
@@ -67,7 +72,22 @@ def test_every_pair_that_combines_makes_a_system_and_no_other(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_table_names_every_feature():
-    table = combinations_table()
-    assert all(f"| {item.name} | `{item.key}` |" in table for item in FEATURES)
-    assert "in the sampled loop, soft remembers" in table
+def test_the_page_says_what_comes_of_every_pair():
+    every = pairs()
+    grid, _, reasons = combinations_tables(every).partition("\n\n")
+    rows = [list(row)[1:] for row in ElementTree.fromstring(grid).iter("tr")][1:]
+    said = dict(line.split(" | ", 1) for line in reasons.splitlines()[2:])
+    names = [item.name for item in FEATURES]
+    for pair in every:
+        (i, one), (j, other) = ((names.index(item.name), item.name) for item in pair.features)
+        sign = "".join(rows[i][j].itertext())
+        assert sign == "".join(rows[j][i].itertext())
+        if pair.answer is not Answer.REFUSED:
+            assert sign == SIGNS[pair.answer]
+            continue
+        some, others, why, remedy = said[f'| <span id="refused-{sign}">{sign}</span>'].split(" | ")
+        assert (why, remedy) == (pair.why, f"{pair.remedy} |")
+        assert any(
+            a in some.split(", ") and b in others.split(", ")
+            for a, b in ((one, other), (other, one))
+        )

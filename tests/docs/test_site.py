@@ -4,6 +4,7 @@ import re
 
 from ruamel.yaml import YAML
 
+from nrs_design.proof.evidence import KINDS
 from tests.docs.pages import DOCS, text_of
 from tests.support import ROOT
 
@@ -29,6 +30,15 @@ def test_navigation_has_four_kinds():
 def test_no_page_is_named_twice():
     named = list(pages_in(NAV))
     assert len(named) == len(set(named)) > 60
+
+
+def test_every_kind_of_evidence_has_its_page_and_its_row():
+    rows = re.findall(
+        r"^\| `([\w-]+)` \| .* \| \[", text_of("docs/certificates/README.md"), re.MULTILINE
+    )
+    assert sorted(rows) == sorted(KINDS)
+    assert {f"certificates/{kind}.md" for kind in KINDS} <= set(pages_in(NAV))
+    assert [kind for kind in KINDS if not (DOCS / f"certificates/{kind}.md").is_file()] == []
 
 
 def test_records_of_decisions_are_short_and_whole():

@@ -12,7 +12,7 @@ from nrs_design.exporters.build import build_unproved
 from nrs_design.exporters.c import header_text, source_text
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.logic_cases import logic_document
-from nrs_design.exporters.vectors import json_text, make_vectors
+from nrs_design.exporters.vectors import make_vectors, vectors_text
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import (
@@ -142,7 +142,7 @@ def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, program):
 def test_exported_cases_reach_every_switch(shipped):
     """They are steps of the replica, next to thresholds and to the end of times."""
     _, law, _ = shipped
-    document = json.loads(json_text(law, make_vectors(law, 3), ()))["logic"]
+    document = json.loads(vectors_text(law, make_vectors(law, 3), ()))["logic"]
     assert document["start"] == law.logic.start
     switched = set()
     for mode, held, *signals, after, count in document["cases"]:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.errors import DesignError
-from nrs_design.exporters.c_names import CNames, comment, literal
+from nrs_design.exporters.c_names import CNames, block_comment, literal
 from tests.exporters.programs import LAWS
 
 NAMES = st.from_regex("[a-z0-9][a-z0-9._-]{0,63}", fullmatch=True)
@@ -62,7 +62,7 @@ def test_literals_are_exact(value):
 @given(st.text())
 def test_no_text_ends_a_comment(text):
     """Nor begins one, nor is more than ASCII, nor a trigraph."""
-    block = comment([text], b"/* first\n")
+    block = block_comment([text], b"/* first\n")
     assert block.count("*/") == 1
     assert block.endswith(" */\n")
     assert block.count("/*") == 1

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
 from nrs_design.certificates.certificate import dump
+from nrs_design.certificates.verify import Verification
 from nrs_design.errors import DesignError
 from nrs_design.exporters.export import Execution, export_design
 from nrs_design.exporters.header import header_lines
@@ -18,7 +20,7 @@ def test_a_proof_of_the_sampled_loop_is_one_of_the_program(sampled_export):
     record = sampled_export.record
     assert (sampled_export.verdict, record.verdict, record.unproved) == ("proved", "proved", None)
     assert (record.sample_time.exact, record.delay) == ("0.002", (0, 1))
-    assert "sample time: 0.002 s, force sample 0 to 1 samples old" in header_lines(record)
+    assert "sample time: 0.002 s, force sample 0 to 1 sample old" in header_lines(record)
     assert not [text for text in record.outside if "continuous" in text]
 
 
@@ -68,6 +70,18 @@ def test_a_certificate_that_is_rejected_is_not_exported_on_request(
     file.write_text(dump(continuous_export.certificate))
     export = export_design(sampled, file, execution=Execution(unproved=True))
     assert (export.verdict, export.record) == ("rejected", None)
+
+
+def test_a_certificate_that_proves_nothing_is_inconclusive(sampled, sampled_export, monkeypatch):
+    """As one holds no more than that there is no common quadratic function."""
+    nothing = replace(sampled_export.certificate, statements=())
+    outcome = Verification(nothing, None)
+    monkeypatch.setattr("nrs_design.exporters.export.verify", lambda *_, **__: outcome)
+    refused = export_design(sampled, Path("a.cert.json"), execution=Execution())
+    assert (refused.verdict, refused.record) == ("inconclusive", None)
+    assert refused.reason == "a.cert.json proves nothing"
+    asked = export_design(sampled, Path("a.cert.json"), execution=Execution(unproved=True))
+    assert (asked.verdict, asked.record.verdict) == ("inconclusive", "unproved")
 
 
 def test_a_law_of_two_periods_is_not_exported(sampled):

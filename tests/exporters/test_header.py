@@ -29,11 +29,11 @@ def test_everything_that_is_left_out(proved):
 
 
 def test_sample_time_and_delay(sampled_export, continuous_export):
-    assert "sample time: 0.002 s, force sample 0 to 1 samples old" in header_lines(
+    assert "sample time: 0.002 s, force sample 0 to 1 sample old" in header_lines(
         sampled_export.record
     )
     once = sampled_export.record.model_copy(update={"delay": (1, 1)})
-    assert "sample time: 0.002 s, force sample 1 samples old" in header_lines(once)
+    assert "sample time: 0.002 s, force sample 1 sample old" in header_lines(once)
     unknown = sampled_export.record.model_copy(update={"delay": None})
     assert "sample time: 0.002 s" in header_lines(unknown)
     assert "sample time: none, the statement is about continuous time" in header_lines(

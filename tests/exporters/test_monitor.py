@@ -12,7 +12,7 @@ from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor import KINDS, header_text, render, source_text
-from nrs_design.exporters.monitor_limits import limits_of
+from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import Program
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
 from nrs_design.spec import parse_spec
@@ -74,7 +74,7 @@ class Monitor:
         export = Export("proved", record, None, spec=spec)
         names = CNames("x")
         program = Program(sampled_export.record, LAW, names)
-        limits = limits_of(export, LAW.modes)
+        limits = monitor_limits(export, LAW.modes)
         self.sources = {
             "x.h": law_header(sampled_export.record, LAW, names),
             "x_monitor.h": header_text(program, limits),

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.exporters.record import ExportRecord, Gain, dump_record, schema_text
+from nrs_design.exporters.record import ExportRecord, Gain, dump_record, record_schema_text
 from nrs_design.spec import read_spec
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -72,7 +72,7 @@ def test_record_is_frozen_and_strict(record):
 
 @pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "force-limit-offset"])
 def test_every_record_keeps_the_published_schema(name):
-    schema = json.loads(schema_text())
+    schema = json.loads(record_schema_text())
     Draft202012Validator.check_schema(schema)
     record = export_design(read_spec(SPECS / f"neuroboscope/{name}.nrs.yaml")).record
     Draft202012Validator(schema).validate(json.loads(dump_record(record)))
@@ -83,7 +83,9 @@ def test_the_records_of_programs_keep_the_schema(sampled_export, continuous):
     unproved = export_design(continuous, execution=execution).record
     for record in (sampled_export.record, unproved):
         assert record.sample_time is not None
-        Draft202012Validator(json.loads(schema_text())).validate(json.loads(dump_record(record)))
+        Draft202012Validator(json.loads(record_schema_text())).validate(
+            json.loads(dump_record(record))
+        )
 
 
 @pytest.mark.parametrize(
@@ -101,7 +103,7 @@ def test_the_records_of_programs_keep_the_schema(sampled_export, continuous):
 )
 def test_the_schema_refuses_what_the_record_refuses(record, change):
     document = {**json.loads(dump_record(record)), **change}
-    assert not Draft202012Validator(json.loads(schema_text())).is_valid(document)
+    assert not Draft202012Validator(json.loads(record_schema_text())).is_valid(document)
     with pytest.raises(ValidationError):
         ExportRecord.model_validate_json(json.dumps(document))
 

@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.errors import PoseError
 from nrs_design.exporters import ROBOT_FORMATS
-from nrs_design.exporters.robot_tree import RobotExport, comment, home_joints
+from nrs_design.exporters.robot_tree import RobotExport, home_joints, xml_comment
 from nrs_design.models.robot import inverse_kinematics, joint_names, links_of, tree_angles
 from tests.exporters.robots import POSES
 
@@ -47,7 +47,7 @@ def test_a_pose_out_of_reach_has_no_angles(robot):
 
 def test_a_name_does_not_end_the_comment(loaded, robot):
     spec = loaded.spec.model_copy(update={"name": "a--b"})
-    text = comment(
+    text = xml_comment(
         RobotExport(replace(loaded, spec=spec), robot, "a.nrs.yaml"), "mjcf", ["x --> y"]
     )
     assert text.count("--") == 2

@@ -14,7 +14,7 @@ import pytest
 
 from nrs_design.controllers.replica import step
 from nrs_design.exporters.c import render as render_c
-from nrs_design.exporters.vectors import csv_text, json_text, make_vectors, render
+from nrs_design.exporters.vectors import csv_text, make_vectors, render, vectors_text
 from tests.exporters.programs import LAWS, compiler, run
 
 # An implementation that has nothing in common with the package but the formulas: each operation in
@@ -100,7 +100,7 @@ def test_the_cases_are_always_the_same():
 def test_json_and_csv_hold_the_same():
     law = LAWS["limits"]
     vectors = make_vectors(law, 50)
-    document = json.loads(json_text(law, vectors, ("one", "two")))
+    document = json.loads(vectors_text(law, vectors, ("one", "two")))
     lines = csv_text(vectors, ("one", "two")).splitlines()
     assert lines[:3] == ["# nrs-design vectors", "# one", "# two"]
     rows = [*csv.reader(io.StringIO("\n".join(lines[3:])))]

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.gating.find_specs import find_passed_over, find_specs
+from nrs_design.gating.find_specs import find_misnamed, find_passed_over, find_specs
 
 
 @pytest.fixture
@@ -73,3 +73,16 @@ def test_what_is_passed_over(folder, tmp_path):
     expected = (folder / ".venv", folder / "a/.hidden", folder / "link")
     assert find_passed_over([folder]) == expected
     assert find_passed_over([folder / "b.nrs.yaml", folder / "missing"]) == ()
+
+
+def test_specs_by_another_name_are_listed(tmp_path):
+    spec = "# first a comment\nkind: robot\nname: a\n"
+    (tmp_path / "good.nrs.yaml").write_text(spec)
+    (tmp_path / "arm.yaml").write_text(spec)
+    (tmp_path / "inner").mkdir()
+    (tmp_path / "inner" / "ARM.YML").write_bytes(b"\xff\nkind: switched-system\n")
+    (tmp_path / "pod.yaml").write_text("kind: robotics\nspec: {}\n")
+    (tmp_path / "notes.txt").write_text(spec)
+    (tmp_path / "gone.yaml").symlink_to(tmp_path / "nowhere")
+    assert find_misnamed([tmp_path]) == (tmp_path / "arm.yaml", tmp_path / "inner" / "ARM.YML")
+    assert find_misnamed([tmp_path / "arm.yaml"]) == ()

@@ -81,7 +81,11 @@ def test_dt_decides_the_time():
     assert time_of([np.eye(2)], None) is Time.CONTINUOUS
     assert time_of([np.eye(2)], "discrete") is Time.DISCRETE
     slower = control.ss([[0.5]], [[1]], [[1]], 0, 0.01)
-    for mixed in ([continuous, sampled], [sampled, slower]):
+    second = control.ss([[0.5]], [[1]], [[1]], 0, 1.0)
+    unknown = control.ss([[0.5]], [[1]], [[1]], 0, True)
+    assert time_of([unknown, slower], None) is Time.DISCRETE
+    # True equals 1.0, but a step of a second is not one of any length.
+    for mixed in ([continuous, sampled], [sampled, slower], [sampled, second]):
         with pytest.raises(SpecError, match="one time axis"):
             time_of(mixed, None)
     with pytest.raises(SpecError, match="one time axis"):

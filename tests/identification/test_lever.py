@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.lever import parse_arm, units_of
+from nrs_design.identification.lever import parameter_units, parse_arm
 from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt
 
 
@@ -34,12 +34,16 @@ def test_bad_arm(text, rotational, error, reason):
 
 
 def test_units():
-    assert units_of(KelvinVoigt(1.0, 1.0), False) == ("N/m", "N s/m")
-    assert units_of(KelvinVoigt(1.0, 1.0), True) == ("N m/rad", "N m s/rad")
-    assert units_of(HuntCrossley(1.0, 1.0, 1.2), False) == ("N/m^φ", "N s/m^(φ+1)", "")
+    assert parameter_units(KelvinVoigt(1.0, 1.0), False) == ("N/m", "N s/m")
+    assert parameter_units(KelvinVoigt(1.0, 1.0), True) == ("N m/rad", "N m s/rad")
+    assert parameter_units(HuntCrossley(1.0, 1.0, 1.2), False) == ("N/m^φ", "N s/m^(φ+1)", "")
 
 
 @pytest.mark.parametrize("law", LAWS.values())
 def test_every_parameter_has_a_unit(law):
     found = law(*[1.2] * len(law.parameters()))
-    assert len(units_of(found, False)) == len(units_of(found, True)) == len(law.parameters())
+    assert (
+        len(parameter_units(found, False))
+        == len(parameter_units(found, True))
+        == len(law.parameters())
+    )

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from nrs_design.identification.steps import shortened
+from nrs_design.identification.steps import limited_step
 
 
 def test_a_long_step_keeps_its_direction():
-    step = shortened(np.array([4.0, -0.2]), np.array([2.0, 0.5]))
+    step = limited_step(np.array([4.0, -0.2]), np.array([2.0, 0.5]))
     assert step.tolist() == [2.0, -0.1]
 
 
 def test_a_short_step_stays():
-    assert shortened(np.array([0.5, -0.2]), np.array([2.0, 0.5])).tolist() == [0.5, -0.2]
+    assert limited_step(np.array([0.5, -0.2]), np.array([2.0, 0.5])).tolist() == [0.5, -0.2]

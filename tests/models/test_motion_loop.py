@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.motion_loop import JointMotion, MotionLoop, close_motion_loop, realize
+from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, close_motion_loop, realize
 
 F = Fraction
 ACTUATOR = Actuator(Fraction("4.8417e-4"), Fraction("0.0351"))
@@ -51,7 +51,7 @@ class TestJointMotion:
     @given(*[st.fractions("1/50", 50, max_denominator=50)] * 4, st.fractions(-9, 9))
     def test_it_has_the_transfer_function_of_the_closed_loop(self, Kp, Kd, Km, tau, s):
         loop = close_motion_loop(Actuator(Km, tau), Kp, Kd)
-        motion = JointMotion(Kp, Kd, Km, tau, None)
+        motion = JointMotionLoop(Kp, Kd, Km, tau, None)
         # At e = n, omega = m, u = 1: s e = e' and s omega = omega'.
         (a, b, c), (d, e, f) = motion.rates([F(0), F(0), F(1)])
         determinant = (s - a) * (s - e) - b * d
@@ -63,11 +63,11 @@ class TestJointMotion:
         assert numerator * bottom == top * determinant
 
     def test_a_load_slows_the_motor(self):
-        motion = JointMotion(F(3), F(5), F(2), F(1, 2), F(4))
+        motion = JointMotionLoop(F(3), F(5), F(2), F(1, 2), F(4))
         force, command = [F(0), F(0), F(7)], [F(0), F(0), F(0)]
         free, loaded = (motion.rates(command, load)[1] for load in (None, force))
         assert [b - a for a, b in zip(free, loaded, strict=True)] == [0, 0, F(-7, 4)]
-        unloaded = JointMotion(F(3), F(5), F(2), F(1, 2), None)
+        unloaded = JointMotionLoop(F(3), F(5), F(2), F(1, 2), None)
         assert unloaded.rates(command, force) == unloaded.rates(command)
 
     def test_the_velocity_does_not_jump_with_the_time_constant_as_that_of_the_canonical_form_does(
@@ -79,5 +79,5 @@ class TestJointMotion:
             for tau in (F(1), F(2))
         ]
         assert outputs[0] != outputs[1]
-        motions = [JointMotion(F(3), F(5), F(1), tau, None).output(2) for tau in (F(1), F(2))]
+        motions = [JointMotionLoop(F(3), F(5), F(1), tau, None).output(2) for tau in (F(1), F(2))]
         assert motions[0] == motions[1] == [0, 1]

@@ -6,7 +6,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError
-from nrs_design.pipeline import limits_of, run_certification
+from nrs_design.pipeline import run_certification, search_limits
 from nrs_design.pipeline.stability_map import run_stability_map
 from nrs_design.spec import read_spec
 from tests.support import ROOT, SOFT_TISSUE
@@ -19,7 +19,7 @@ def certified(tmp_path, change, name="a"):
     path = tmp_path / f"{name}.nrs.yaml"
     path.write_text(change(SOFT_TISSUE.read_text(encoding="utf-8")) + SAMPLED, encoding="utf-8")
     loaded = read_spec(path)
-    return run_certification(loaded, limits=limits_of(loaded.spec, optimize_rate=False))
+    return run_certification(loaded, limits=search_limits(loaded.spec, optimize_rate=False))
 
 
 def test_a_loop_that_is_not_sampled_has_no_map():
@@ -40,7 +40,7 @@ def test_contacts_at_once_have_no_map(tmp_path):
 @pytest.mark.slow
 def test_cells_say_what_specs_say(tmp_path):
     result = certified(tmp_path, lambda text: text)
-    limits = replace(limits_of(result.loaded.spec), budget=3.0)
+    limits = replace(search_limits(result.loaded.spec), budget=3.0)
     found = run_stability_map(result, limits)
     ((name, low, high),) = found.contacts
     assert (name, found.shortest, found.delay) == ("soft", 0, 1)

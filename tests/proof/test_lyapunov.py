@@ -42,11 +42,14 @@ def test_holds_at_a_rate_that_is_decided():
     assert float(found.rate) <= limit
     assert float(found.rate) == pytest.approx(limit, rel=1e-4)
     assert check_quadratic(PAIR, P, Time.CONTINUOUS, found.rate).holds
+    assert bool(found) is True
 
 
 def test_a_rate_beyond_the_limit_does_not_hold_and_is_shown():
     found = check_quadratic(PAIR, matrix([[1, 0], [0, 5]]), Time.CONTINUOUS, F(1, 9))
     assert not found.holds
+    # As the condition of a program takes it.
+    assert bool(found) is False
     assert found.weak
     assert found.rate is not None
     assert F("0.1055") < found.rate < F(1, 9)

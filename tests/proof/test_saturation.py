@@ -6,7 +6,9 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.contradiction import find_contradiction
-from tests.proof.systems import genuine, matrix, pushed_away
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.saturation import CutOff, Saturation
+from tests.proof.systems import genuine, kept, matrix, pushed_away, saturating
 
 WHAT = pushed_away().saturation
 (SIGNAL,) = WHAT.signals
@@ -29,6 +31,81 @@ def test_there_is_a_signal_and_each_has_its_name(signals):
     assert "no signal saturates" in replace(WHAT, signals=signals).find_oddity(1, 1, 0)
 
 
+# Two states, two modes in contact and a free one; a column that has a length but is none.
+LOST, HELD = saturating().saturation, kept(saturating()).saturation
+RAGGED = RationalMatrix(((1,), (1, 1)))
+SIZE = "s2 does not have the size of the state"
+EVERY = "s2 has not one column and row for every mode"
+
+
+def test_signals_in_two_states_make_sense():
+    assert LOST.find_oddity(2, 2, 1) is None
+    assert HELD.find_oddity(2, 2, 0) is None
+
+
+@pytest.mark.parametrize(
+    ("part", "entries", "oddity"),
+    [
+        ("columns", (matrix([[1], [0]]),) * 2 + (matrix([[1]]),), SIZE),
+        ("columns", (matrix([[1], [0]]),) * 2 + (RAGGED,), SIZE),
+        ("rows", (matrix([[-1, 0, 1]]),) * 2 + (matrix([[-1, 0]]),), SIZE),
+        ("rows", (matrix([[-1, 0, 1]]),) * 2, EVERY),
+        ("columns", (matrix([[1], [0]]),) * 2, EVERY),
+        ("columns", (matrix([[1], [0]]),) * 4, EVERY),
+        ("limit", Fraction(0), "the limit of s2 is not positive"),
+        ("limit", Fraction(-1, 2), "the limit of s2 is not positive"),
+        (
+            "rows",
+            (matrix([[-1, 0, 1]]),) * 2 + (matrix([[-1, 1, 1]]),),
+            "s2 depends on the deflection in free motion",
+        ),
+    ],
+)
+def test_every_signal_fits_the_system(part, entries, oddity):
+    first, second = LOST.signals
+    odd = replace(LOST, signals=(first, replace(second, **{part: entries})))
+    assert odd.find_oddity(2, 2, 1) == oddity
+
+
+def test_a_limit_may_be_any_positive_number():
+    first, second = LOST.signals
+    short = replace(second, limit=Fraction(1, 1000))
+    assert replace(LOST, signals=(first, short)).find_oddity(2, 2, 1) is None
+
+
+@pytest.mark.parametrize(
+    "states",
+    [(), (matrix([[0], [1]]), matrix([[1]])), (matrix([[0], [1]]), RAGGED)],
+)
+def test_every_motion_begins_in_a_state(states):
+    odd = replace(LOST, start=replace(LOST.start, states=states))
+    assert odd.find_oddity(2, 2, 1) == "force does not have the size of the state"
+
+
+def test_a_motion_may_begin_anywhere_where_contact_is_kept():
+    """And where it may be lost, in contact with nothing deflected."""
+    behind, touching, pressed = matrix([[1], [-1]]), matrix([[1], [0]]), matrix([[0], [1]])
+
+    def oddity(what, free, *states):
+        return replace(what, start=replace(what.start, states=states)).find_oddity(2, 2, free)
+
+    assert oddity(HELD, 0, behind) is None
+    assert oddity(LOST, 1, touching) is None
+    assert oddity(LOST, 1, pressed, behind) == "force stands for a state without contact"
+
+
+def test_the_last_state_is_the_deflection():
+    column, row = matrix([[1], [0], [0]]), matrix([[-1, 0, 0]])
+    signal = replace(SIGNAL, columns=(column,) * 2, rows=(row,) * 2)
+    for start, oddity in (
+        ([[0], [-1], [1]], None),
+        ([[0], [1], [-1]], "place stands for a state without contact"),
+    ):
+        states = (matrix(start),)
+        what = Saturation((signal,), replace(WHAT.start, states=states))
+        assert what.find_oddity(3, 1, 1) == oddity
+
+
 def test_a_motion_that_begins_at_zero_says_nothing():
     nowhere = replace(WHAT, start=replace(WHAT.start, states=(matrix([[1]]), matrix([[0]]))))
     assert "stands for a state that is zero" in nowhere.find_oddity(1, 1, 0)
@@ -47,3 +124,36 @@ def test_every_choice_is_a_matrix():
     held = [[Fraction(-17, 16)]]
     found = [B.fractions() for B in WHAT.between(matrix([[-2]]), 0, held)]
     assert found == [[[-2]], [[Fraction(-1, 16)]]]
+
+
+def test_a_signal_in_another_is_replaced_in_it_too():
+    """By hand: x' = x + s1 + s2 with s1 = sat(-x) and s2 = sat(s1 - x)."""
+    s1 = CutOff("s1", "N", Fraction(2), (matrix([[1]]),), (matrix([[-1]]),))
+    s2 = CutOff("s2", "N", Fraction(1), (matrix([[1]]),), (matrix([[-1, 1]]),))
+    what = Saturation((s1, s2), WHAT.start)
+    found = what.between(matrix([[-2]]), 0, [[Fraction(-1, 2)], [Fraction(-3, 4)]])
+    # s1 in {-x, -x/2}; s2 in {s1 - x, -3x/4}.
+    assert [B.fractions()[0][0] for B in found] == [
+        1 - 1 - 2,
+        1 - 1 - Fraction(3, 4),
+        1 - Fraction(1, 2) - Fraction(3, 2),
+        1 - Fraction(1, 2) - Fraction(3, 4),
+    ]
+
+
+LONGER = replace(SIGNAL, rows=(matrix([[-3, 0, 0]]),))
+
+
+@pytest.mark.parametrize(
+    ("what", "A", "held"),
+    [
+        (WHAT, [[-2]], []),
+        (WHAT, [[-2]], [[-1], [-1]]),
+        (WHAT, [[-2]], [[-1, 0]]),
+        (WHAT, [[-2, 0], [0, -2]], [[-1]]),
+        (replace(WHAT, signals=(SIGNAL, LONGER)), [[-5]], [[-1], [-1]]),
+    ],
+)
+def test_rows_that_do_not_fit_are_an_error(what, A, held):
+    with pytest.raises(ValueError, match="zip"):
+        list(what.between(matrix(A), 0, held))

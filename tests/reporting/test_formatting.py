@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from nrs_design.reporting.formatting import number, plural, polynomial, root, roots, shortened
+from nrs_design.reporting.formatting import number, plural, polynomial_text, root, roots, shortened
 
 
 @pytest.mark.parametrize(
@@ -27,8 +27,8 @@ def test_pairs_are_written_once():
 
 
 def test_polynomial():
-    assert polynomial((0.0351, 1.99, -56.82)) == "0.0351 s^2 + 1.99 s - 56.82"
-    assert polynomial((0.0,)) == "0"
+    assert polynomial_text((0.0351, 1.99, -56.82)) == "0.0351 s^2 + 1.99 s - 56.82"
+    assert polynomial_text((0.0,)) == "0"
 
 
 def test_lists():

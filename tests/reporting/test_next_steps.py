@@ -1,5 +1,7 @@
 """What to do next, where nothing was proved."""
 
+from pathlib import Path
+
 import pytest
 
 from nrs_design.pipeline import run_certification
@@ -58,3 +60,11 @@ def test_commands_end_with_them(tmp_path, command):
     said = [line for line in done.stdout.splitlines() if line.startswith("next: ")]
     assert len(said) == 2
     assert done.stdout.splitlines()[-2:] == said
+
+
+def test_commands_can_be_typed_as_they_stand(tmp_path):
+    """With the spec as it was named, and nothing behind it."""
+    wide = run_certification(read_spec(ROOT / "docs/examples/wide-range.nrs.yaml"))
+    steps = next_steps(wide, spec=Path("my specs/a.nrs.yaml"))
+    assert steps[0].endswith("certify-switching 'my specs/a.nrs.yaml' --margin")
+    assert next_steps(wide)[0].endswith("certify-switching wide-range.nrs.yaml --margin")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.simulation import four_digits_up
 
 
 @pytest.mark.parametrize(
@@ -18,4 +18,4 @@ from nrs_design.reporting.simulation import rounded_up
     ],
 )
 def test_a_torque_above_its_limit_is_never_shown_at_it(value, text):
-    assert rounded_up(value) == text
+    assert four_digits_up(value) == text

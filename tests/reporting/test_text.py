@@ -1,6 +1,6 @@
 import pytest
 
-from nrs_design.reporting.text import drawable, wrapped
+from nrs_design.reporting.text import drawable, wrapped_label
 
 
 def test_drawable_has_letters_of_the_font_only():
@@ -18,4 +18,4 @@ def test_drawable_has_letters_of_the_font_only():
     ],
 )
 def test_wrapped_keeps_every_letter(text, width, lines):
-    assert wrapped(text, width).split("\n") == lines
+    assert wrapped_label(text, width).split("\n") == lines

@@ -3,7 +3,7 @@ import pytest
 
 from nrs_design.reporting.figures.tracking import draw_tracking
 from nrs_design.reporting.images import to_svg_file
-from nrs_design.simulation.tracking import Experiment, Record
+from nrs_design.simulation.tracking import Experiment, TrackingRecord
 
 ERROR = np.radians([0.5, 0.01, 0.0])
 
@@ -12,7 +12,9 @@ def record(controller, moved):
     experiment = Experiment(moved, (0.0, 0.0, 0.2), 0.05, 2.0, hold=1.0)
     time = np.linspace(0, experiment.duration, 300)
     wanted = experiment.motion(time)[0]
-    return Record(controller, experiment, time, wanted, wanted - ERROR, wanted, np.zeros((300, 3)))
+    return TrackingRecord(
+        controller, experiment, time, wanted, wanted - ERROR, wanted, np.zeros((300, 3))
+    )
 
 
 @pytest.fixture(scope="module")

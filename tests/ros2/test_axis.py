@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.ros2.axis import close_axis, damping_of, square_root_between
+from nrs_design.ros2.axis import axis_damping, close_axis, square_root_between
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from tests.ros2.support import around, axis, law
@@ -85,8 +85,8 @@ def test_a_square_root_lies_between(value):
 
 
 def test_a_rational_damping_is_a_point():
-    assert damping_of(axis("2", "1.5", "8")).low == damping_of(axis("2", "1.5", "8")).high == 12
-    found = damping_of(axis("2", "-1.5", "7"))
+    assert axis_damping(axis("2", "1.5", "8")).low == axis_damping(axis("2", "1.5", "8")).high == 12
+    found = axis_damping(axis("2", "-1.5", "7"))
     assert found.low < found.high < 0
 
 

@@ -62,6 +62,63 @@ def test_rates(tmp_path):
     assert statuses(own, Question((0, 2), SOFT, None))[0].verdict == "refuted"
 
 
+def test_a_rate_of_its_own_that_does_not_divide_the_rate_of_the_loop(tmp_path):
+    """ros2_control then triggers it at uneven periods, or at 500 1/s (controller_manager.cpp)."""
+    file = changed(tmp_path, ("    joints:", "    update_rate: 300\n    joints:"))
+    with pytest.raises(SpecError, match="300 does not divide 500"):
+        statuses(file, Question((0, 0), SOFT, None))
+    assert statuses(file, Question((0, 0), SOFT, None, Fraction(300)))[0].verdict == "proved"
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "/**:\n  ros__parameters: {ft_sensor.filter_coefficient: 0.9}\n",
+        "/**/admittance_controller:\n  ros__parameters: {admittance: {joint_damping: 0.0}}\n",
+        "/*:\n  ros__parameters: {sensor_filter_chain: {filter1: {name: low, type: pass}}}\n",
+        "/admittance_controller:\n  ros__parameters: {ft_sensor.filter_coefficient: 0.9}\n",
+    ],
+    ids=["all nodes", "any namespace", "a chain", "the same name"],
+)
+def test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over(tmp_path, more):
+    """ROS 2 gives a node the parameters of wildcards, too; a default was taken for them."""
+    file = changed(tmp_path, ("      filter_coefficient: 0.5\n", ""))
+    with file.open("a") as stream:
+        stream.write(more)
+    found, status, _ = statuses(file, Question((0, 0), SOFT, None))
+    assert found.verdict is None
+    assert Status.ERROR in status
+    assert "counts for admittance_controller, too" in found.obligations[0].message
+
+
+def test_a_wildcard_that_says_nothing_of_the_law_and_other_nodes(tmp_path):
+    file = changed(tmp_path)
+    with file.open("a") as stream:
+        stream.write(
+            "/**:\n  ros__parameters: {use_sim_time: true}\n"
+            "/**/gripper:\n  ros__parameters: {update_rate: 100}\n"
+        )
+    assert statuses(file, Question((0, 2), SOFT, None))[0].verdict == "proved"
+
+
+def test_every_controller_runs_at_the_rate_of_its_own_manager(tmp_path):
+    text = changed(tmp_path).read_text()
+    left, right = (text.replace("\n", "\n  ") for _ in range(2))
+    file = tmp_path / "two.yaml"
+    file.write_text(f"left:\n  {left}\nright:\n  {right.replace('500', '20')}\n")
+    found, _, _ = statuses(file, Question((0, 2), SOFT, None))
+    verdicts = {item.message.partition(":")[0]: item.status for item in found.obligations[::-1]
+                if "axis x" in item.message}  # fmt: skip
+    assert verdicts == {
+        "left/admittance_controller": Status.PROVED,
+        "right/admittance_controller": Status.REFUTED,
+    }
+    file.write_text(f"left:\n  {left}\nright:\n  {right.replace('500', '20')}\n".replace(
+        "  admittance_controller:\n    ros", "  arm/admittance_controller:\n    ros"))  # fmt: skip
+    with pytest.raises(SpecError, match="rate of the control loop"):
+        statuses(file, Question((0, 2), SOFT, None))
+
+
 def test_no_rate(tmp_path):
     file = changed(tmp_path, ("    update_rate: 500\n", ""))
     with pytest.raises(SpecError, match="rate of the control loop") as caught:

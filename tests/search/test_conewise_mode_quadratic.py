@@ -9,7 +9,7 @@ from nrs_design.reporting.kinds.conewise_mode_quadratic import largest_norm
 from nrs_design.search import conewise_mode_quadratic
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import Limits, certify
-from nrs_design.search.conewise_mode_quadratic import Program, search_conewise_modes
+from nrs_design.search.conewise_mode_quadratic import ConewiseModeProgram, search_conewise_modes
 from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
 from nrs_design.search.ladder import applicable_methods
@@ -68,9 +68,9 @@ def test_five_samples_of_delay_are_not_found():
 @pytest.mark.parametrize("spoil", [lambda Q: -Q, lambda Q: Q * np.nan, lambda Q: np.eye(len(Q))])
 def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
     system = bouncing_in_steps()
-    solution = Program(Family.of(system)).solve(1.0, Allowance())
+    solution = ConewiseModeProgram(Family.of(system)).solve(1.0, Allowance())
     lie = type(solution)([spoil(Q) for Q in solution.touching], solution.flying, np.ones(1))
-    monkeypatch.setattr(Program, "solve", lambda *_: lie)
+    monkeypatch.setattr(ConewiseModeProgram, "solve", lambda *_: lie)
     try:
         evidence = found(search_conewise_modes, system, optimize_rate=False)
     except (np.linalg.LinAlgError, ValueError, OverflowError):
@@ -79,7 +79,7 @@ def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
 
 
 def test_a_program_that_does_not_fit_is_not_built(monkeypatch):
-    program = Program(Family.of(bouncing_in_steps()))
+    program = ConewiseModeProgram(Family.of(bouncing_in_steps()))
     monkeypatch.setattr(conewise_mode_quadratic, "symmetric_basis", lambda n: pytest.fail("built"))
     with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
         program.solve(1.0, Allowance(1e-4))

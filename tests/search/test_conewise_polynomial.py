@@ -16,7 +16,7 @@ from nrs_design.search import conewise_polynomial
 from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import certify
 from nrs_design.search.conewise_polynomial import (
-    Program,
+    ConewisePolynomialProgram,
     conewise_cost,
     search_conewise_polynomial,
 )
@@ -72,10 +72,10 @@ def test_free_motion_that_does_not_slow_down_is_not_found():
 @pytest.mark.parametrize("spoil", [lambda Q: -Q, lambda Q: Q * np.nan, lambda Q: np.eye(len(Q))])
 def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
     system = bouncing()
-    program = Program.of(Family.of(system), 2)
+    program = ConewisePolynomialProgram.of(Family.of(system), 2)
     touching, flying = program.solve(0.0, Allowance())
     lie = type(touching)(spoil(touching.Q), touching.vanishing), flying
-    monkeypatch.setattr(Program, "solve", lambda *_: lie)
+    monkeypatch.setattr(ConewisePolynomialProgram, "solve", lambda *_: lie)
     try:
         evidence = found(search_conewise_polynomial, system, degree=2)
     except (np.linalg.LinAlgError, ValueError, OverflowError):
@@ -90,7 +90,7 @@ def test_predictions_grow_with_degree_and_exceed_those_without_flight():
 
 
 def test_a_program_that_does_not_fit_is_not_built(monkeypatch):
-    program = Program.of(Family.of(bouncing()), 2)
+    program = ConewisePolynomialProgram.of(Family.of(bouncing()), 2)
     monkeypatch.setattr(conewise_polynomial, "symmetric_basis", lambda n: pytest.fail("built"))
     with pytest.raises(NotAffordableError, match=r"3 monomials .*--budget"):
         program.solve(0.0, Allowance(1e-4))

@@ -16,7 +16,7 @@ from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
-from nrs_design.simulation.game import Game, Signals, free_modes, play
+from nrs_design.simulation.game import Game, Signals, free_counterparts, play
 from nrs_design.simulation.worst_case import worst_against
 from nrs_design.simulation.worst_outputs import output_values
 from tests.proof.systems import (
@@ -199,7 +199,7 @@ def _in_contact(system: SwitchedSystem, modes: np.ndarray) -> np.ndarray:
     """Return the modes that were chosen, also while nothing was touched."""
     if system.contact is None:
         return modes
-    count, places = len(system.modes), free_modes(system).tolist()
+    count, places = len(system.modes), free_counterparts(system).tolist()
     return np.array([k if k < count else places.index(k - count) for k in modes.tolist()])
 
 

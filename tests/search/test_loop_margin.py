@@ -50,6 +50,31 @@ def test_the_longest_delay(verdicts, shortest, declared, unstable, expected):
     assert min(asked) >= shortest
 
 
+@pytest.mark.parametrize("declared", [0, 2])
+@pytest.mark.parametrize(
+    ("verdicts", "expected"),
+    [
+        ("PPPPPPPPPPP", (10, None)),
+        ("PPPIIIIIIII", (2, None)),
+        ("PPPPPPIIIRR", (5, 9)),
+        ("PPPRRRRRRRR", (2, 3)),
+        ("PPPIRRRRRRR", (2, 4)),
+        ("PPPIIIIIIIR", (2, 10)),
+    ],
+)
+def test_the_longest_delay_takes_few_decisions(verdicts, declared, expected):
+    """Every decision may take 10 s: beyond the declared delay they are bisected."""
+    asked = []
+
+    def decide(delay: int) -> Verdict:
+        asked.append(delay)
+        return {"P": P, "R": R, "I": N}[verdicts[delay]]
+
+    found = find_longest_delay(0, declared, 10, decide, lambda delay: False)
+    assert (found.proved, found.refuted) == expected
+    assert len(asked) == len(set(asked)) <= 8
+
+
 def test_the_longest_period():
     """Proved up to 3, refuted from 5 on; in between nobody knows."""
 

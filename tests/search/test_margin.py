@@ -170,6 +170,29 @@ class TestBox:
         assert (box.proved, box.refuted) == (Fraction(5, 4), None)
         assert "wider ones make no system (the stiffness is not positive)" in box.end
 
+    def test_nominal_values_that_make_no_system_are_an_error(self):
+        def fail(stretch):
+            raise AssemblyError(f"no stiffness at {stretch}", remedy="use another environment")
+
+        with pytest.raises(AssemblyError, match="no stiffness at 0") as raised:
+            find_margin(fail, quick)
+        assert raised.value.remedy == "use another environment"
+
+    @pytest.mark.parametrize("verdict", list(Verdict))
+    def test_nominal_values_alone_make_a_system(self, verdict):
+        assemble, decide, _ = deciding_by(lambda stretch: verdict)
+
+        def fail_beyond(stretch):
+            if stretch > 0:
+                raise AssemblyError("the stiffness is not positive")
+            return assemble(stretch)
+
+        box = find_margin(fail_beyond, decide)
+        assert box.proved == (0 if verdict is Verdict.PROVED else None)
+        assert box.refuted == (0 if verdict is Verdict.REFUTED else None)
+        if box.refuted is None:
+            assert "by up to 0 is refuted: wider ones make no system" in box.end
+
     def test_refuted_just_within_what_makes_a_system(self):
         """Doubling leaps over scales that make a system; the widest of them is looked at."""
         assemble, decide, _ = deciding_by(between(Fraction(1), Fraction(19, 10)))

@@ -16,7 +16,7 @@ from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.lifted import lift_family, products
 from nrs_design.search.polynomial import (
-    Solution,
+    PolynomialSolution,
     find_common_polynomial,
     highest_degree,
     polynomial_cost,
@@ -91,7 +91,7 @@ def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
     _, lift_stable = lifted(stable, 2)
     with floats_in_silence():
         solution = spoil(find_common_polynomial(lift_stable, stable.time, 0.0))
-    assert isinstance(solution, Solution)
+    assert isinstance(solution, PolynomialSolution)
     monkeypatch.setattr(polynomial, "find_common_polynomial", lambda *_: solution)
     for system in (unstable, stable):
         try:

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.models.robot import build_robot
+from nrs_design.progress import silent
 from nrs_design.simulation.bodies import deviation
 from nrs_design.simulation.mujoco_body import STEP, MujocoBody
-from nrs_design.simulation.processor import Motors, run_axes, silent
+from nrs_design.simulation.processor import Motors, run_axes
 from nrs_design.simulation.robot_body import Arm, RobotBody
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES

@@ -8,7 +8,8 @@ import pytest
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.models.robot import build_robot, gravity_torque, mass_matrix
 from nrs_design.models.robot.body import MASSLESS
-from nrs_design.simulation.processor import Motors, run_axes, silent
+from nrs_design.progress import silent
+from nrs_design.simulation.processor import Motors, run_axes
 from nrs_design.simulation.robot_body import Arm, RobotBody
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES

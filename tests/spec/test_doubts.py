@@ -57,6 +57,17 @@ def test_a_command_that_cannot_reach_the_speed_limit():
     assert "0.13944096 rad/s" in str(found[-1])
 
 
+def test_bounds_for_smaller_commands_than_the_limit_lets_through():
+    """What is exported saturates at limits.velocity, 8 deg/s; bounds are for the disturbance."""
+    for command, count in (("8 deg/s", 1), ("7.999 deg/s", 2), ("0.1 rad/s", 2), ("0.2 rad/s", 1)):
+        more = f"sampling: {{period: 2 ms, delay: 0}}\ndisturbances: {{command: {command}}}\n"
+        found = doubts(f"{IMPEDANCE}{more}")
+        assert len(found) == count
+        if count == 2:
+            assert found[-1].at == ("disturbances", "command")
+            assert f"up to {command}, and limits.velocity lets them be 8 deg/s" in str(found[-1])
+
+
 def test_the_largest_gain_of_a_range_counts():
     text = IMPEDANCE.replace(
         "gain: 4.8417e-4 rad/s/rpm",
@@ -82,6 +93,15 @@ def test_bounds_are_not_proved_beside_two_periods():
     _, doubt = doubts(f"{pushed}, outer_period: 4 ms}}\n")
     assert doubt.at == ("disturbances",)
     assert "no bound" in str(doubt)
+
+
+def test_axes_that_act_on_each_other_are_not_proved_beside_two_periods():
+    loaded = IMPEDANCE.replace("0.0351 s\n", "0.0351 s\n  load_inertia: 1 kg*m^2\n")
+    axes = f"{loaded}\ncoupling: {{inertia: [0 kg*m^2, 0.1 kg*m^2]}}\nsampling: {{period: 2 ms"
+    assert [d.at for d in doubts(f"{axes}, delay: 0}}\n")] == [("environments", "hand")]
+    _, doubt = doubts(f"{axes}, delay: 0, outer_period: 4 ms}}\n")
+    assert doubt.at == ("coupling",)
+    assert "nothing is proved of axes that act on each other" in str(doubt)
 
 
 def test_what_is_valid_and_not_proved_in_continuous_time():

@@ -1,8 +1,11 @@
 """How an estimator decides, and when it cannot."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import load_spec, parse_spec
@@ -28,6 +31,53 @@ def test_by_hand():
     assert float(found.delay) == pytest.approx(0.002 + 3 * segment, rel=1e-3)
     assert float(found.delay) >= 0.002 + 3 * segment
     assert found.stay == 1 - found.delay
+
+
+STEP, NOISE, AGE, PERIOD, SLOWEST = 1.7453292519943296e-05, 5e-4, 2e-3, 2e-3, 0.10471975512
+STIFFNESS = {False: 43.0356, True: 104.7}
+
+
+def estimate(found, stiffer, samples):
+    """Take the steps of docs/design/mode-logic.md; yield what is taken to be touched."""
+    last, (begin, angle, torque) = stiffer, samples[0]
+    for t, theta, F in samples:
+        if abs(theta - angle) >= found.travel and t - begin >= AGE:
+            spoken = (F - torque) / (theta - angle) >= found.limit
+            stiffer, last = spoken if spoken == last else stiffer, spoken
+            begin, angle, torque = t, theta, F
+        yield stiffer
+
+
+def measure(first, change, speed, errors):
+    """Yield time, angle and torque, with errors, through one change of the environment."""
+
+    def torque(t):
+        # Both springs carry the same force where the environment changes.
+        return 0.1 + STIFFNESS[first if t < change else not first] * speed * (t - change)
+
+    for k, (e, n, age) in enumerate(errors):
+        t = k * PERIOD
+        yield t, speed * t + e * STEP / 2, torque(t - age * AGE) + n * NOISE
+
+
+error = st.tuples(st.sampled_from([-1, 1]), st.sampled_from([-1, 1]), st.sampled_from([0, 0.5, 1]))
+
+
+@given(
+    st.booleans(),
+    st.floats(0.1, 0.15),
+    st.floats(1, 1.33),
+    st.lists(error, min_size=120, max_size=120),
+    st.sampled_from([-1, 1]),
+)
+def test_decided_in_time_and_once(first, change, faster, errors, direction):
+    """From 6 to 8 deg/s, with errors at the ends of what is declared."""
+    found = decision(load_spec(PATH))
+    samples = list(measure(first, change, direction * SLOWEST * faster, errors))
+    seen = [(t, s) for (t, *_), s in zip(samples, estimate(found, first, samples), strict=True)]
+    assert all(stiffer == first for t, stiffer in seen if t < change)
+    assert all(stiffer != first for t, stiffer in seen if t >= change + float(found.delay))
+    assert sum(a[1] != b[1] for a, b in pairwise(seen)) == 1
 
 
 def test_wrong_modes_are_left_and_right_ones_last():

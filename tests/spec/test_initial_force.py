@@ -5,7 +5,7 @@ import re
 import pytest
 
 from nrs_design.errors import SpecError
-from nrs_design.spec import parse_spec
+from nrs_design.spec import doubt_spec, parse_spec
 from tests.support import ROOT
 
 TEXT = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
@@ -65,6 +65,18 @@ def test_what_nothing_is_claimed_about_is_refused(old, new, what):
         return
     with pytest.raises(SpecError, match=re.escape(what)):
         parse_spec(text)
+
+
+@pytest.mark.parametrize(
+    ("force", "doubted"), [("3 N*m", False), ("3.01 N*m", True), ("largest", False)]
+)
+def test_a_force_far_above_the_torque_limit_is_doubted(force, doubted):
+    """The example wants more than the limit of 0.3 N m: there signals saturate."""
+    doubts = list(doubt_spec(parse_spec(TEXT.replace("0.5 N*m", force))))
+    assert len(doubts) == doubted
+    for doubt in doubts:
+        assert doubt.at == ("goals", "initial_force")
+        assert "more than 10 times limits.torque of 0.3 N*m: is that its unit?" in str(doubt)
 
 
 def test_several_environments_at_once_are_refused():

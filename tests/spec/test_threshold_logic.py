@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import load_spec, parse_spec
-from nrs_design.spec.threshold_logic import ThresholdLogicSpec, reach
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec, values_at_switch
 from tests.support import FORCE_LIMIT, ROOT
 
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
@@ -73,12 +73,14 @@ def test_how_far_the_signal_has_gone():
     """Threshold, noise, and what 6.1 N m/s move in 4 ms; the timer adds to that."""
     switch = OUT | {"torque": {"above": "0.1 N*m"}}
     found = logic(switch, BACK)
-    assert reach(found, found.switches[0])["torque"] == pytest.approx(0.1 + 0.002 + 0.0244)
+    assert values_at_switch(found, found.switches[0])["torque"] == pytest.approx(
+        0.1 + 0.002 + 0.0244
+    )
     held = logic(switch, BACK, hold={"in": "66 ms"})
     assert held.held_back("in") == Fraction(50, 1000)
-    late = reach(held, held.switches[0])
+    late = values_at_switch(held, held.switches[0])
     assert late["torque"] == pytest.approx(0.1 + 0.002 + 6.1 * 0.054)
-    assert late["command"] < reach(found, found.switches[0])["command"] < 0
+    assert late["command"] < values_at_switch(found, found.switches[0])["command"] < 0
 
 
 def test_the_switch_of_the_thesis_may_chatter():

@@ -2,6 +2,7 @@
 
 import json
 from fractions import Fraction
+from math import ceil
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import dump
 from nrs_design.certificates.verify import verify_document
-from nrs_design.pipeline import limits_of, run_certification, run_design
+from nrs_design.pipeline import run_certification, run_design, search_limits
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.reporting.sections.proof import proof_section
 from nrs_design.spec import read_spec
@@ -91,21 +92,15 @@ def test_where_it_is_not_asked_for(tmp_path):
 def test_runs_stay_below_the_bound_and_come_near(tmp_path):
     """In single precision: the command that moves the motor most, and 500 at random."""
     loaded = spec_of(tmp_path, COMMANDED)
-    result = run_certification(loaded, limits=limits_of(loaded.spec, optimize_rate=False))
+    result = run_certification(loaded, limits=search_limits(loaded.spec, optimize_rate=False))
     system = result.certification.system
     bound = bound_on(system, result.certification.statements, "motor command")
     claim = next(s for s in result.certificate.statements if "motor" in s.claim(system))
     assert "The limit of 2000 rpm is kept." in claim.claim(system)
     assert claim.covers_rounding
-    row = command_of(system).rows[0].floats()[0]
-    B = np.array(system.channels[0].columns[0].floats())[:, 0]
-    moved, signs = B, []
-    for _ in range(300):
-        signs.append(np.sign(row @ moved))
-        moved = np.array(system.modes[0].A.floats()) @ moved
     rng = np.random.default_rng(5)
     random = np.repeat(rng.choice([-1.0, 1.0], (500, 60)), 5, axis=1)
-    pushes = np.radians(7.5) * np.vstack([signs[::-1], random])
+    pushes = np.radians(7.5) * np.vstack([worst_signs(system, 0), random])
     pushes = np.hstack([pushes, np.zeros((501, 1))])
     reached = np.abs(_commands(pushes, bound_law(result))).max()
     assert reached <= bound.level
@@ -115,6 +110,33 @@ def test_runs_stay_below_the_bound_and_come_near(tmp_path):
     # An ellipsoid reaches further than what a jump of the command does at once.
     assert reached > 0.5 * float(bound.level)
     assert verify_document(json.loads(dump(result.certificate)), loaded).fault is None
+
+
+def worst_signs(system, mode):
+    """Return the direction of a command at each sample that moves the motor most in the end."""
+    row = command_of(system).rows[0].floats()[0]
+    moved, signs = np.array(system.channels[0].columns[0].floats())[:, 0], []
+    for _ in range(300):
+        signs.append(np.sign(row @ moved))
+        moved = np.array(system.modes[mode].A.floats()) @ moved
+    return signs[::-1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("speed", "level", "kept"), [("7.5", 1986, True), ("8", 2119, False)])
+def test_the_numbers_of_the_page(tmp_path, speed, level, kept):
+    """docs/certificates/invariant-ellipsoid.md: proved, and found at two stiffnesses."""
+    loaded = spec_of(tmp_path, f"disturbances: {{command: {speed} deg/s}}\n")
+    result = run_certification(loaded, limits=search_limits(loaded.spec, optimize_rate=False))
+    system = result.certification.system
+    assert ceil(bound_on(system, result.certification.statements, "motor command").level) == level
+    claim = next(s for s in result.certificate.statements if "motor" in s.claim(system))
+    assert ("The limit of 2000 rpm is kept." in claim.claim(system)) is kept
+    if kept:
+        stiffest = loaded.spec.environments["soft"].at_pivot()["stiffness"].range[1].si
+        for k, mode, found in ((43.0, 0, 1019), (stiffest, -1, 1040)):
+            pushes = np.radians(7.5) * np.array([[*worst_signs(system, mode), 0.0]])
+            assert int(np.abs(_commands(pushes, bound_law(result), k)).max()) == found
 
 
 def bound_law(result):

@@ -10,7 +10,13 @@ from nrs_design.errors import InternalError
 from nrs_design.spec import parse_spec
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.assemble import assemble_from_text
-from nrs_design.switched.parameters import Corner, Parameter, check_affine, corner_modes, pair_ends
+from nrs_design.switched.parameters import (
+    Corner,
+    UncertainParameter,
+    check_affine,
+    corner_modes,
+    pair_ends,
+)
 
 ENTRIES = ("0", "k", "-2 - k", "3/4*k - m + 0.5", "(k - r)/3", "m", "1/6", "r + m + k")
 HALVES = st.fractions(-20, 20, max_denominator=4)
@@ -110,7 +116,7 @@ def test_every_matrix_of_the_box_is_a_mean_of_corners(entries, ends, shares, var
         "switching: arbitrary\nresets: [{from: a, to: all, map: [[1, 0]]}, "
         "{from: all, to: a, map: [[1], [0]]}]",
     )
-    parameters = [Parameter(n, Interval(ranges[n][0], *ranges[n]), True) for n in names]
+    parameters = [UncertainParameter(n, Interval(ranges[n][0], *ranges[n]), True) for n in names]
     values = {
         n: low + share * (high - low)
         for share, (n, (low, high)) in zip(shares, ranges.items(), strict=True)

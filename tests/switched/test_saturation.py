@@ -7,6 +7,7 @@ import pytest
 
 from nrs_design.pipeline import run_certification, run_design
 from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.proof.bounds import rounded_down
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.spec import read_spec
 from nrs_design.switched.assumption_kinds import LIMITED, NOT_SAMPLED
@@ -105,6 +106,15 @@ def test_a_region_is_found_for_each(tmp_path, text):
     assert evidence.kind == "saturated-ellipsoid"
     assert evidence.find_fault(certification.system) is None
     assert evidence.start_size > Fraction(1, 10)
+
+
+def test_the_largest_force_of_the_example(tmp_path):
+    """0.845 N m on the page, at the softest of the range."""
+    file = tmp_path / "saturating.nrs.yaml"
+    file.write_text(TEXT.replace("0.5 N*m", "largest"), encoding="utf-8")
+    evidence = run_certification(read_spec(file)).certification.statements[-1]
+    assert float(evidence.start_size) == pytest.approx(0.8459, rel=1e-3)
+    assert rounded_down(evidence.start_size, "N*m").startswith("0.845")
 
 
 def test_what_is_taken_for_granted(tmp_path):

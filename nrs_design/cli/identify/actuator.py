@@ -11,10 +11,10 @@ from nrs_design.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
-    numbers,
+    estimate_numbers,
     read_all,
     sources,
 )
@@ -59,7 +59,7 @@ def actuator(
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
     from nrs_design.identification.write_spec import merge_actuator
 
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
     items = read_all(data, read_actuator, columns or [], quiet=quiet)
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
@@ -129,13 +129,13 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
         "doubts": list(found.doubts),
         "fits": [_fit(fit, found) for fit in found.fits],
         "range": {
-            f"gain_rad_s_{found.unit}": numbers(found.ranges[0]),
-            "time_constant_s": numbers(found.ranges[1]),
+            f"gain_rad_s_{found.unit}": estimate_numbers(found.ranges[0]),
+            "time_constant_s": estimate_numbers(found.ranges[1]),
         },
         "range_covers": found.coverage,
         "range_covers_words": found.covers,
-        "resistance_ohm": numbers(figures.resistance) if figures else None,
-        "speed_torque_gradient_rpm_per_Nm": numbers(figures.gradient) if figures else None,
+        "resistance_ohm": estimate_numbers(figures.resistance) if figures else None,
+        "speed_torque_gradient_rpm_per_Nm": estimate_numbers(figures.gradient) if figures else None,
         "response": [
             {"frequency_rad_s": w, "real": value.real, "imaginary": value.imag}
             for w, value in zip(found.frequency.tolist(), found.response.tolist(), strict=True)
@@ -148,11 +148,13 @@ def _fit(fit: ActuatorFit, found: ActuatorIdentification) -> dict[str, Any]:
     return {
         "method": fit.method,
         "order": fit.order,
-        f"gain_rad_s_{found.unit}": numbers(fit.gain),
-        "time_constant_s": numbers(fit.time_constant),
+        f"gain_rad_s_{found.unit}": estimate_numbers(fit.gain),
+        "time_constant_s": estimate_numbers(fit.time_constant),
         "damping_ratio": fit.motor.damping if fit.motor else None,
-        f"friction_{found.unit}": numbers(fit.friction) if fit.friction else None,
-        "dead_time_s": numbers(late) if late else None,
-        "dead_time_samples": numbers(late.scaled(1 / found.step)) if late and found.step else None,
+        f"friction_{found.unit}": estimate_numbers(fit.friction) if fit.friction else None,
+        "dead_time_s": estimate_numbers(late) if late else None,
+        "dead_time_samples": estimate_numbers(late.scaled(1 / found.step))
+        if late and found.step
+        else None,
         "whiteness_p": fit.uncertainty.whiteness,
     }

@@ -100,7 +100,7 @@ def _bar(*, quiet: bool) -> Iterator[Callable[[str], Callable[[float], None]]]:
 
 
 @dataclass(frozen=True, slots=True)
-class Outputs:
+class Destinations:
     """Where a result goes: into a spec, onto a page, to stdout.
 
     Parameters
@@ -224,7 +224,7 @@ def _write_spec(path: Path, text: str, *, quiet: bool) -> None:
     note(f"merged into {path}; run nrs-design gate {path} to prove it", quiet=quiet)
 
 
-def numbers(estimate: Estimate) -> dict[str, float | None]:
+def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
     """Return an estimate for JSON, which has no infinity; None says unlimited."""
     low, high = (end if math.isfinite(end) else None for end in (estimate.low, estimate.high))
     return {"value": estimate.value, "low": low, "high": high}

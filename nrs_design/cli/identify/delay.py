@@ -10,10 +10,10 @@ import typer
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
-    numbers,
+    estimate_numbers,
     read_all,
     sources,
 )
@@ -67,7 +67,7 @@ def delay(
             "name the force as measured by --command, and as the law used it by --measured",
             param_hint="--write",
         )
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
@@ -120,9 +120,11 @@ def _summary(found: DelayIdentification) -> dict[str, Any]:
         "sampling_step_s": record.step,
         "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
         "chosen": found.chosen.follower.name,
-        "delay_s": numbers(found.delay),
-        "delay_samples": numbers(found.samples),
-        "parts": [{"time_s": time, "samples": numbers(part)} for time, part in found.parts],
+        "delay_s": estimate_numbers(found.delay),
+        "delay_samples": estimate_numbers(found.samples),
+        "parts": [
+            {"time_s": time, "samples": estimate_numbers(part)} for time, part in found.parts
+        ],
         "whole_samples": list(found.whole_samples),
         "fits": [
             {

@@ -9,10 +9,10 @@ from nrs_design.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
-    numbers,
+    estimate_numbers,
     read_all,
     sources,
 )
@@ -85,7 +85,7 @@ def tissue(
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.write_spec import merge_tissue
 
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     records = read_all(data, read_tissue, columns or [], quiet=quiet)
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)
@@ -126,7 +126,7 @@ def _page(found: TissueIdentification, arm: float | None, series: list[Series]) 
 
 
 def _print(found: TissueIdentification, arm: float | None, series: list[Series]) -> None:
-    from nrs_design.identification.lever import units_of
+    from nrs_design.identification.lever import parameter_units
 
     if found.synthetic:
         say(SYNTHETIC)
@@ -135,7 +135,7 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
     rows = [
         [
             model.law.name,
-            "\n".join(_parameters(model, units_of(model.law, found.rotational))),
+            "\n".join(_parameters(model, parameter_units(model.law, found.rotational))),
             ", ".join(f"{value:.4g}" for value in model.rmse),
             f"{model.bic - least:.4g}",
             "; ".join(model.doubts[:2]) + (" ..." if len(model.doubts) > 2 else ""),
@@ -146,7 +146,7 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
     print_table("", columns, rows)
     say(found.reason)
     law = found.chosen.law
-    units = units_of(law, found.rotational)
+    units = parameter_units(law, found.rotational)
     ranges = zip(law.parameters(), found.chosen.ranges, units, strict=True)
     for name, estimate, unit in ranges:
         say(f"{name} = {estimate} {unit} holds {found.covers}")
@@ -159,7 +159,7 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
         say(f"{fit.record.name}: {'; '.join(remarks)}")
     if arm is not None:
         turned = law.at_pivot(arm)
-        values = zip(law.parameters(), turned.values, units_of(law, True), strict=True)
+        values = zip(law.parameters(), turned.values, parameter_units(law, True), strict=True)
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
     for item in series:
         say(item.text(rotational=found.rotational))
@@ -187,14 +187,16 @@ def _series_summary(series: Series) -> dict[str, Any]:
 
 
 def _print_tangent(about: Tangent, rotational: bool) -> None:
-    from nrs_design.identification.lever import units_of
+    from nrs_design.identification.lever import parameter_units
 
-    parts = zip(about.law.parameters(), about.ranges, units_of(about.law, rotational), strict=True)
+    parts = zip(
+        about.law.parameters(), about.ranges, parameter_units(about.law, rotational), strict=True
+    )
     values = ", ".join(f"{name} = {estimate} {unit}" for name, estimate, unit in parts)
     length = "rad" if rotational else "m"
     say(f"small motions about {about.low:.5g} to {about.high:.5g} {length}: {values}")
     names = (*about.law.parameters(), "phi")
-    units = (*units_of(about.law, rotational), "")
+    units = (*parameter_units(about.law, rotational), "")
     power = ", ".join(
         f"{name} = {estimate} {unit}".rstrip()
         for name, estimate, unit in zip(names, about.power, units, strict=True)
@@ -222,7 +224,7 @@ def _parameters(model: ModelFit, units: tuple[str, ...]) -> list[str]:
 def _summary(
     found: TissueIdentification, arm: float | None, series: list[Series] | None
 ) -> dict[str, Any]:
-    from nrs_design.identification.lever import units_of
+    from nrs_design.identification.lever import parameter_units
 
     law = found.chosen.law
     listed = {} if series is None else {"prony": [_series_summary(item) for item in series]}
@@ -233,11 +235,11 @@ def _summary(
         "reason": found.reason,
         "caveats": list(found.caveats),
         "ranges": {
-            name: numbers(estimate) | {"unit": unit}
+            name: estimate_numbers(estimate) | {"unit": unit}
             for name, estimate, unit in zip(
                 law.parameters(),
                 found.chosen.ranges,
-                units_of(law, found.rotational),
+                parameter_units(law, found.rotational),
                 strict=True,
             )
         },
@@ -246,14 +248,14 @@ def _summary(
         else {
             "preload": [found.tangent.low, found.tangent.high],
             "ranges": {
-                name: numbers(estimate)
+                name: estimate_numbers(estimate)
                 for name, estimate in zip(
                     found.tangent.law.parameters(), found.tangent.ranges, strict=True
                 )
             },
             "about": found.tangent.about,
             "law": {
-                name: numbers(estimate)
+                name: estimate_numbers(estimate)
                 for name, estimate in zip(
                     (*found.tangent.law.parameters(), "phi"), found.tangent.power, strict=True
                 )
@@ -271,15 +273,15 @@ def _summary(
 
 
 def _model(model: ModelFit, rotational: bool) -> dict[str, Any]:
-    from nrs_design.identification.lever import units_of
+    from nrs_design.identification.lever import parameter_units
 
     names = model.law.parameters()
     return {
         "law": model.law.name,
         "parameters": {
-            name: numbers(estimate) | {"unit": unit}
+            name: estimate_numbers(estimate) | {"unit": unit}
             for name, estimate, unit in zip(
-                names, model.estimates, units_of(model.law, rotational), strict=True
+                names, model.estimates, parameter_units(model.law, rotational), strict=True
             )
         },
         "relaxation_time_s": model.law.relaxation_time,
@@ -289,7 +291,7 @@ def _model(model: ModelFit, rotational: bool) -> dict[str, Any]:
         "records": [
             {
                 "parameters": {
-                    name: numbers(estimate)
+                    name: estimate_numbers(estimate)
                     for name, estimate in zip(names, fit.estimates, strict=True)
                 },
                 "rmse": fit.rmse,
@@ -297,7 +299,7 @@ def _model(model: ModelFit, rotational: bool) -> dict[str, Any]:
                 "aic": fit.aic,
                 "bic": fit.bic,
                 "offsets": {
-                    offset.name: numbers(offset.estimate)
+                    offset.name: estimate_numbers(offset.estimate)
                     | {"fitted": offset.fitted, "provided": offset.provided or None}
                     for offset in fit.offsets
                 },

@@ -10,10 +10,10 @@ from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
     DataFiles,
-    Outputs,
+    Destinations,
     ReportTo,
     WriteTo,
-    numbers,
+    estimate_numbers,
     read_all,
     sources,
 )
@@ -49,7 +49,7 @@ def tool(
     from nrs_design.identification.tool import identify_tool
     from nrs_design.identification.write_spec import merge_tool
 
-    outputs = Outputs.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     records = read_all(data, read_poses, columns or [], quiet=quiet)
     with progress("fitting", quiet=quiet):
         found = identify_tool(records, gravity)
@@ -86,14 +86,14 @@ def _print(found: ToolIdentification) -> None:
 
 def _summary(found: ToolIdentification) -> dict[str, Any]:
     def along(estimates: Any) -> dict[str, Any]:
-        return {axis: numbers(e) for axis, e in zip("xyz", estimates, strict=True)}
+        return {axis: estimate_numbers(e) for axis, e in zip("xyz", estimates, strict=True)}
 
     return {
         "synthetic": found.synthetic,
         "records": sources(record.source for record in found.records),
         "poses": len(found.force_errors),
         "gravity_m_s2": found.gravity,
-        "mass_kg": numbers(found.mass),
+        "mass_kg": estimate_numbers(found.mass),
         "center_of_mass_m": along(found.center),
         "force_bias_N": along(found.force_bias),
         "torque_bias_Nm": along(found.torque_bias),

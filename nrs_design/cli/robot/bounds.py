@@ -73,7 +73,7 @@ def bounds(
     if check:
         _check(spec, budget, as_json=as_json, quiet=quiet)
     from nrs_design import __version__
-    from nrs_design.models.robot import Space, compute_bounds, to_document
+    from nrs_design.models.robot import Space, bounds_document, compute_bounds
     from nrs_design.output import BOUNDS, check_place, write_output
     from nrs_design.pipeline import placed
     from nrs_design.pipeline.robots import run_robot
@@ -87,7 +87,7 @@ def bounds(
     space = _narrowed(Space.of(robot.workspace), phi, psi, depth)
     with placed(loaded), progress(f"bounds of {loaded.spec.name}", quiet=quiet, lines=True) as step:
         found = compute_bounds(robot, space, budget, step)
-    document = to_document(loaded.spec.name, loaded.sha256, space, found, __version__)
+    document = bounds_document(loaded.spec.name, loaded.sha256, space, found, __version__)
     files = _draw(figures, robot, space, found, quiet=quiet) if figures is not None else []
     if file is not None:
         write_output(file, json_text(document) + "\n", replaces=BOUNDS)

@@ -100,6 +100,6 @@ def export(
 def _check_unproved(chosen: Format, *, unproved: bool) -> None:
     if unproved and not chosen.executable:
         raise NrsDesignError(
-            "--unproved is for programs, and this format is none",
+            "--unproved is for programs, and this format is not one",
             remedy="leave it out; `nrs-design export --list` lists the formats",
         )

@@ -11,12 +11,11 @@ from nrs_design.cli.options import Json, Quiet, SpecFile
 from nrs_design.cli.printing import print_json, progress, say
 from nrs_design.cli.robot.options import Figures, Tilt, write_figures
 from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from nrs_design.models.robot import Robot
-    from nrs_design.simulation.tracking import Record
+    from nrs_design.simulation.tracking import TrackingRecord
     from nrs_design.spec import RobotSpec
 
 ALL = "all"
@@ -118,8 +117,8 @@ def _records(
     controller: ControllerOption,
     moved: str | None,
     period: float | None,
-    tell: Callable[[str], None],
-) -> list[Record]:
+    tell: Progress,
+) -> list[TrackingRecord]:
     from nrs_design.simulation.tracking import CONTROLLERS, build_track, simulate
 
     names: tuple[str, ...] = (controller.value,)
@@ -134,7 +133,7 @@ def _ablation(
     robot: Robot,
     moved: str | None,
     period: float | None,
-    tell: Callable[[str], None],
+    tell: Progress,
 ) -> list[dict[str, Any]]:
     from nrs_design.simulation.tracking import ablation_tracks, simulate
 
@@ -147,7 +146,7 @@ def _ablation(
     return rows
 
 
-def _run(spec: RobotSpec, robot: Robot, record: Record) -> dict[str, Any]:
+def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
     from nrs_design.reproduction.tracking import measured_rmse
 
     measured = measured_rmse(spec, robot, record.controller, record.experiment)

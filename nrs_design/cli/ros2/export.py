@@ -45,7 +45,7 @@ def export(
 
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
-    from nrs_design.pipeline import limits_of, placed, run_design, wrong_kind
+    from nrs_design.pipeline import placed, run_design, search_limits, wrong_kind
     from nrs_design.ros2.export import export_controllers
     from nrs_design.spec import read_spec
 
@@ -61,7 +61,7 @@ def export(
     files = {c.name: out / f"{name}.{c.name}.ros2.yaml" for c in designed.design.controllers}
     _check(spec, files)
     with progress(f"exporting {name}", quiet=quiet), placed(loaded):
-        found = list(export_controllers(designed, axis, read_lag(lag), limits_of(loaded.spec)))
+        found = list(export_controllers(designed, axis, read_lag(lag), search_limits(loaded.spec)))
     worst = max((item.verdict for item in found), key=_SEVERITY.index)
     written = []
     if worst == "proved":

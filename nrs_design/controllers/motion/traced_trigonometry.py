@@ -36,9 +36,9 @@ def sine_and_cosine(
         Plus the second.
     """
     square = angle * angle
-    sine = polynomial(_scaled(SINE, factor / ratio, ratio), square) * angle
+    sine = horner(_scaled(SINE, factor / ratio, ratio), square) * angle
     first, *others = _scaled(COSINE, factor, ratio)
-    return sine, polynomial((first + offset, *others), square)
+    return sine, horner((first + offset, *others), square)
 
 
 def tangent(angle: Traced, ratio: float) -> Scalar:
@@ -55,10 +55,10 @@ def tangent(angle: Traced, ratio: float) -> Scalar:
     rise = _scaled(RISE, 1 / ratio, ratio)
     run = _scaled(RUN, 1 / rise[-1], ratio)
     rise = tuple(number / rise[-1] for number in rise)
-    return polynomial(rise, square) * angle / polynomial(run, square)
+    return horner(rise, square) * angle / horner(run, square)
 
 
-def polynomial(coefficients: tuple[float, ...], x: Traced) -> Scalar:
+def horner(coefficients: tuple[float, ...], x: Traced) -> Scalar:
     """Return the value of a polynomial, its constant coefficient first."""
     value: Scalar = coefficients[-1]
     for coefficient in coefficients[-2::-1]:

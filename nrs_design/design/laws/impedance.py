@@ -287,7 +287,7 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
 
 
 def _measured_in(task: Task, given: ImpedanceControllerSpec) -> tuple[Environment, ...]:
-    """Return all contacts, and what the gains are designed for if it is none by itself."""
+    """Return all contacts, and what the gains are designed for if that is not one by itself."""
     names = dict.fromkeys((*contact_names(given.contacts), given.environment))
     return tuple(map(task.plant.environment, names))
 

@@ -24,7 +24,7 @@ def to_text(outcome: GateOutcome) -> str:
     parts = [*_table([COLUMNS, *rows_of(outcome)]), *gain_lines(outcome)]
     if outcome.broken:
         parts += ["", *map(line_of, outcome.broken)]
-    return "\n".join([*parts, "", summary_of(outcome)]) + "\n"
+    return "\n".join([*parts, "", summary_line(outcome)]) + "\n"
 
 
 def rows_of(outcome: GateOutcome) -> list[Sequence[str]]:
@@ -88,7 +88,7 @@ def line_of(item: Obligation) -> str:
     return printable(f"{':'.join(place)}: {item.rule.id} {item.status}: {item.message}")
 
 
-def summary_of(outcome: GateOutcome) -> str:
+def summary_line(outcome: GateOutcome) -> str:
     """Return the line that sums up."""
     counts = ", ".join(f"{n} {verdict}" for verdict, n in count_by_verdict(outcome.specs).items())
     broken = len(outcome.broken)

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import tells_friction
 from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.datasets import ActuatorRecord
@@ -122,11 +122,11 @@ def _explained(
     return factor**2 * power / total if total else 0.0, factor
 
 
-def _cut(motor: Motor, level: float, record: ActuatorRecord) -> Array:
+def _cut(motor: MotorModel, level: float, record: ActuatorRecord) -> Array:
     """Return the output of what a limit would cut off."""
     held, _ = motor.hold(record)
     over = held.command - np.clip(held.command, -level, level)
-    plain = Motor(motor.gain, motor.time_constant, None, motor.delay, motor.damping)
+    plain = MotorModel(motor.gain, motor.time_constant, None, motor.delay, motor.damping)
     return plain.forced(record, Held(held.grid, over, held.samples), None)
 
 
@@ -134,7 +134,7 @@ def _constant(record: ActuatorRecord) -> tuple[Held, None]:
     return Held(record.time, np.ones(len(record.time) - 1), np.arange(len(record.time))), None
 
 
-def _lost(motor: Motor, play: float, record: ActuatorRecord) -> Array:
+def _lost(motor: MotorModel, play: float, record: ActuatorRecord) -> Array:
     """Return the output behind a play of a width, less that without it."""
     angle = motor.simulate(record)
     behind, followed = angle[0], []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse
 from nrs_design.identification.statistics import WHITE, Estimate
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
+from nrs_design.progress import Progress, silent
 from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
 
 Array = NDArray[np.float64]
@@ -110,7 +111,7 @@ def identify_actuator(
     data: Sequence[ActuatorRecord | FrequencyResponse],
     motor: MotorConstants,
     coverage: Coverage = "confidence",
-    progress: Callable[[str], None] = lambda step: None,
+    progress: Progress = silent,
 ) -> ActuatorIdentification:
     """Fit gain, time constant, friction and dead time.
 
@@ -196,7 +197,7 @@ def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorId
 
 
 def _from_records(
-    records: Sequence[ActuatorRecord], motor: MotorConstants, progress: Callable[[str], None]
+    records: Sequence[ActuatorRecord], motor: MotorConstants, progress: Progress
 ) -> ActuatorIdentification:
     phasors, fits = _from_phasors(records)
     progress("time domain")
@@ -257,7 +258,7 @@ def _has_failed(records: Sequence[ActuatorRecord], found: TimeFit) -> bool:
 def _first_order(records: Sequence[ActuatorRecord]) -> TimeFit:
     """Return a motor of first order, with friction only where that is better.
 
-    The scan may need friction that is none, as its times are coarse.
+    The scan may find friction where there is none, as its times are coarse.
     """
     start = scan_motor(records)
     if start.friction is None:

@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.statistics import (
     Estimate,
@@ -73,7 +73,7 @@ class ActuatorFit:
         Of the logarithms of these, in this order.
     dead_time : Estimate or None
         D in s; None where it was taken for zero.
-    motor : Motor or None
+    motor : MotorModel or None
         What was fitted in time; None for a fit in the frequency domain.
     """
 
@@ -83,7 +83,7 @@ class ActuatorFit:
     friction: Estimate | None
     uncertainty: Uncertainty
     dead_time: Estimate | None = None
-    motor: Motor | None = None
+    motor: MotorModel | None = None
 
     @property
     def order(self) -> int:

@@ -20,7 +20,7 @@ _DELAY_DIFFERENCE = 100.0
 
 
 @dataclass(frozen=True, slots=True)
-class Motor:
+class MotorModel:
     """``velocity = lags (gain (command(t - delay) - friction sign(velocity)))``.
 
     Parameters

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.held import Held, Lags
 
@@ -27,7 +27,7 @@ _CLEAR = 4.0
 _NEARLY = 4.0
 
 
-def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
+def scan_motor(records: Sequence[ActuatorRecord]) -> MotorModel:
     """Return the best of many motors; whatever the command is, gain and friction are linear.
 
     Raises
@@ -53,7 +53,7 @@ def scan_motor(records: Sequence[ActuatorRecord]) -> Motor:
     _, solution, errors, tau, delay = min(along, key=lambda item: item[0])
     gain = float(solution[0])
     clear = solution[1] > _CLEAR * errors[1] and tells_friction(records, tau, delay)
-    return Motor(gain, tau, float(solution[1]) / gain if clear else None, delay)
+    return MotorModel(gain, tau, float(solution[1]) / gain if clear else None, delay)
 
 
 def tells_friction(records: Sequence[ActuatorRecord], tau: float, delay: float) -> bool:

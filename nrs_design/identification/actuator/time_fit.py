@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Uncertainty, uncertainty
-from nrs_design.identification.steps import shortened
+from nrs_design.identification.steps import limited_step
 
 Array = NDArray[np.float64]
 
@@ -36,15 +36,15 @@ class TimeFit:
 
     Parameters
     ----------
-    motor : Motor
+    motor : MotorModel
         With its parameters.
     uncertainty : Uncertainty
-        Of `Motor.parameters`.
+        Of `MotorModel.parameters`.
     errors : ndarray, shape (n,)
         Measured less fitted, of all records in turn.
     """
 
-    motor: Motor
+    motor: MotorModel
     uncertainty: Uncertainty
     errors: Array
 
@@ -63,7 +63,7 @@ class TimeFit:
         return n * float(np.log(power / n)) + len(self.motor.parameters) * float(np.log(n))
 
 
-def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
+def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit:
     """Refine a motor in the time domain, its dead time with it.
 
     The command is held between samples and the velocity is solved exactly. Initial angle and
@@ -74,7 +74,7 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
     ----------
     records : sequence of ActuatorRecord
         At least one.
-    start : Motor
+    start : MotorModel
         Says which parameters there are.
 
     Raises
@@ -92,7 +92,7 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
         step = scale * np.linalg.lstsq(J * scale, error, rcond=None)[0]
         limit = np.full(len(step), _LARGEST_STEP)
         limit[-1] = 2 * usual + motor.time_constant / 4
-        step = shortened(step, limit)
+        step = limited_step(step, limit)
         if np.abs(step / scale).max() < _CONVERGED:
             break
         better = _improved(records, motor, step, float(error @ error))
@@ -112,8 +112,8 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: Motor) -> TimeFit:
 
 
 def _improved(
-    records: Sequence[ActuatorRecord], motor: Motor, step: Array, power: float
-) -> tuple[Motor, list[tuple[Array, Array]]] | None:
+    records: Sequence[ActuatorRecord], motor: MotorModel, step: Array, power: float
+) -> tuple[MotorModel, list[tuple[Array, Array]]] | None:
     """Return a motor along a step that fits better, or None."""
     for halving in range(_HALVINGS):
         tried = motor.with_parameters(motor.parameters + step / 2**halving)

@@ -35,7 +35,7 @@ _BEGINNINGS = (
     (b"PAR1", "is a Parquet file", "name it .parquet"),
     (b"MATLAB 5.0", "is a file of MATLAB", "name it .mat"),
 )
-# A matrix with more is none whose columns are signals.
+# With more, the columns of a matrix are no signals.
 _MOST_COLUMNS = 100
 _MATLAB_HDF = b"MATLAB 7.3"
 

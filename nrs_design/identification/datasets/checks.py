@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from nrs_design.identification.datasets.table import Array, Table
+from nrs_design.identification.datasets.table import Array, MeasurementTable
 
 FEWEST_ROWS = 50
 # A step of more than so many usual ones is a gap.
@@ -24,7 +24,7 @@ def doubt_step(step: float) -> Iterator[str]:
         yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
 
 
-def check_time(table: Table, time: Array) -> None:
+def check_time(table: MeasurementTable, time: Array) -> None:
     """Check that time advances without gaps.
 
     Raises
@@ -51,7 +51,7 @@ def check_time(table: Table, time: Array) -> None:
         )
 
 
-def check_advance(table: Table, time: Array) -> None:
+def check_advance(table: MeasurementTable, time: Array) -> None:
     """Check that time advances.
 
     Raises
@@ -71,7 +71,7 @@ def check_advance(table: Table, time: Array) -> None:
         )
 
 
-def check_turns(table: Table, angle: Array) -> None:
+def check_turns(table: MeasurementTable, angle: Array) -> None:
     """Check that an angle does not jump by a whole turn, as one that begins anew at 360 deg does.
 
     Raises
@@ -89,12 +89,12 @@ def check_turns(table: Table, angle: Array) -> None:
         )
 
 
-def check_saturation(table: Table, name: str, values: Array, moving: Array) -> None:
+def check_saturation(table: MeasurementTable, name: str, values: Array, moving: Array) -> None:
     """Check that a sensor does not rest at its extreme reading while its input moves on.
 
     Parameters
     ----------
-    table : Table
+    table : MeasurementTable
         For the row in the message.
     name : str
         Of the quantity.
@@ -120,12 +120,12 @@ def check_saturation(table: Table, name: str, values: Array, moving: Array) -> N
                 )
 
 
-def check_varies(table: Table, name: str, values: Array) -> None:
+def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
     """Check that a column is not constant.
 
     Parameters
     ----------
-    table : Table
+    table : MeasurementTable
         For the place in errors.
     name : str
         Of the column.

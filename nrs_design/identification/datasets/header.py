@@ -114,7 +114,7 @@ def read_header(
     return Header(names, separator, comma, quoted, below, synthetic, b"".join(raw[below:]))
 
 
-def is_number(text: str) -> bool:
+def is_decimal(text: str) -> bool:
     """Tell whether a cell is a decimal number."""
     try:
         float(text)
@@ -161,7 +161,7 @@ def _find(
     if last is None:
         raise DataError("has no header line", path=path, remedy="name the columns in a line")
     first = next(i for i, text in enumerate(lines) if text and not text.startswith("#"))
-    if is_number(lines[first]):
+    if is_decimal(lines[first]):
         raise _nameless(path, first + 1, example)
     return first, max(SEPARATORS[:3], key=lambda s: lines[first].count(s or ","))
 
@@ -195,7 +195,7 @@ def _separator_of(text: str) -> str | None:
             len(cells) > 1
             and any(cells)
             and all(
-                is_number(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
+                is_decimal(cell) or (comma and _DECIMAL_COMMA.match(cell)) for cell in cells if cell
             )
         ):
             return separator
@@ -241,7 +241,7 @@ def _names(text: str, separator: str | None, path: Path, line: int) -> list[str]
 
 def _are_units(cells: Sequence[str], width: int) -> bool:
     """Tell whether a line below the names holds their units, such as ``(s);(mm);(N)``."""
-    if len(cells) != width or not any(cells) or any(is_number(cell) for cell in cells):
+    if len(cells) != width or not any(cells) or any(is_decimal(cell) for cell in cells):
         return False
     return all(not cell or _BRACKETS.match(cell) or _is_unit(cell) for cell in cells)
 

@@ -221,7 +221,7 @@ def stated_unit(text: str, quantity: str) -> str | None:
     Returns
     -------
     str or None
-        None if it says none that is known.
+        None if it says no known one.
     """
     known = {unit for units in UNITS.values() for unit in units}
     bracketed = _BRACKETED.match(text.strip()) or _SLASHED.match(text.strip())

@@ -16,7 +16,13 @@ from nrs_design.identification.datasets.checks import (
     check_turns,
     check_varies,
 )
-from nrs_design.identification.datasets.table import Array, Progress, Source, Table, read_table
+from nrs_design.identification.datasets.table import (
+    Array,
+    MeasurementTable,
+    Progress,
+    Source,
+    read_table,
+)
 from nrs_design.models.contact.motion import Motion
 
 LINEAR = ("time", "deflection", "force")
@@ -303,7 +309,7 @@ def read_poses(
     return PoseRecord(table.source, -turns[:, 2, :], force, torque, turns)
 
 
-def _one_group(table: Table) -> Sequence[dict[str, Array]]:
+def _one_group(table: MeasurementTable) -> Sequence[dict[str, Array]]:
     if len(table.groups) > 1:
         raise DataError(
             f"holds {len(table.groups)} groups of columns",
@@ -313,7 +319,7 @@ def _one_group(table: Table) -> Sequence[dict[str, Array]]:
     return list(table.groups.values())
 
 
-def _actuator(table: Table, group: str) -> ActuatorRecord:
+def _actuator(table: MeasurementTable, group: str) -> ActuatorRecord:
     time, command, output = (table.groups[group][quantity] for quantity in table.layout)
     check_time(table, time)
     check_varies(table, "command", command)
@@ -325,7 +331,7 @@ def _actuator(table: Table, group: str) -> ActuatorRecord:
     return ActuatorRecord(table.source, group, time - time[0], command, output, is_angle, unit)
 
 
-def _response(table: Table) -> FrequencyResponse:
+def _response(table: MeasurementTable) -> FrequencyResponse:
     (columns,) = _one_group(table)
     frequency, magnitude, phase = (columns[quantity] for quantity in RESPONSE)
     if len(frequency) < 3:

@@ -46,7 +46,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Table:
+class MeasurementTable:
     """The columns of one file, in SI.
 
     Parameters
@@ -114,7 +114,7 @@ def read_table(
     mapping: Mapping[str, str],
     progress: Progress = lambda fraction: None,
     optional: tuple[str, ...] = (),
-) -> Table:
+) -> MeasurementTable:
     """Read the columns of one of several layouts.
 
     Parameters
@@ -146,7 +146,7 @@ def read_table(
         ) from error
 
 
-def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> Table:
+def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> MeasurementTable:
     kind = path.suffix.lower()
     if kind in ARRAYS:
         table = _read_arrays(file, path, wanted)
@@ -158,7 +158,7 @@ def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> Tab
     return table
 
 
-def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
+def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
     digest = _digest(file)
     text, sheets = read_sheet(file, path)
     try:
@@ -172,7 +172,7 @@ def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
         raise DataError(fault.message, path=path, line=fault.line, remedy=remedy) from error
 
 
-def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
+def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
     digest = _digest(file)
     arrays, words = ARRAYS[path.suffix.lower()](file, path)
     names = list(arrays)
@@ -195,7 +195,9 @@ def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> Table:
             remedy="save columns of one record, as long as its time",
         )
     synthetic = any(SYNTHETIC in text.lower() for text in (*names, *words))
-    return Table(Source(path, digest, synthetic), layout, data, groups, tuple(labels), None)
+    return MeasurementTable(
+        Source(path, digest, synthetic), layout, data, groups, tuple(labels), None
+    )
 
 
 def _digest(file: BinaryIO) -> str:
@@ -239,7 +241,7 @@ def _values(array: NDArray[np.generic], column: Column, path: Path, labels: list
 
 def _read_text(
     file: BinaryIO, path: Path, wanted: Wanted, digest: str | None, progress: Progress
-) -> Table:
+) -> MeasurementTable:
     hashed = hashlib.sha256()
     example = ",".join(
         key if "any" in UNITS[key] else standard_name(key) for key in wanted.layouts[0]
@@ -266,7 +268,7 @@ def _read_text(
         for name, group in groups.items()
     }
     source = Source(path, digest or hashed.hexdigest(), header.synthetic)
-    return Table(source, layout, data, groups, tuple(parser.labels), header.line + 1)
+    return MeasurementTable(source, layout, data, groups, tuple(parser.labels), header.line + 1)
 
 
 def _too_long(path: Path) -> DataError:

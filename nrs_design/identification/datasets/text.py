@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.columns import Column
-from nrs_design.identification.datasets.header import BLOCK, Header, is_number
+from nrs_design.identification.datasets.header import BLOCK, Header, is_decimal
 from nrs_design.proof.text import quoted
 
 Array = NDArray[np.float64]
@@ -158,7 +158,7 @@ class Parser:
             cells = dict(enumerate(text.split(self._separator)))
             for column in self.columns:
                 cell = cells.get(column.index, "").strip()
-                if "." in cell and is_number(cell):
+                if "." in cell and is_decimal(cell):
                     fault = f"{column.name} is {cell} where others have a decimal comma"
                     self._fail(fault, number, _UNDECIDED)
 
@@ -187,8 +187,8 @@ class Parser:
             self._fail(f"{name} is missing", line, "end the record before it, or fill the gap")
         if column.unit == "":
             return
-        if not is_number(cell):
-            thousands = "," in cell and is_number(cell.replace(",", ""))
+        if not is_decimal(cell):
+            thousands = "," in cell and is_decimal(cell.replace(",", ""))
             remedy = _UNDECIDED if thousands else "write decimal numbers"
             self._fail(f"{name} is {quoted(cell)}, not a number", line, remedy)
         if not np.isfinite(float(cell)):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets import SignalRecord
 from nrs_design.identification.delay.models import AbstractFollower
 from nrs_design.identification.statistics import Uncertainty, uncertainty
-from nrs_design.identification.steps import shortened
+from nrs_design.identification.steps import limited_step
 
 Array = NDArray[np.float64]
 
@@ -93,7 +93,7 @@ def fit_delay(
     for _ in range(_STEPS):
         J = _sensitivities(record, follower, x, rows)
         newton = np.asarray(np.linalg.lstsq(J, error, rcond=None)[0], dtype=np.float64)
-        step = shortened(newton, limit)
+        step = limited_step(newton, limit)
         for halving in range(_HALVINGS):
             tried = x + step / 2**halving
             found = _errors(record, follower, tried, rows)

@@ -2,24 +2,24 @@
 
 from nrs_design.identification.running.bounds import (
     RunBounds,
-    bounds_of,
     bounds_of_spec,
-    rules_of,
+    read_run_bounds,
+    switching_rules,
 )
-from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.judge import RunJudgement, judge_run
 from nrs_design.identification.running.log import RunLog, read_run
 
 __all__ = [
+    "BoundStatus",
     "Check",
     "RunBounds",
     "RunJudgement",
     "RunLog",
-    "Status",
     "Violation",
-    "bounds_of",
     "bounds_of_spec",
     "judge_run",
     "read_run",
-    "rules_of",
+    "read_run_bounds",
+    "switching_rules",
 ]

@@ -39,6 +39,8 @@ class RunBounds:
         Shortest and longest time in each controller, in s.
     transitions : frozenset of (str, str) or None
         Allowed switches; None allows all.
+    names_contacts : bool
+        Whether there are other rules, about what is touched, which no log says.
     torque : float
         Largest torque in N m.
     delay : float or None
@@ -52,6 +54,8 @@ class RunBounds:
         Whether the spec asks for a proof that holds while contact is lost.
     command : str
         Unit of the motor's command.
+    saturates : float or None
+        Command at which the driver saturates, in that unit; None if the spec does not say.
     proved : bool
         Whether a valid certificate proves the spec; else it is only declared.
     """
@@ -59,12 +63,14 @@ class RunBounds:
     stiffness: Mapping[str, Stiffness | None]
     stays: Mapping[str, tuple[float, float]]
     transitions: frozenset[tuple[str, str]] | None
+    names_contacts: bool
     torque: float
     delay: float | None
     lever_arm: float | None
     period: float | None
     losable: bool
     command: str
+    saturates: float | None = None
     proved: bool = False
 
     @property
@@ -84,7 +90,7 @@ class RunBounds:
         return Stiffness(tuple(ranges), tuple(foreign))
 
 
-def bounds_of(loaded: LoadedSpec) -> RunBounds:
+def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
     """Read the bounds out of a spec.
 
     Raises
@@ -102,7 +108,7 @@ def bounds_of(loaded: LoadedSpec) -> RunBounds:
     return bounds_of_spec(spec)
 
 
-def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
+def switching_rules(spec: InteractionDesignSpec) -> SwitchingSpec:
     """Return the rules of switching that a run can be held against.
 
     A log says which controller is active, not what is touched.
@@ -111,21 +117,23 @@ def rules_of(spec: InteractionDesignSpec) -> SwitchingSpec:
 
 
 def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
-    """Return the bounds of a design; see `bounds_of`."""
+    """Return the bounds of a design; see `read_run_bounds`."""
     arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
-    rules = rules_of(spec)
+    rules = switching_rules(spec)
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(
         stiffness={name: _stiffness(spec, name) for name in spec.controllers},
         stays={name: _stay(rules, name) for name in spec.controllers},
         transitions=None if transitions is None else frozenset(transitions),
+        names_contacts=spec.switching.names_contacts,
         torque=spec.limits.torque.si,
         delay=None if margin is None else margin.si,
         lever_arm=arms.pop() if len(arms) == 1 else None,
         period=_period(spec),
         losable=spec.contact == "losable",
         command=spec.actuator.command,
+        saturates=None if spec.limits.command is None else spec.limits.command.si,
     )
 
 

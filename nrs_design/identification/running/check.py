@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Status(StrEnum):
+class BoundStatus(StrEnum):
     """How a run stands to one bound."""
 
     INSIDE = "inside"
@@ -42,7 +42,7 @@ class Check:
     ----------
     name : str
         What is judged.
-    status : Status
+    status : BoundStatus
         The outcome.
     measured : str
         What the log shows; for what is not judged, why.
@@ -55,7 +55,7 @@ class Check:
     """
 
     name: str
-    status: Status
+    status: BoundStatus
     measured: str
     allowed: str
     basis: str

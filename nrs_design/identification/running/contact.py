@@ -8,9 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.running.bounds import RunBounds, Stiffness
-from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
-from nrs_design.identification.running.stiffness import Window, cut_windows, stiffness_of
+from nrs_design.identification.running.stiffness import (
+    FEWEST_ROWS,
+    Window,
+    cut_windows,
+    stiffness_of,
+)
 
 Array = NDArray[np.float64]
 
@@ -27,7 +32,7 @@ _OPPOSED = 0.5
 class _Judged:
     window: Window
     allowed: Stiffness
-    status: Status
+    status: BoundStatus
     free: bool
 
 
@@ -71,7 +76,18 @@ def judge_contact(
         reason = "force and deflection have opposite signs; turn one with another column"
         return _not_judged("stiffness", reason), _not_judged("contact", reason), windows
     contact = _losable(bounds, judged) if losable else _contact(log, bounds, judged, windows)
-    return _stiffness(log, judged, basis), contact, windows
+    return _stiffness(log, bounds, judged, basis), contact, windows
+
+
+def _unseen(log: RunLog, bounds: RunBounds, judged: list[_Judged]) -> int:
+    """Return how many rows no window holds, of those in which something may be touched."""
+    touching = np.ones(len(log.time), dtype=bool)
+    if log.modes is not None:
+        felt = [bounds.stiffness[label] is not None for label in log.labels]
+        touching = np.array(felt)[log.modes]
+    for item in judged:
+        touching[item.window.first : item.window.last] = False
+    return int(touching.sum())
 
 
 def _missing(log: RunLog, bounds: RunBounds) -> str:
@@ -112,11 +128,17 @@ def _judge(log: RunLog, bounds: RunBounds, window: Window) -> _Judged | None:
     if allowed is None:
         return None
     least = min(low for low, _ in allowed.ranges)
-    if any(low <= window.low and window.high <= high for low, high in allowed.ranges):
-        return _Judged(window, allowed, Status.INSIDE, free=False)
+    # Where the log does not say which controller is active, it may be any.
+    active = [allowed] if mode is not None else [s for s in bounds.stiffness.values() if s]
+    if all(_is_inside(window, stiffness) for stiffness in active):
+        return _Judged(window, allowed, BoundStatus.INSIDE, free=False)
     if all(window.high < low or window.low > high for low, high in allowed.ranges):
-        return _Judged(window, allowed, Status.OUTSIDE, free=_is_free(window, least))
-    return _Judged(window, allowed, Status.UNDECIDED, free=False)
+        return _Judged(window, allowed, BoundStatus.OUTSIDE, free=_is_free(window, least))
+    return _Judged(window, allowed, BoundStatus.UNDECIDED, free=False)
+
+
+def _is_inside(window: Window, stiffness: Stiffness) -> bool:
+    return any(low <= window.low and window.high <= high for low, high in stiffness.ranges)
 
 
 def _doubted(item: _Judged, force: Array) -> _Judged:
@@ -124,31 +146,37 @@ def _doubted(item: _Judged, force: Array) -> _Judged:
     f = force[item.window.first : item.window.last]
     size = np.abs(f)
     kept = abs(np.sign(f).sum()) == len(f) and size.min() >= _KEPT * size.max()
-    told = item.free or kept or item.status is not Status.OUTSIDE
-    return item if told else replace(item, status=Status.UNDECIDED)
+    told = item.free or kept or item.status is not BoundStatus.OUTSIDE
+    return item if told else replace(item, status=BoundStatus.UNDECIDED)
 
 
 def _is_free(window: Window, least: float) -> bool:
     return max(abs(window.low), abs(window.high)) < _FREE * least
 
 
-def _stiffness(log: RunLog, judged: list[_Judged], basis: str) -> Check:
+def _stiffness(log: RunLog, bounds: RunBounds, judged: list[_Judged], basis: str) -> Check:
     touching = [item for item in judged if not item.free]
     ranges = dict.fromkeys(pair for item in judged for pair in item.allowed.ranges)
     allowed = " or ".join(f"{low:.5g} to {high:.5g} N m/rad" for low, high in ranges)
-    outside = [item for item in touching if item.status is Status.OUTSIDE]
-    inside = [item for item in touching if item.status is Status.INSIDE]
+    outside = [item for item in touching if item.status is BoundStatus.OUTSIDE]
+    inside = [item for item in touching if item.status is BoundStatus.INSIDE]
     open_ends = len(touching) - len(outside) - len(inside)
     if not touching:
-        return Check("stiffness", Status.NOT_JUDGED, "no window in contact", allowed, basis)
+        return Check("stiffness", BoundStatus.NOT_JUDGED, "no window in contact", allowed, basis)
     measured = f"{len(inside)} of {len(touching)} windows inside, {len(outside)} outside"
     measured += f", {open_ends} undecided" if open_ends else ""
+    if open_ends and log.modes is None and len(bounds.stiffness) > 1:
+        measured += " (no column for mode: inside is what is so whichever controller is active)"
+    unseen = _unseen(log, bounds, judged)
+    if unseen:
+        measured += f"; {unseen} of {len(log.time)} rows in no window: a stay, or what is between "
+        measured += f"two gaps, has fewer than {FEWEST_ROWS}"
     if outside:
         w = outside[0].window
         words = f"k = {w.value:.4g} [{w.low:.4g}, {w.high:.4g}] N m/rad"
         first = Violation(log.begin + float(log.time[w.first]), words)
-        return Check("stiffness", Status.OUTSIDE, measured, allowed, basis, first)
-    status = Status.UNDECIDED if open_ends else Status.INSIDE
+        return Check("stiffness", BoundStatus.OUTSIDE, measured, allowed, basis, first)
+    status = BoundStatus.UNDECIDED if open_ends or unseen else BoundStatus.INSIDE
     return Check("stiffness", status, measured, allowed, basis)
 
 
@@ -156,23 +184,25 @@ def _losable(bounds: RunBounds, judged: list[_Judged]) -> Check:
     free = sum(item.free for item in judged)
     measured = f"{free} of {len(judged)} windows without contact"
     basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
-    return Check("contact", Status.INSIDE, measured, "lost and made again at any time", basis)
+    return Check("contact", BoundStatus.INSIDE, measured, "lost and made again at any time", basis)
 
 
 def _contact(log: RunLog, bounds: RunBounds, judged: list[_Judged], windows: list[Window]) -> Check:
     allowed, basis = "kept all the time", f"assumption of {bounds.source}"
     free = [item for item in judged if item.free]
     if not free:
-        status = Status.INSIDE if judged and len(judged) == len(windows) else Status.UNDECIDED
-        if any(item.status is Status.UNDECIDED and item.window.low <= 0 for item in judged):
-            status = Status.UNDECIDED
+        status = (
+            BoundStatus.INSIDE if judged and len(judged) == len(windows) else BoundStatus.UNDECIDED
+        )
+        if any(item.status is BoundStatus.UNDECIDED and item.window.low <= 0 for item in judged):
+            status = BoundStatus.UNDECIDED
         return Check("contact", status, "no window without contact", allowed, basis)
     w = free[0].window
     words = f"k = {w.value:.3g} [{w.low:.3g}, {w.high:.3g}] N m/rad: free motion"
     first = Violation(log.begin + float(log.time[w.first]), words)
     measured = f"{len(free)} of {len(judged)} windows without contact"
-    return Check("contact", Status.OUTSIDE, measured, allowed, basis, first)
+    return Check("contact", BoundStatus.OUTSIDE, measured, allowed, basis, first)
 
 
 def _not_judged(name: str, reason: str) -> Check:
-    return Check(name, Status.NOT_JUDGED, reason, "", "")
+    return Check(name, BoundStatus.NOT_JUDGED, reason, "", "")

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from nrs_design.errors import DataError
 from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import Check, Status
+from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.contact import judge_contact
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.signals import (
@@ -53,9 +53,9 @@ class RunJudgement:
     def verdict(self) -> str:
         """``outside``, ``inside``, or ``inconclusive``."""
         statuses = {check.status for check in self.checks}
-        if Status.OUTSIDE in statuses:
+        if BoundStatus.OUTSIDE in statuses:
             return "outside"
-        open_ends = {Status.UNDECIDED, Status.NOT_JUDGED} & statuses
+        open_ends = {BoundStatus.UNDECIDED, BoundStatus.NOT_JUDGED} & statuses
         return "inside" if self.bounds.proved and not open_ends else "inconclusive"
 
 
@@ -96,7 +96,7 @@ def judge_run(
     window : float
         Length of the windows of stiffness in s.
     command_limit : float, optional
-        Where the driver saturates, in units of the command.
+        Where the driver saturates, in units of the command; that of the spec, if it has one.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def judge_run(
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
-        judge_saturation(log, bounds, command_limit),
+        judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
         judge_force(log, bounds),
     )
     return RunJudgement(log, bounds, checks, tuple(windows))

@@ -8,10 +8,13 @@ from nrs_design.errors import DataError
 from nrs_design.identification.datasets import SignalRecord
 from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
+
+# Clocks of loop and log differ by less than this part of a period.
+_UNEVEN = 0.05
 
 
 def _assumed(bounds: RunBounds) -> str:
@@ -31,25 +34,27 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
     if "command" not in log.columns or seen is None:
         gone = "command" if "command" not in log.columns else "angle or velocity"
-        return Check("delay", Status.NOT_JUDGED, f"no column for {gone}", "", "")
+        return Check("delay", BoundStatus.NOT_JUDGED, f"no column for {gone}", "", "")
     pair = log.columns["command"], log.columns[seen]
     try:
         found = identify_delay(SignalRecord(log.source, log.time, *pair, ("command", seen)))
     except DataError as error:
-        return Check("delay", Status.NOT_JUDGED, error.message, "", "")
+        return Check("delay", BoundStatus.NOT_JUDGED, error.message, "", "")
     low, high = found.delay.low, found.delay.high
     words = f"{found.delay.value:.3g} [{low:.3g}, {high:.3g}] s"
     length = float(log.time[-1] - log.time[0])
     if high - low > length:
         words = f"not told by this record: its interval is longer than the {length:.3g} s"
     if found.doubts:
-        return Check("delay", Status.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", "")
+        return Check(
+            "delay", BoundStatus.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", ""
+        )
     if bounds.delay is None:
-        return Check("delay", Status.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
-    status = Status.UNDECIDED if high >= bounds.delay else Status.INSIDE
+        return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
+    status = BoundStatus.UNDECIDED if high >= bounds.delay else BoundStatus.INSIDE
     first = None
     if low > bounds.delay:
-        status, first = Status.OUTSIDE, Violation(log.begin, words)
+        status, first = BoundStatus.OUTSIDE, Violation(log.begin, words)
     allowed = f"below {bounds.delay:g} s"
     return Check("delay", status, words, allowed, "delay margin of the design", first)
 
@@ -66,7 +71,15 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
     """
     steps = np.diff(log.time)
     words = f"steps from {steps.min():.4g} to {steps.max():.4g} s, usually {log.step:.4g} s"
-    return Check("jitter", Status.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
+    if bounds.period is not None and not _holds_whole(log.step, bounds.period):
+        words += f": no whole number of periods of {bounds.period:g} s"
+    return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
+
+
+def _holds_whole(step: float, period: float) -> bool:
+    """Tell whether rows come at every sample of the loop, or at every second one, and so on."""
+    count = max(round(step / period), 1)
+    return abs(step - count * period) <= _UNEVEN * period
 
 
 def _time_of(bounds: RunBounds) -> str:
@@ -93,19 +106,20 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
         Of the driver, in units of the command.
     """
     if "command" not in log.columns:
-        return Check("saturation", Status.NOT_JUDGED, "no column for command", "", "")
+        return Check("saturation", BoundStatus.NOT_JUDGED, "no column for command", "", "")
     size = np.abs(log.columns["command"])
     largest = f"largest command {size.max():.5g} {log.command_unit}"
     if limit is None:
-        reason = f"{largest}; where the driver saturates is not known: give --command-limit"
-        return Check("saturation", Status.NOT_JUDGED, reason, "", "")
+        unknown = "where the driver saturates is not known"
+        reason = f"{largest}; {unknown}: give --command-limit, or the spec `limits: command`"
+        return Check("saturation", BoundStatus.NOT_JUDGED, reason, "", "")
     allowed = f"below {limit:g} {log.command_unit}"
     met = np.flatnonzero(size >= limit)
     if not len(met):
-        return Check("saturation", Status.INSIDE, largest, allowed, _assumed(bounds))
+        return Check("saturation", BoundStatus.INSIDE, largest, allowed, _assumed(bounds))
     words = f"the command is {log.columns['command'][met[0]]:.5g} {log.command_unit}"
     first = Violation(log.begin + float(log.time[met[0]]), words)
-    return Check("saturation", Status.OUTSIDE, largest, allowed, _assumed(bounds), first)
+    return Check("saturation", BoundStatus.OUTSIDE, largest, allowed, _assumed(bounds), first)
 
 
 def judge_force(log: RunLog, bounds: RunBounds) -> Check:
@@ -125,7 +139,9 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     if torque is None and "force" in log.columns and bounds.lever_arm is not None:
         torque = log.columns["force"] * bounds.lever_arm
     if torque is None:
-        return Check("force", Status.NOT_JUDGED, "no column for torque or force", allowed, basis)
+        return Check(
+            "force", BoundStatus.NOT_JUDGED, "no column for torque or force", allowed, basis
+        )
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
     # So far may noise reach in any row, at 95 % for all of them together.
@@ -133,8 +149,8 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     reach *= float(np.sqrt(noise_variance(torque)))
     over = np.flatnonzero(size - reach > bounds.torque)
     if not len(over):
-        status = Status.UNDECIDED if size.max() > bounds.torque else Status.INSIDE
+        status = BoundStatus.UNDECIDED if size.max() > bounds.torque else BoundStatus.INSIDE
         return Check("force", status, f"{largest}, noise up to {reach:.2g} N m", allowed, basis)
     words = f"the torque is {torque[over[0]]:.4g} N m"
     first = Violation(log.begin + float(log.time[over[0]]), words)
-    return Check("force", Status.OUTSIDE, largest, allowed, basis, first)
+    return Check("force", BoundStatus.OUTSIDE, largest, allowed, basis, first)

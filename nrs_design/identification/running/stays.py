@@ -10,7 +10,7 @@ from math import inf
 import numpy as np
 
 from nrs_design.identification.running.bounds import RunBounds
-from nrs_design.identification.running.check import Check, Status, Violation
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
 
 _NAME = "dwell times"
@@ -37,18 +37,21 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
         What the spec promises.
     """
     allowed, basis = _allowed(bounds), f"switching rules of {bounds.source}"
+    if bounds.names_contacts:
+        reason = "the rules name contacts, and a log does not say what is touched"
+        return Check(_NAME, BoundStatus.NOT_JUDGED, reason, "", basis)
     if log.modes is None:
         if not allowed:
-            return Check(_NAME, Status.INSIDE, "any switching is allowed", "arbitrary", basis)
-        return Check(_NAME, Status.NOT_JUDGED, "no column for mode", allowed, basis)
+            return Check(_NAME, BoundStatus.INSIDE, "any switching is allowed", "arbitrary", basis)
+        return Check(_NAME, BoundStatus.NOT_JUDGED, "no column for mode", allowed, basis)
     stays = list(_stays(log))
     unknown = [stay.mode for stay in stays if stay.mode not in bounds.stays]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
-        return Check(_NAME, Status.NOT_JUDGED, reason, allowed, basis)
+        return Check(_NAME, BoundStatus.NOT_JUDGED, reason, allowed, basis)
     measured = f"{len(stays) - 1} switches"
     first = next(_violations(stays, bounds), None)
-    status = Status.INSIDE if first is None else Status.OUTSIDE
+    status = BoundStatus.INSIDE if first is None else BoundStatus.OUTSIDE
     return Check(_NAME, status, measured, allowed or "arbitrary", basis, first)
 
 

@@ -64,7 +64,7 @@ class Touch:
 
 
 @dataclass(frozen=True, eq=False)
-class Contact:
+class DetectedContact:
     """Which samples are in contact.
 
     Parameters
@@ -122,7 +122,7 @@ class _Corner:
     flat: bool
 
 
-def find_contact(record: TissueRecord) -> Contact | None:
+def find_contact(record: TissueRecord) -> DetectedContact | None:
     """Find where contact begins; None if no air shows in the record.
 
     Parameters
@@ -143,7 +143,7 @@ def find_contact(record: TissueRecord) -> Contact | None:
             corner = min(likely, key=lambda c: c.at)
             beyond = side * x > corner.at
             ends = corner.low - corner.at, corner.high - corner.at
-            return Contact(side * corner.at, ends, side, beyond, _clear(force, beyond))
+            return DetectedContact(side * corner.at, ends, side, beyond, _clear(force, beyond))
     return None
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nrs_design.errors import DataError
@@ -10,9 +10,10 @@ from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
-from nrs_design.identification.tissue.tangent import Tangent, tangent
+from nrs_design.identification.tissue.tangent import Tangent, tangent_of
 from nrs_design.identification.tissue.trial import Preparation, Trial, prepare
 from nrs_design.models.contact import LAWS, AbstractContactLaw
+from nrs_design.progress import Progress, silent
 from nrs_design.spec.provenance import COVERS, Coverage
 
 
@@ -86,7 +87,7 @@ def identify_tissue(
     preparation: Preparation | None = None,
     coverage: Coverage = "confidence",
     preload: tuple[float, float] | None = None,
-    progress: Callable[[str], None] = lambda step: None,
+    progress: Progress = silent,
 ) -> TissueIdentification:
     """Fit all laws to all records and choose.
 
@@ -120,7 +121,7 @@ def identify_tissue(
         progress(name)
         models.append(fit_model(kind, trials, coverage))
     chosen, reason = _choose(models) if law is None else _told(models, law)
-    about = None if preload is None else tangent(chosen, preload)
+    about = None if preload is None else tangent_of(chosen, preload)
     return TissueIdentification(tuple(records), tuple(models), chosen, reason, about)
 
 

@@ -86,7 +86,7 @@ def offset_columns(names: Sequence[str], trial: Trial) -> Array:
     return np.column_stack(made) if made else np.zeros((int(used.sum()), 0))
 
 
-def measured(trial: Trial) -> Array:
+def measured_force(trial: Trial) -> Array:
     """Return the force of the used samples, less a tare that is given."""
     tare = trial.preparation.tare
     return trial.measured if tare is None else trial.measured - trial.side * tare

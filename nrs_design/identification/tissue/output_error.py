@@ -25,7 +25,7 @@ from nrs_design.identification.tissue.offsets import (
     estimate_offsets,
     fits_zero,
 )
-from nrs_design.identification.tissue.problem import Point, Problem
+from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
 from nrs_design.identification.tissue.starts import box
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
@@ -151,8 +151,8 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
     """
     trial = record if isinstance(record, Trial) else prepare(record)
     bounds = box(kind, trial)
-    problem = Problem(kind, trial)
-    coarse = Problem(kind, trial.thinned(-(-len(trial.force) // COARSE)))
+    problem = LeastSquaresProblem(kind, trial)
+    coarse = LeastSquaresProblem(kind, trial.thinned(-(-len(trial.force) // COARSE)))
     candidates = sorted(map(coarse.at, coarse.starts()), key=lambda start: start.cost)
     ends = [_search(start, bounds, _ROUGHLY) for start in candidates[:STARTS]]
     best = min(ends, key=lambda end: end.cost)
@@ -164,7 +164,7 @@ def fit_record(kind: type[AbstractContactLaw], record: TissueRecord | Trial) -> 
 def rmse(law: AbstractContactLaw, record: TissueRecord | Trial) -> float:
     """Return the root of the mean squared force error, with the best offsets for this law."""
     trial = record if isinstance(record, Trial) else prepare(record)
-    problem = Problem(type(law), trial)
+    problem = LeastSquaresProblem(type(law), trial)
     point = problem.at(np.append(np.log(law.values), problem.no_shift))
     if fits_zero(type(law), trial):
         point = _place(point)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from nrs_design.identification.tissue.offsets import (
     fits_zero,
-    measured,
+    measured_force,
     offset_columns,
     offset_names,
 )
@@ -35,7 +35,7 @@ _SHIFTS = (0.0, 0.01, -0.01, 0.04, -0.04, 0.15, -0.15, 0.4, -0.4)
 
 
 @dataclass(frozen=True)
-class Problem:
+class LeastSquaresProblem:
     """Least squares over one law and one trial."""
 
     kind: type[AbstractContactLaw]
@@ -69,7 +69,7 @@ class Problem:
     @cached_property
     def force(self) -> Array:
         """Measured force, less a tare that is given, shape (n,)."""
-        return measured(self.trial)
+        return measured_force(self.trial)
 
     @cached_property
     def travel(self) -> float:
@@ -135,13 +135,13 @@ class Point:
 
     Parameters
     ----------
-    problem : Problem
+    problem : LeastSquaresProblem
         With n used samples.
     values : ndarray, shape (p,) or (p + 1,)
         Logarithms of the parameters, and the move of the zero in travels of the record.
     """
 
-    problem: Problem
+    problem: LeastSquaresProblem
     values: Array
 
     @cached_property

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.identification.tissue.offsets import measured, offset_columns, offset_names
+from nrs_design.identification.tissue.offsets import measured_force, offset_columns, offset_names
 from nrs_design.identification.tissue.starts import reduce_series
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import Elastic
@@ -153,7 +153,7 @@ def _solve(trial: Trial, times: Array) -> tuple[Array, Array]:
     parts = [motion.deflection, *(Relaxation(motion, float(tau)).y for tau in times)]
     X = np.column_stack([np.where(trial.touching, part, 0.0)[used] for part in parts])
     basis = np.linalg.qr(_constants(trial, times))[0]
-    force = measured(trial)
+    force = measured_force(trial)
     force = force - basis @ (basis.T @ force)
     X -= basis @ (basis.T @ X)
     size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)

@@ -46,7 +46,7 @@ class Tangent:
     power: tuple[Estimate, Estimate, Estimate]
 
 
-def tangent(model: ModelFit, preload: tuple[float, float]) -> Tangent:
+def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     """Return the tangent of a power law over a range of deflections.
 
     Stiffness and damping of a power law grow with the deflection, so that the ends of the preloads

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue.contact import Contact, find_contact, inner
+from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
 from nrs_design.identification.tissue.drift import shows_drift
 from nrs_design.identification.tissue.rupture import find_rupture
@@ -111,7 +111,7 @@ class Trial:
         Position that the deflection is counted from, m (rad).
     side : int
         1 if the tissue is where positions are larger, else -1.
-    found : Contact or None
+    found : DetectedContact or None
         None if no air shows, or was not looked for.
     drift : bool
         Whether the tare is fitted as moving.
@@ -130,7 +130,7 @@ class Trial:
     touching: Flags
     reference: float
     side: int
-    found: Contact | None
+    found: DetectedContact | None
     drift: bool
     cuts: tuple[Cut, ...]
     cycles: tuple[slice, ...]
@@ -238,7 +238,7 @@ def _assemble(
     record: TissueRecord,
     kept: TissueRecord,
     wanted: Preparation,
-    found: Contact | None,
+    found: DetectedContact | None,
     cuts: list[Cut],
 ) -> Trial:
     x, time = kept.motion.deflection, kept.motion.time
@@ -273,7 +273,7 @@ def _assemble(
     )  # fmt: skip
 
 
-def _edge(position: Array, width: float, wanted: Preparation, found: Contact) -> Flags:
+def _edge(position: Array, width: float, wanted: Preparation, found: DetectedContact) -> Flags:
     """Find samples that may be in air or not.
 
     They are where the position of contact may lie by the noise, unless it is given, and a width
@@ -314,7 +314,7 @@ def _side(x: Array) -> int:
     return -1 if x.max() < 0.05 * np.ptp(x) and x.min() < -0.5 * np.ptp(x) else 1
 
 
-def _reference(x: Array, side: int, wanted: Preparation, found: Contact | None) -> float:
+def _reference(x: Array, side: int, wanted: Preparation, found: DetectedContact | None) -> float:
     if wanted.zero is not None:
         return wanted.zero
     if found is not None:

@@ -31,10 +31,10 @@ from nrs_design.models.robot.dynamics import (
 from nrs_design.models.robot.enclosure.bounds import (
     Space,
     bound_text,
+    bounds_document,
     compute_bounds,
     confirm_bounds,
     space_of,
-    to_document,
 )
 from nrs_design.models.robot.enclosure.enclose import Enclosed, values_at
 from nrs_design.models.robot.geometry import is_reachable, posture, reach, reach_margin
@@ -63,9 +63,9 @@ from nrs_design.models.robot.soundness import examine_inertia
 from nrs_design.models.robot.tree import (
     DRIVEN,
     Link,
+    attribute_text,
     joint_names,
     links_of,
-    numbers,
     tree_angles,
 )
 from nrs_design.models.robot.workspace import (
@@ -102,8 +102,10 @@ __all__ = [
     "TorqueShares",
     "Workspace",
     "WorkspaceSurvey",
+    "attribute_text",
     "balanced_robot",
     "bound_text",
+    "bounds_document",
     "build_robot",
     "compute_bounds",
     "confirm_bounds",
@@ -126,7 +128,6 @@ __all__ = [
     "links_of",
     "mass_and_bias",
     "mass_matrix",
-    "numbers",
     "orientation",
     "orientation_jacobian",
     "pose_grid",
@@ -148,7 +149,6 @@ __all__ = [
     "tilt_table",
     "tilt_tables",
     "to_csv",
-    "to_document",
     "torque_shares",
     "tree_angles",
     "values_at",

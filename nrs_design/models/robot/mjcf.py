@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.models.robot.robot import Leg, Robot
-from nrs_design.models.robot.tree import DRIVEN, Link, links_of, numbers, tree_angles
+from nrs_design.models.robot.tree import DRIVEN, Link, attribute_text, links_of, tree_angles
 
 # MuJoCo takes no moving body without mass, or without inertia about one of its axes.
 LEAST = 1e-12
@@ -29,7 +29,7 @@ def robot_model(robot: Robot, name: str) -> str:
 def _document(robot: Robot, name: str) -> Iterator[str]:
     yield f'<mujoco model="{name}">\n'
     yield '  <compiler angle="radian" autolimits="false"/>\n'
-    gravity = numbers(*robot.gravity_vector)
+    gravity = attribute_text(*robot.gravity_vector)
     yield f'  <option timestep="0.001" integrator="implicitfast" gravity="{gravity}"/>\n'
     yield '  <default><geom contype="0" conaffinity="0" size="0.006"/></default>\n'
     yield "  <worldbody>\n"
@@ -44,7 +44,7 @@ def _document(robot: Robot, name: str) -> Iterator[str]:
     for theta, joint in DRIVEN.items():
         yield f'    <motor name="{theta}" joint="{joint}"/>\n'
     yield "  </actuator>\n  <keyframe>\n"
-    yield f'    <key name="home" qpos="{numbers(*tree_angles(robot, robot.home))}"/>\n'
+    yield f'    <key name="home" qpos="{attribute_text(*tree_angles(robot, robot.home))}"/>\n'
     yield "  </keyframe>\n</mujoco>\n"
 
 
@@ -55,14 +55,14 @@ def _leg(robot: Robot, leg: Leg) -> Iterator[str]:
         # The plane of a leg is no body of its own: its inertia is that of a joint of the crank.
         x, y, _ = leg.axis
         place = (link.offset * x, link.offset * y, 0.0) if depth == 0 else (link.offset, 0.0, 0.0)
-        turned = f' xyaxes="{numbers(*leg.axis, 0.0, 0.0, 1.0)}"' if depth == 0 else ""
-        yield f'{space}<body name="{link.name}" pos="{numbers(*place)}"{turned}>\n'
+        turned = f' xyaxes="{attribute_text(*leg.axis, 0.0, 0.0, 1.0)}"' if depth == 0 else ""
+        yield f'{space}<body name="{link.name}" pos="{attribute_text(*place)}"{turned}>\n'
         if depth == 0:
-            armature = f'armature="{numbers(leg.axis_inertia)}"'
+            armature = f'armature="{attribute_text(leg.axis_inertia)}"'
             yield f'{space}  <joint name="{leg.name}_plane" axis="1 0 0" {armature}/>\n'
         yield f'{space}  <joint name="{link.name}" axis="0 0 1"/>\n'
         yield f"{space}  {_inertial(link)}\n"
-        yield f'{space}  <geom type="capsule" fromto="0 0 0 {numbers(link.length)} 0 0"/>\n'
+        yield f'{space}  <geom type="capsule" fromto="0 0 0 {attribute_text(link.length)} 0 0"/>\n'
     yield from _sites(leg, indent + 6 * " ")
     for depth in reversed(range(len(links))):
         yield f"{indent}{2 * depth * ' '}</body>\n"
@@ -71,11 +71,11 @@ def _leg(robot: Robot, leg: Leg) -> Iterator[str]:
 def _sites(leg: Leg, space: str) -> Iterator[str]:
     """Yield two points of the endoscope axis, which runs along -y in the frame of an arm."""
     for name, y in (("near", 0.0), ("far", -APART)):
-        yield f'{space}<site name="{leg.name}_{name}" pos="{numbers(leg.l3, y, 0.0)}"/>\n'
+        yield f'{space}<site name="{leg.name}_{name}" pos="{attribute_text(leg.l3, y, 0.0)}"/>\n'
 
 
 def _inertial(link: Link) -> str:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = link.inertia
-    tensor = numbers(xx + LEAST, yy + LEAST, zz + LEAST, xy, xz, yz)
-    mass = numbers(max(link.mass, LEAST))
-    return f'<inertial pos="{numbers(*link.center)}" mass="{mass}" fullinertia="{tensor}"/>'
+    tensor = attribute_text(xx + LEAST, yy + LEAST, zz + LEAST, xy, xz, yz)
+    mass = attribute_text(max(link.mass, LEAST))
+    return f'<inertial pos="{attribute_text(*link.center)}" mass="{mass}" fullinertia="{tensor}"/>'

@@ -98,7 +98,7 @@ def tree_angles(robot: Robot, pose: ArrayLike) -> list[float]:
     return angles
 
 
-def numbers(*values: float) -> str:
+def attribute_text(*values: float) -> str:
     """Write numbers with all their digits, separated by blanks."""
     return " ".join(repr(float(value)) for value in values)
 

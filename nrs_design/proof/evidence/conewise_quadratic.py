@@ -111,10 +111,8 @@ class ConewiseQuadratic(AbstractFunction):
             return NO_CONTACT
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
-        if len(self.multipliers) != multiplier_count(system.contact, system.time):
-            return "there is not one multiplier for each condition that needs it"
-        if any(entry < 0 for entry in self.multipliers):
-            return "a multiplier is negative"
+        if (odd := find_odd_multipliers(self.multipliers, system)) is not None:
+            return odd
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
             return odd
         return self.find_rate_misfit(system.time)
@@ -197,6 +195,18 @@ def multiplier_count(contact: Contact, time: Time) -> int:
     if time is Time.CONTINUOUS:
         return len(contact.free) * len(contact.pulls)
     return 1 + 3 * len(contact.pulls)
+
+
+def find_odd_multipliers(multipliers: Sequence[int], system: SwitchedSystem) -> str | None:
+    """TRUSTED: say why multipliers do not belong to the lost contact of a system, or None.
+
+    There are none where contact is kept.
+    """
+    contact = system.contact
+    needed = 0 if contact is None else multiplier_count(contact, system.time)
+    if len(multipliers) != needed:
+        return "there is not one multiplier for each condition that needs it"
+    return "a multiplier is negative" if any(entry < 0 for entry in multipliers) else None
 
 
 def in_threes(multipliers: Sequence[int]) -> tuple[tuple[int, int, int], ...]:

@@ -9,7 +9,7 @@ from itertools import product
 from math import lcm
 from typing import Any, ClassVar, Self
 
-from nrs_design.proof.evidence.conewise_quadratic import in_threes, multiplier_count
+from nrs_design.proof.evidence.conewise_quadratic import find_odd_multipliers, in_threes
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
@@ -112,12 +112,8 @@ class CoupledAxes(AbstractFunction):
             return f"Q is not a {system.order} x {system.order} matrix"
         if len(self.taus) != len(system.couplings):
             return "there is not one multiplier for each coupling"
-        contact = system.contact
-        needed = 0 if contact is None else multiplier_count(contact, system.time)
-        if len(self.multipliers) != needed:
-            return "there is not one multiplier for each condition that needs it"
-        if any(entry < 0 for entry in self.multipliers):
-            return "a multiplier is negative"
+        if (odd := find_odd_multipliers(self.multipliers, system)) is not None:
+            return odd
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
             return odd
         return self.find_rate_misfit(system.time)

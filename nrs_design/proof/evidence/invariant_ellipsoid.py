@@ -11,7 +11,7 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
-from nrs_design.proof.evidence.conewise_quadratic import in_threes, multiplier_count
+from nrs_design.proof.evidence.conewise_quadratic import find_odd_multipliers, in_threes
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
     Matrix,
@@ -116,18 +116,14 @@ class InvariantEllipsoid(AbstractEvidence):
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check names, shapes, and the signs of shares, level and multipliers."""
-        contact = system.contact
         if (unknown := self._find_unknown(system)) is not None:
             return unknown
         if not is_square(self.Q, system.order):
             return f"Q is not a {system.order} x {system.order} matrix"
         if not 0 <= self.denominator_log2 <= MAX_INTEGER_BITS:
             return f"the denominator of Q is not two to a power up to {MAX_INTEGER_BITS}"
-        needed = 0 if contact is None else multiplier_count(contact, system.time)
-        if len(self.multipliers) != needed:
-            return "there is not one multiplier for each condition that needs it"
-        if any(entry < 0 for entry in self.multipliers):
-            return "a multiplier is negative"
+        if (odd := find_odd_multipliers(self.multipliers, system)) is not None:
+            return odd
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
             return odd
         if (unlike := self._find_unlike_axes(system)) is not None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.style import BLUE, SKY, VERMILLION, legend, new_axes, styled
-from nrs_design.reporting.text import wrapped
+from nrs_design.reporting.text import wrapped_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def draw_blocks(system: SwitchedSystem, blocks: Sequence[Sequence[int]]) -> Figu
     _cells(axes, pattern & own, BLUE, size, "within a block")
     _cells(axes, pattern & ~own, SKY, size, "from a later block")
     _frames(axes, blocks)
-    names = [wrapped(system.states[i], 14) for i in order]
+    names = [wrapped_label(system.states[i], 14) for i in order]
     ticks = names if n <= _NAMED else [str(i + 1) for i in order]
     shown = range(0, n, 1 + n // 40)
     axes.set_xticks(shown, [ticks[i] for i in shown], rotation=0 if n <= 4 else 60)

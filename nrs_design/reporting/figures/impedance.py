@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.design.impedance import displayed_impedance, sensitivity
+from nrs_design.design.impedance import displayed_impedance_at, sensitivity
 from nrs_design.design.measures import IMPEDANCE_ERROR
 from nrs_design.reporting.style import (
     INK,
@@ -43,7 +43,7 @@ def draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
     figure, axes = new_axes(3.9)
     omega = _frequencies(items)
     for index, item in enumerate(items):
-        shown = np.abs(displayed_impedance(item.problem.loop, item.Mt, item.Bt, omega))
+        shown = np.abs(displayed_impedance_at(item.problem.loop, item.Mt, item.Bt, omega))
         look = curve(index, len(items), len(omega))
         axes.loglog(omega, shown, label=f"{item.name}, displayed", **look)
     for desired, names in _wanted(items).items():

@@ -21,7 +21,7 @@ from nrs_design.reporting.style import (
     row_labels,
     styled,
 )
-from nrs_design.reporting.text import wrapped
+from nrs_design.reporting.text import wrapped_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,7 +48,7 @@ def draw_quadratic(Q: Array, states: Sequence[str]) -> Figure:
     figure, axes = new_axes(2.6 + 0.2 * min(n, _WRITTEN))
     image = _heat_map(axes, Q, written=n <= _WRITTEN)
     if n <= _WRITTEN:
-        labels = [wrapped(name, 14) for name in states]
+        labels = [wrapped_label(name, 14) for name in states]
         axes.set_xticks(range(n), labels, rotation=0 if n <= 4 else 60)
         axes.set_yticks(range(n), labels)
     axes.set_xlabel("State j")
@@ -80,7 +80,7 @@ def draw_quadratics(functions: Mapping[str, Array], states: Sequence[str]) -> Fi
         numbers = [str(i + 1) for i in range(n)] if n <= 2 * _WRITTEN else []
         axes.set_xticks(range(len(numbers)), numbers)
         axes.set_yticks(range(len(numbers)), numbers)
-        axes.set_title(wrapped(name, 18), fontsize=9)
+        axes.set_title(wrapped_label(name, 18), fontsize=9)
     for axes in grid[:, 0]:
         axes.set_ylabel("State i")
     for column, axes in enumerate(grid[-1]):

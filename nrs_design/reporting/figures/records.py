@@ -104,7 +104,7 @@ class Panel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Record:
+class PanelColumn:
     """A run: a column of panels.
 
     Parameters
@@ -129,12 +129,12 @@ class Record:
 
 
 @styled
-def draw_records(records: Sequence[Record]) -> Figure:
+def draw_records(records: Sequence[PanelColumn]) -> Figure:
     """Draw runs beside each other.
 
     Parameters
     ----------
-    records : sequence of Record
+    records : sequence of PanelColumn
         One, or a few with panels alike.
     """
     rows = len(records[0].panels)
@@ -160,7 +160,7 @@ def draw_records(records: Sequence[Record]) -> Figure:
     return figure
 
 
-def _draw_panel(axes: Axes, panel: Panel, record: Record, handles: dict[str, Artist]) -> None:
+def _draw_panel(axes: Axes, panel: Panel, record: PanelColumn, handles: dict[str, Artist]) -> None:
     for curve in panel.curves:
         look = _PRINTED if curve.printed else _LOOKS[curve.look]
         t, y = (curve.t, curve.y) if curve.printed else _thinned(curve, record.span)
@@ -197,7 +197,7 @@ def _thinned(
     return t[picked], y[picked]
 
 
-def _shade(axes: Axes, record: Record, names: Sequence[str], letters: float) -> None:
+def _shade(axes: Axes, record: PanelColumn, names: Sequence[str], letters: float) -> None:
     begin, end = record.span
     for start, stop, name in record.stays:
         low, high = max(start, begin), min(stop, end)

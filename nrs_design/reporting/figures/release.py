@@ -33,7 +33,7 @@ _ROWS = 10
 
 
 @dataclass(frozen=True, eq=False)
-class Panel:
+class ReleasePanel:
     """One quantity over time.
 
     Parameters
@@ -58,14 +58,16 @@ class Panel:
 
 
 @styled
-def draw_release(response: SwitchedRun, panels: Sequence[Panel], names: Sequence[str]) -> Figure:
+def draw_release(
+    response: SwitchedRun, panels: Sequence[ReleasePanel], names: Sequence[str]
+) -> Figure:
     """Draw all panels over one time axis, and below them the mode that is active.
 
     Parameters
     ----------
     response : SwitchedRun
         The run.
-    panels : sequence of Panel
+    panels : sequence of ReleasePanel
         At least one.
     names : sequence of str
         Of all modes.
@@ -98,7 +100,7 @@ def draw_release(response: SwitchedRun, panels: Sequence[Panel], names: Sequence
     return figure
 
 
-def _draw_panel(axes: Axes, time: Array, panel: Panel) -> None:
+def _draw_panel(axes: Axes, time: Array, panel: ReleasePanel) -> None:
     low, high = panel.values.min(axis=1), panel.values.max(axis=1)
     if panel.values.shape[1] > 1:
         axes.fill_between(time, low, high, color=BLUE, alpha=0.25, label="over the contact's range")

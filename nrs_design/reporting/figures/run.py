@@ -24,7 +24,7 @@ from nrs_design.reporting.style import (
     row_labels,
     styled,
 )
-from nrs_design.reporting.text import wrapped
+from nrs_design.reporting.text import wrapped_label
 from nrs_design.simulation.norms import Norm, level_curve
 
 if TYPE_CHECKING:
@@ -189,7 +189,7 @@ def _finish_plane(
 
 def _axis_label(states: tuple[str, ...], index: int) -> str:
     """Label a state; given matrices and the canonical form of G come without units."""
-    name = wrapped(states[index], 40)
+    name = wrapped_label(states[index], 40)
     if states == MOTION_STATES:
         return f"State {name} of G, canonical form [no unit]"
     return f"State {name}" if "[" in name else f"State {name} [no unit given]"

@@ -63,7 +63,7 @@ def draw_stiffness(found: RunJudgement) -> Figure:
 
 
 @styled
-def draw_run(found: RunJudgement) -> Figure:
+def draw_judgement(found: RunJudgement) -> Figure:
     """Draw every column of the log over time."""
     log = found.log
     names = [name for name in _LABELS if name in log.columns]

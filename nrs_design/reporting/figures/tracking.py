@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.reporting.style import CYCLE, DASHES, INK, color, marker, new_figure, styled
-from nrs_design.simulation.tracking import COORDINATE, MOTIONS, Record
+from nrs_design.simulation.tracking import COORDINATE, MOTIONS, TrackingRecord
 from nrs_design.simulation.tracking.record import DISPLAY
 
 if TYPE_CHECKING:
@@ -25,12 +25,12 @@ Measured = tuple[float, float, float] | None
 
 
 @styled
-def draw_tracking(records: Sequence[Record], measured: Sequence[Measured]) -> Figure:
+def draw_tracking(records: Sequence[TrackingRecord], measured: Sequence[Measured]) -> Figure:
     """Draw wanted and measured motions, and below them the root mean square errors.
 
     Parameters
     ----------
-    records : sequence of Record
+    records : sequence of TrackingRecord
         Simulated, of one or several controllers and experiments.
     measured : sequence of tuple or None
         Errors of phi and psi in deg and d in mm that were measured on the robot, for each record.
@@ -55,7 +55,7 @@ def draw_tracking(records: Sequence[Record], measured: Sequence[Measured]) -> Fi
     return figure
 
 
-def _draw_motion(axes: Axes, records: Sequence[Record], controllers: list[str]) -> None:
+def _draw_motion(axes: Axes, records: Sequence[TrackingRecord], controllers: list[str]) -> None:
     index = COORDINATE[records[0].experiment.moved]
     for record in records:
         experiment = record.experiment
@@ -76,7 +76,7 @@ def _draw_motion(axes: Axes, records: Sequence[Record], controllers: list[str]) 
 
 
 def _draw_errors(
-    axes: Axes, chosen: Sequence[tuple[Record, Measured]], controllers: list[str]
+    axes: Axes, chosen: Sequence[tuple[TrackingRecord, Measured]], controllers: list[str]
 ) -> None:
     width = 0.8 / len(controllers)
     for record, on_robot in chosen:

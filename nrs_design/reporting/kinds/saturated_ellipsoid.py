@@ -27,8 +27,8 @@ _DECIDED = (
 _RUN = (
     "Simulated run from rest with the stated {start}, at the softest: at every step the adversary "
     "takes the possible mode after which V is largest, and signals are cut off at their limits. "
-    "It is a bad run, not the worst one; V stays below the dashed bound. The run is no part of the "
-    "proof."
+    "It is a bad run, not the worst one; the root of V stays below the dashed bound. The run is no "
+    "part of the proof."
 )
 # Time constants of the fastest motion in a step, and decisions of a run.
 _SHARE, _STEPS = 0.1, 1500
@@ -66,6 +66,8 @@ class SaturatedEllipsoidPage(AbstractKindPage[SaturatedEllipsoid]):
         return (
             "Motions that begin outside of the ellipsoid: they may decay as well.",
             "Commands of a hand and disturbances while signals saturate.",
+            f"That the {self._saturation.start.name} is within the limit of a spec: motions may "
+            "begin beyond it.",
             "Lower limits, and other signals that saturate, such as the current of the motor.",
         )
 

@@ -9,7 +9,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph, Section, Table
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
-from nrs_design.reporting.formatting import number, polynomial, root, roots
+from nrs_design.reporting.formatting import number, polynomial_text, root, roots
 from nrs_design.reporting.sections.creep import creep_section
 from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.impedance import (
@@ -130,8 +130,8 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     spec = designed.spec
     G = analysis.motion
     text = (
-        f"Motion loop in use: G(s) = ({polynomial(G.numerator, 6)}) / "
-        f"({polynomial(G.denominator, 6)}), from commanded to actual velocity. "
+        f"Motion loop in use: G(s) = ({polynomial_text(G.numerator, 6)}) / "
+        f"({polynomial_text(G.denominator, 6)}), from commanded to actual velocity. "
         f"{_source(spec, analysis)}"
     )
     return Section(

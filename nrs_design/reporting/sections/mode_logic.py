@@ -11,7 +11,7 @@ from nrs_design.spec.environment_estimator import EstimatorSpec, decide
 from nrs_design.spec.threshold_logic import (
     LogicSwitchSpec,
     ThresholdLogicSpec,
-    reach,
+    values_at_switch,
 )
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def _text(quantity: Quantity | None) -> str:
 
 
 def _reach_text(logic: ThresholdLogicSpec, switch: LogicSwitchSpec) -> str:
-    ends = reach(logic, switch)
+    ends = values_at_switch(logic, switch)
     return ", ".join(
         f"{name} ≤ {upper(Fraction(ends[name]))} {_UNITS[name]}"
         if condition.above is not None
@@ -158,7 +158,11 @@ def logic_summary(spec: InteractionDesignSpec) -> dict[str, object]:
         "used_in_proof": used,
         "controllers": [_controller_summary(logic, name) for name in logic.controllers],
         "switches": [
-            {"from": switch.source, "to": switch.target, "reach": dict(reach(logic, switch))}
+            {
+                "from": switch.source,
+                "to": switch.target,
+                "reach": dict(values_at_switch(logic, switch)),
+            }
             for switch in logic.switches
         ],
         "units": {"stay": "s", "command": "rad/s", "torque": "N*m"},

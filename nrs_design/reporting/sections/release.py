@@ -12,7 +12,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.release import physical_outputs
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
-from nrs_design.reporting.figures.release import Panel, draw_release
+from nrs_design.reporting.figures.release import ReleasePanel, draw_release
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.modes import hardest_modes
@@ -129,7 +129,7 @@ def _panels(
     run: SwitchedRun,
     Q: Array | None,
     rate: float,
-) -> list[tuple[Panel, str]]:
+) -> list[tuple[ReleasePanel, str]]:
     """Return what is drawn, each with its limit as the table writes it."""
     losable = system.contact is not None
     force, velocity = outputs.shares(run, losable=losable)
@@ -144,15 +144,17 @@ def _panels(
     fastest = turn * outputs.largest_velocity
     panels = [
         (
-            Panel("Torque [N·m]", force * torque, torque, bound(outputs.force)),
+            ReleasePanel("Torque [N·m]", force * torque, torque, bound(outputs.force)),
             limit(torque, "torque"),
         )
     ]
     if outputs.deflection is not None:
         values = turn * (run.state @ outputs.deflection)[:, None]
         edge = _turned(bound(outputs.deflection[None, :]))
-        panels.append((Panel("Deflection [deg]", values, None, edge, one_sided=losable), "–"))
-    speed = Panel(
+        panels.append(
+            (ReleasePanel("Deflection [deg]", values, None, edge, one_sided=losable), "–")
+        )
+    speed = ReleasePanel(
         "Velocity [deg/s]", fastest * velocity[:, None], fastest, _turned(bound(outputs.velocity))
     )
     return [*panels, (speed, limit(fastest, "velocity"))]
@@ -175,7 +177,7 @@ def _turned(values: Array | None) -> Array | None:
     return None if values is None else np.asarray(180 / math.pi * values)
 
 
-def _table(panels: Sequence[tuple[Panel, str]]) -> Table:
+def _table(panels: Sequence[tuple[ReleasePanel, str]]) -> Table:
     rows = tuple(
         (
             panel.label,

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.experiments import GAINS, TIMES
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
-    Outcome,
+    Reproducibility,
     Statement,
     measured,
     stated,
@@ -33,7 +33,7 @@ from nrs_design.reproduction.interaction import (
     admittance,
     away,
     into,
-    simulated,
+    run_scenario,
     withdrawals,
 )
 from nrs_design.reproduction.thesis import TORQUE
@@ -104,7 +104,7 @@ def counterparts() -> tuple[Counterpart, ...]:
 def _profile() -> Counterpart:
     both = {"insertion": admittance("0.01", "2.15"), "withdrawal": admittance("0.01", "1.04")}
     without, switched = (
-        simulated(both, into(8, *PROFILE, control=control))
+        run_scenario(both, into(8, *PROFILE, control=control))
         for control in ("{fixed: insertion}", BY_SIGN)
     )
     later, sooner = (run.contacts[1][0] for run in (without, switched))
@@ -122,13 +122,13 @@ def _profile() -> Counterpart:
             stated(
                 "torque up to its peak",
                 "the same",
-                f"{rounded_up(_largest(switched))} N m in both",
+                f"{four_digits_up(_largest(switched))} N m in both",
                 math.isclose(_largest(without), _largest(switched), rel_tol=1e-9),
             ),
             stated(
                 "peak torque",
                 "does not exceed T_max, 0.3 N m",
-                f"{rounded_up(_largest(switched))} N m",
+                f"{four_digits_up(_largest(switched))} N m",
                 _largest(switched) < TORQUE,
             ),
         ),
@@ -155,8 +155,8 @@ def _profile_figures(without: Run, switched: Run) -> tuple[Illustration, Illustr
         other=FORCE,
     )
     speed = speed_panel(switched.response, "phi", of_the_axis=False)
-    whole = Record("", (speed, torque), (1.5, 4.3), stays(switched))
-    close = Record("", (speed, replace(torque, limits=())), (3.97, 4.06), stays(switched))
+    whole = PanelColumn("", (speed, torque), (1.5, 4.3), stays(switched))
+    close = PanelColumn("", (speed, replace(torque, limits=())), (3.97, 4.06), stays(switched))
     return (
         Illustration(
             "figure-6-16-record",
@@ -194,15 +194,16 @@ def _scheme(run: Run) -> Counterpart:
                 "figure-6-17-record",
                 "Counterpart of figure 6.17: every signal of the scheme in one run",
                 "Into tissue at 8 deg/s, out at 5 deg/s from 1 s on. The robot follows the command "
-                "less what the admittance makes of the torque. Met at 8 deg/s, the tissue pushes "
-                f"with up to {rounded_up(_largest(run))} N m at first, more than T_max. {ENGINE}",
+                "less what the admittance makes of the torque. Met at 8 deg/s, the tissue "
+                f"pushes with up to {four_digits_up(_largest(run))} N m at first, more than T_max. "
+                f"{ENGINE}",
                 draw_records([_signals(run)]),
             ),
         ),
     )
 
 
-def _signals(run: Run) -> Record:
+def _signals(run: Run) -> PanelColumn:
     response = run.response
     contact = (response["torque"] != 0).astype(float)
     first = (response.mode == response.modes.index("insertion")).astype(float)
@@ -222,7 +223,7 @@ def _signals(run: Run) -> Record:
         ),
         ticks=(0, 1),
     )
-    return Record("", (velocities, torque_panel(response), switches), (0.0, 1.3), stays(run))
+    return PanelColumn("", (velocities, torque_panel(response), switches), (0.0, 1.3), stays(run))
 
 
 def _withdrawal(
@@ -280,7 +281,7 @@ def _draw_pair(one: Withdrawal, runs: tuple[Run, Run]) -> Figure:
     titles = ("without switching", "with switching")
     return draw_records(
         [
-            Record(
+            PanelColumn(
                 title,
                 (
                     speed_panel(run.response, one.axis, of_the_axis=False),
@@ -301,10 +302,10 @@ def _gain(printed: str, times: tuple[float, float], found: float) -> Statement:
     high = 100 * gain_in_time(slow + _ROUNDING, fast - _ROUNDING)
     allowed = f"what the printed times, rounded to 0.01 s, allow: {low:.1f} to {high:.1f} %"
     if low <= found <= high:
-        outcome, why = Outcome.REPRODUCED, f"within {allowed}"
+        outcome, why = Reproducibility.REPRODUCED, f"within {allowed}"
     else:
         apart = max(low - found, found - high)
-        outcome, why = Outcome.NOT_REPRODUCED, f"{apart:.1f} points outside of {allowed}"
+        outcome, why = Reproducibility.NOT_REPRODUCED, f"{apart:.1f} points outside of {allowed}"
     return Statement("gain in time, %", printed, f"{found:.4g}", outcome, why)
 
 

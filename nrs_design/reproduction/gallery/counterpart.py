@@ -14,7 +14,7 @@ from nrs_design.simulation.time_response import TimeResponse
 MEASURED = 0.05
 
 
-class Outcome(StrEnum):
+class Reproducibility(StrEnum):
     """What a statement of the print is worth beside a simulation."""
 
     REPRODUCED = "reproduced"
@@ -34,7 +34,7 @@ class Statement:
         With its unit.
     printed, simulated : str
         Numbers, or words.
-    outcome : Outcome
+    outcome : Reproducibility
         Taken: an input of the run, which agrees because it was put in. Omitted: what decides it is
         not in the thesis. Hardware only: no run can show it.
     why : str
@@ -44,7 +44,7 @@ class Statement:
     quantity: str
     printed: str
     simulated: str
-    outcome: Outcome
+    outcome: Reproducibility
     why: str = ""
 
 
@@ -95,7 +95,7 @@ class Counterpart:
 
 
 def measured(
-    quantity: str, printed: str, value: float, why: str = "", outcome: Outcome | None = None
+    quantity: str, printed: str, value: float, why: str = "", outcome: Reproducibility | None = None
 ) -> Statement:
     """Return a measured number beside the simulated one.
 
@@ -109,14 +109,16 @@ def measured(
         Simulated.
     why : str
         The reason if it is not reproduced.
-    outcome : Outcome, optional
+    outcome : Reproducibility, optional
         Where it is not for the numbers to say.
     """
     off = value / float(printed) - 1
     near = abs(off) <= MEASURED
-    found = outcome or (Outcome.REPRODUCED if near else Outcome.NOT_REPRODUCED)
+    found = outcome or (Reproducibility.REPRODUCED if near else Reproducibility.NOT_REPRODUCED)
     shown = f"{value:.4g} ({_percent(off)})"
-    return Statement(quantity, printed, shown, found, "" if found is Outcome.REPRODUCED else why)
+    return Statement(
+        quantity, printed, shown, found, "" if found is Reproducibility.REPRODUCED else why
+    )
 
 
 def taken(quantity: str, printed: str, value: float) -> Statement:
@@ -132,7 +134,11 @@ def taken(quantity: str, printed: str, value: float) -> Statement:
         Simulated.
     """
     return Statement(
-        quantity, printed, f"{value:.4g}", Outcome.TAKEN, "the run is laid out for it: no evidence"
+        quantity,
+        printed,
+        f"{value:.4g}",
+        Reproducibility.TAKEN,
+        "the run is laid out for it: no evidence",
     )
 
 
@@ -148,7 +154,7 @@ def stated(quantity: str, printed: str, simulated: str, holds: bool, why: str = 
     why : str
         The reason if it does not.
     """
-    outcome = Outcome.REPRODUCED if holds else Outcome.NOT_REPRODUCED
+    outcome = Reproducibility.REPRODUCED if holds else Reproducibility.NOT_REPRODUCED
     return Statement(quantity, printed, simulated, outcome, "" if holds else why)
 
 

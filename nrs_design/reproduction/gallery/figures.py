@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from nrs_design.progress import Progress, silent
 from nrs_design.reproduction.gallery import (
     agility,
     force_limit,
@@ -23,7 +22,7 @@ TOPICS = (
 
 
 def draw_counterparts(
-    progress: Callable[[str], None] = lambda topic: None,
+    progress: Progress = silent,
 ) -> tuple[Counterpart, ...]:
     """Simulate and draw all of them.
 

@@ -11,12 +11,12 @@ from nrs_design.design.force_loop import force_loop_response
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
-from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
-    Outcome,
+    Reproducibility,
     Statement,
     measured,
     stated,
@@ -32,7 +32,7 @@ from nrs_design.reproduction.interaction import (
     PROPORTIONAL,
     PROPORTIONAL_FROM_MEASURED,
     into,
-    simulated,
+    run_scenario,
 )
 from nrs_design.simulation.metrics import overshoot, steady_state_error
 from nrs_design.simulation.run import Run
@@ -58,7 +58,7 @@ CONTROLLERS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Experiment:
+class ForceLimitExperiment:
     """One of the two experiments of 6.3.3.3.
 
     Parameters
@@ -81,8 +81,8 @@ class Experiment:
 
 
 EXPERIMENTS = (
-    Experiment("6.26", "phi", ("19", "52"), (30, 60), "2"),
-    Experiment("6.27", "psi", ("14.5", "53.5"), (30, 62), "12"),
+    ForceLimitExperiment("6.26", "phi", ("19", "52"), (30, 60), "2"),
+    ForceLimitExperiment("6.27", "psi", ("14.5", "53.5"), (30, 62), "12"),
 )
 
 
@@ -97,7 +97,7 @@ def counterparts() -> tuple[Counterpart, ...]:
     )
 
 
-def _pressed(one: Experiment, force: str, more: str) -> Run:
+def _pressed(one: ForceLimitExperiment, force: str, more: str) -> Run:
     """Press twice, so that force control begins when the thesis says."""
     (first, second), (out, end) = map(float, one.switches), one.turns
     # What goes out goes in again: 10 deg at 5 deg/s.
@@ -116,7 +116,7 @@ def _pressed(one: Experiment, force: str, more: str) -> Run:
         (end + 2, -SPEED),
     )
     scenario = into(_TISSUE, *((round(t, 6), v) for t, v in command), control=BY_THRESHOLD)
-    return simulated({"position": POSITION, "force": force}, scenario, more)
+    return run_scenario({"position": POSITION, "force": force}, scenario, more)
 
 
 def _selection(run: Run) -> Panel:
@@ -126,7 +126,7 @@ def _selection(run: Run) -> Panel:
 
 
 def _profile() -> Counterpart:
-    run = simulated(
+    run = run_scenario(
         {"position": POSITION, "force": PROPORTIONAL}, into(8, *PROFILE, control=BY_THRESHOLD)
     )
     response, (switched, back) = run.response, [time for time, _ in run.switches]
@@ -148,7 +148,7 @@ def _profile() -> Counterpart:
             stated(
                 "torque from t_i to t4, N m",
                 "kept at T_h, 0.3",
-                f"peak {rounded_up(float(torque.max()))}, at last {torque[-1]:.4g}",
+                f"peak {four_digits_up(float(torque.max()))}, at last {torque[-1]:.4g}",
                 bool(torque.max() <= thesis.TORQUE),
                 "a proportional gain overshoots at the switch, and with X_i the reference it keeps "
                 "an error; figures 6.26 and 6.27 show the same of the robot",
@@ -162,8 +162,8 @@ def _profile() -> Counterpart:
                 "Counterpart of figure 6.22: command, torque and selection",
                 "The command waits while force is controlled. From t4 on position control takes up "
                 "where it waits, which is deeper: the torque first rises to "
-                f"{rounded_up(float(response['torque'].max()))} N m. {ENGINE}",
-                draw_records([Record("", panels, (1.0, 5.0), stays(run))]),
+                f"{four_digits_up(float(response['torque'].max()))} N m. {ENGINE}",
+                draw_records([PanelColumn("", panels, (1.0, 5.0), stays(run))]),
             ),
         ),
         runs={"figure-6-22": response},
@@ -205,7 +205,7 @@ def _schemes(run: Run) -> Counterpart:
                 "the initial condition when S switches",
                 "the reference at the switch; in the middle of figure 6.26's second drawing "
                 "the measured position",
-                Outcome.OMITTED,
+                Reproducibility.OMITTED,
                 "the thesis does not say of which signal: both readings are simulated",
             ),
         ),
@@ -216,7 +216,7 @@ def _schemes(run: Run) -> Counterpart:
                 "figure-6-24-record",
                 "Counterpart of figures 6.23 and 6.24: every signal of the schemes about a switch",
                 f"Of the run of figure 6.26. {ENGINE}",
-                draw_records([Record("", panels, span, stays(run))]),
+                draw_records([PanelColumn("", panels, span, stays(run))]),
             ),
         ),
     )
@@ -230,7 +230,7 @@ def _locus() -> Counterpart:
         opened.numerator, tuple(np.polyadd(loop.denominator, gain * np.array(opened.numerator)))
     )
     # No measurement: the rows of 6.3.3.1 hold both against the standard of the table.
-    wrong = Outcome.NOT_REPRODUCED
+    wrong = Reproducibility.NOT_REPRODUCED
     why = "the print is wrong: its value holds for Kp towards 0, and so does not fix Kp"
     return Counterpart(
         shows={"6.25": "Root locus of the open force loop 6.33"},
@@ -258,14 +258,14 @@ def _locus() -> Counterpart:
     )
 
 
-def _experiment(one: Experiment, runs: Sequence[Run]) -> Counterpart:
+def _experiment(one: ForceLimitExperiment, runs: Sequence[Run]) -> Counterpart:
     first, second = (time for time, name in runs[0].switches if name == "force")
     response, name = runs[0].response, f"figure-6-{one.figure[2:]}"
     panels = (speed_panel(response, one.axis), torque_panel(response), _selection(runs[0]))
     instants = tuple(map(float, one.switches))
-    whole = Record("", panels, (0.0, float(response.t[-1])), stays(runs[0]), instants)
+    whole = PanelColumn("", panels, (0.0, float(response.t[-1])), stays(runs[0]), instants)
     close = [
-        Record(
+        PanelColumn(
             label,
             (torque_panel(run.response, force=last), _selection(run)),
             (first - 0.15, first + 0.45),
@@ -307,7 +307,7 @@ def _experiment(one: Experiment, runs: Sequence[Run]) -> Counterpart:
 
 
 def _statements(
-    one: Experiment, runs: Sequence[Run], first: float, second: float
+    one: ForceLimitExperiment, runs: Sequence[Run], first: float, second: float
 ) -> tuple[Statement, ...]:
     (peak, left), (other, none), (integral, nothing) = (_judged(run, one.turns[0]) for run in runs)
     speed = f"it grows with the speed, which is not printed; {SPEED} deg/s here"
@@ -315,15 +315,21 @@ def _statements(
         stated(
             "overshoot at the switch",
             "observed" if one.axis == "phi" else "not observed",
-            f"to {rounded_up(peak)} N m",
+            f"to {four_digits_up(peak)} N m",
             (peak > thesis.TORQUE) == (one.axis == "phi"),
             "both axes have one model, so they overshoot alike; with X_i the position to "
-            f"{rounded_up(other)} N m",
+            f"{four_digits_up(other)} N m",
         )
     ]
     if one.axis == "phi":
         over.append(
-            measured("largest torque, N m", "0.35", float(rounded_up(peak)), speed, Outcome.OMITTED)
+            measured(
+                "largest torque, N m",
+                "0.35",
+                float(four_digits_up(peak)),
+                speed,
+                Reproducibility.OMITTED,
+            )
         )
     slow = float(one.error) / left * SPEED
     return (
@@ -335,7 +341,7 @@ def _statements(
             one.error,
             left,
             f"{speed}. It would be {one.error} % at {slow:.2f} deg/s",
-            Outcome.OMITTED,
+            Reproducibility.OMITTED,
         ),
         stated(
             "a P leaves an error",
@@ -346,7 +352,7 @@ def _statements(
         stated(
             "an integral would leave none, but its stability under switching is not guaranteed",
             "so said (6.3.3.1)",
-            f"PI that bleeds: {nothing:.2g} % left, to {rounded_up(integral)} N m; certified",
+            f"PI that bleeds: {nothing:.2g} % left, to {four_digits_up(integral)} N m; certified",
             holds=False,
             why="position control and a PI that bleeds have a common quadratic function: "
             "specs/neuroboscope/force-limit-pi.nrs.yaml",

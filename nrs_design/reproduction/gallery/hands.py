@@ -5,8 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
-from nrs_design.reproduction.gallery.counterpart import Counterpart, Outcome, Statement, stated
+from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reproduction.gallery.counterpart import (
+    Counterpart,
+    Reproducibility,
+    Statement,
+    stated,
+)
 from nrs_design.reproduction.hand_runs import (
     HAND,
     PAIRS,
@@ -89,7 +94,7 @@ def _changes(pushed: Sequence[HandRun], led: Sequence[HandRun]) -> tuple[Stateme
             f"change of {name}, experiment {before + 1} to {after + 1}, %",
             f"{number:+d}" if number else "approximately the same",
             f"pushed {one:+.3g}, led {other:+.3g}",
-            Outcome.OMITTED,
+            Reproducibility.OMITTED,
             _WHY,
         )
         for name, printed, found in (
@@ -122,7 +127,7 @@ def _illustrate(name: str, title: str, runs: Sequence[HandRun]) -> Illustration:
     )
 
 
-def _column(runs: Sequence[HandRun], title: str) -> Record:
+def _column(runs: Sequence[HandRun], title: str) -> PanelColumn:
     panels = tuple(
         Panel(
             label,
@@ -133,4 +138,4 @@ def _column(runs: Sequence[HandRun], title: str) -> Record:
         )
         for label, signal in _SIGNALS
     )
-    return Record(title, panels, (0.0, max(run.time for run in runs)))
+    return PanelColumn(title, panels, (0.0, max(run.time for run in runs)))

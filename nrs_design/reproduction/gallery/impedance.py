@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Record, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.figures.records import PanelColumn, draw_records
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
-    Outcome,
+    Reproducibility,
     Statement,
     measured,
     taken,
@@ -25,7 +25,7 @@ from nrs_design.reproduction.gallery.panels import (
     speed_panel,
     torque_panel,
 )
-from nrs_design.reproduction.interaction import DESIRED, admittance, into, simulated
+from nrs_design.reproduction.interaction import DESIRED, admittance, into, run_scenario
 from nrs_design.reproduction.thesis import VELOCITY
 from nrs_design.simulation.metrics import displayed_impedance, impedance_rmse
 from nrs_design.simulation.run import Run
@@ -35,7 +35,7 @@ HELD = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Experiment:
+class ImpedanceExperiment:
     """One of the two experiments of 6.3.1.2.
 
     Parameters
@@ -70,7 +70,7 @@ def _press(begin: float, held: float, end: float) -> tuple[tuple[float, float], 
 
 
 EXPERIMENTS = (
-    Experiment(
+    ImpedanceExperiment(
         "6.14",
         "phi",
         "15",
@@ -80,7 +80,7 @@ EXPERIMENTS = (
         ((0, 0), (5, 0), (6, 1), *_press(20, 26, 33), *_press(37, 46, 50), *_press(53, 57, 62),
          (65, 0)),
     ),
-    Experiment(
+    ImpedanceExperiment(
         "6.15",
         "psi",
         "5.3",
@@ -98,8 +98,8 @@ def counterparts() -> tuple[Counterpart, ...]:
     return tuple(map(_counterpart, EXPERIMENTS))
 
 
-def _counterpart(one: Experiment) -> Counterpart:
-    run = simulated({"impedance": admittance("0", "2.15")}, into(one.tissue, *one.command))
+def _counterpart(one: ImpedanceExperiment) -> Counterpart:
+    run = run_scenario({"impedance": admittance("0", "2.15")}, into(one.tissue, *one.command))
     name = f"figure-{one.figure.replace('.', '-')}"
     return Counterpart(
         shows={one.figure: f"Commanded speed of {one.axis} and torque, soft specimen"},
@@ -130,7 +130,7 @@ def _counterpart(one: Experiment) -> Counterpart:
     )
 
 
-def _record(one: Experiment, run: Run) -> Record:
+def _record(one: ImpedanceExperiment, run: Run) -> PanelColumn:
     response = run.response
     printed = [(instant, float(value)) for instant, value in one.impedances]
     panels = (
@@ -140,10 +140,10 @@ def _record(one: Experiment, run: Run) -> Record:
         impedance_panel(response, printed),
     )
     instants = (float(one.contact), *(instant for instant, _ in one.impedances))
-    return Record("", panels, (0.0, float(response.t[-1])), (), instants)
+    return PanelColumn("", panels, (0.0, float(response.t[-1])), (), instants)
 
 
-def _statements(one: Experiment, run: Run) -> tuple[Statement, ...]:
+def _statements(one: ImpedanceExperiment, run: Run) -> tuple[Statement, ...]:
     response = run.response
     hand, torque = response["hand"], response["torque"]
     shown, _ = displayed_impedance(hand, torque)
@@ -168,13 +168,13 @@ def _statements(one: Experiment, run: Run) -> tuple[Statement, ...]:
             error,
             "it is that of the command's course, which the thesis moves by a slider and does not "
             "print",
-            Outcome.OMITTED,
+            Reproducibility.OMITTED,
         ),
         Statement(
             "largest torque, N m",
             "safe (chapter 8); T_max is 0.3",
-            rounded_up(float(np.abs(torque).max())),
-            Outcome.OMITTED,
+            four_digits_up(float(np.abs(torque).max())),
+            Reproducibility.OMITTED,
             "at rest it is Bt times the command, whose size is not printed: "
             f"{2.15 * VELOCITY:.4f} at 8 deg/s",
         ),
@@ -182,7 +182,7 @@ def _statements(one: Experiment, run: Run) -> tuple[Statement, ...]:
             "scatter of the displayed impedance, N m s/rad",
             f"{low} to {high}",
             f"{min(v for _, v in values):.4f} to {max(v for _, v in values):.4f}",
-            Outcome.HARDWARE_ONLY,
+            Reproducibility.HARDWARE_ONLY,
             "the model has no sensor noise, no joint clearance and one specimen",
         ),
     )

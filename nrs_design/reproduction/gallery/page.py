@@ -8,19 +8,20 @@ from typing import Any
 from nrs_design import __version__
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Report, Section, Table
 from nrs_design.reporting.render import render_html
-from nrs_design.reproduction.gallery.counterpart import MEASURED, Counterpart, Outcome
+from nrs_design.reproduction.gallery.counterpart import MEASURED, Counterpart, Reproducibility
 
 _COLUMNS = ("statement", "print", "simulated", "outcome", "why")
 _MEANINGS = (
-    f"{Outcome.REPRODUCED}: a statement in words holds in the run; or a number measured on the "
-    f"robot is met within {100 * MEASURED:g} % (the thesis's own six displayed impedances miss "
+    f"{Reproducibility.REPRODUCED}: a statement in words holds in the run; or a number measured on "
+    f"the robot is met within {100 * MEASURED:g} % (the thesis's own six displayed impedances miss "
     "the desired one by up to 4.62 %), or within what rounding of the print leaves open.",
-    f"{Outcome.NOT_REPRODUCED}: it is not, and the reason stands beside it.",
-    f"{Outcome.OMITTED}: what decides it is not in the thesis, such as the course of a command. "
-    "The simulated number is that of inputs of ours, which are listed; if it agrees, that says "
-    "nothing.",
-    f"{Outcome.HARDWARE_ONLY}: no run of this model can show it.",
-    f"{Outcome.TAKEN}: an instant that the run was laid out for. It agrees because it was put in.",
+    f"{Reproducibility.NOT_REPRODUCED}: it is not, and the reason stands beside it.",
+    f"{Reproducibility.OMITTED}: what decides it is not in the thesis, such as the course of a "
+    "command. The simulated number is that of inputs of ours, which are listed; if it agrees, that "
+    "says nothing.",
+    f"{Reproducibility.HARDWARE_ONLY}: no run of this model can show it.",
+    f"{Reproducibility.TAKEN}: an instant that the run was laid out for. It agrees because it "
+    "was put in.",
 )
 _FIRST = (
     "The thesis draws records of experiments on the robot. Its figures are not copied here: each "
@@ -70,7 +71,7 @@ def count_outcomes(found: Sequence[Counterpart]) -> dict[str, int]:
         As `draw_counterparts` returns them.
     """
     outcomes = [statement.outcome for one in found for statement in one.statements]
-    return {str(kind): outcomes.count(kind) for kind in Outcome if kind in outcomes}
+    return {str(kind): outcomes.count(kind) for kind in Reproducibility if kind in outcomes}
 
 
 def summarize_gallery(found: Sequence[Counterpart]) -> list[dict[str, Any]]:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Curve, Panel, Record, draw_records
-from nrs_design.reporting.simulation import rounded_up
+from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
-    Outcome,
+    Reproducibility,
     Statement,
     measured,
     stated,
@@ -42,7 +42,7 @@ _LATE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Experiment:
+class TwoContactsExperiment:
     """One of the two experiments of 6.4.2.
 
     Parameters
@@ -68,7 +68,7 @@ class Experiment:
 
 
 EXPERIMENTS = (
-    Experiment(
+    TwoContactsExperiment(
         "6.33",
         "phi",
         ("2", "18", "20.9"),
@@ -77,7 +77,7 @@ EXPERIMENTS = (
         ((0, 1), (4, 1), (8, 4), (12, 4), (17.95, 0), (18.95, -1), (22, -1), (25, -4), (29, -4),
          (33, 0), (34, 1), (35, 1)),
     ),
-    Experiment(
+    TwoContactsExperiment(
         "6.34",
         "psi",
         ("6.7", "31.7", "37.8"),
@@ -121,7 +121,7 @@ def _desired() -> Counterpart:
     )
 
 
-def _scene(run: Run) -> Record:
+def _scene(run: Run) -> PanelColumn:
     response = run.response
     ends = response.t[[0, -1]]
     angle = Panel(
@@ -134,7 +134,7 @@ def _scene(run: Run) -> Record:
     )
     speed = speed_panel(response, "phi", of_the_axis=False)
     panels = (speed, angle, torque_panel(response, both=True))
-    return Record("", panels, (0.0, float(response.t[-1])), stays(run))
+    return PanelColumn("", panels, (0.0, float(response.t[-1])), stays(run))
 
 
 def _order(run: Run) -> tuple[Statement, ...]:
@@ -149,7 +149,7 @@ def _order(run: Run) -> tuple[Statement, ...]:
             "figure 6.28",
             "pictures",
             "none",
-            Outcome.HARDWARE_ONLY,
+            Reproducibility.HARDWARE_ONLY,
             "a run has a scene of angles and stiffnesses, that of figure 6.29",
         ),
         stated(
@@ -171,11 +171,11 @@ def _order(run: Run) -> tuple[Statement, ...]:
             f"{1e3 * (t4 - zero):.0f} ms after it",
             abs(t4 - zero) < _LATE,
         ),
-        stated("largest torque in tissue, N m", "T_max, 0.3", rounded_up(soft), soft <= TORQUE),
+        stated("largest torque in tissue, N m", "T_max, 0.3", four_digits_up(soft), soft <= TORQUE),
         stated(
             "largest torque against the tool, N m",
             "T_max, 0.3",
-            rounded_up(stiff),
+            four_digits_up(stiff),
             stiff <= TORQUE,
             "the tool is met at the largest speed here, and the torque overshoots before the "
             "robot has given way",
@@ -183,7 +183,7 @@ def _order(run: Run) -> tuple[Statement, ...]:
     )
 
 
-def _experiment(one: Experiment) -> Counterpart:
+def _experiment(one: TwoContactsExperiment) -> Counterpart:
     run = two_contacts(*one.places, *one.command)
     response, name = run.response, f"figure-6-{one.figure[2:]}"
     soft, stiff = _errors(run)
@@ -194,7 +194,7 @@ def _experiment(one: Experiment) -> Counterpart:
         impedance_panel(response),
     )
     times = tuple(map(float, one.times))
-    record = Record("", panels, (0.0, float(response.t[-1])), stays(run), times)
+    record = PanelColumn("", panels, (0.0, float(response.t[-1])), stays(run), times)
     switched = [time for time, controller in run.switches if controller == "tool"]
     why = "it is that of the command's course, which is not printed"
     return Counterpart(
@@ -211,15 +211,21 @@ def _experiment(one: Experiment) -> Counterpart:
                 f"at {switched[0]:.4g} s",
                 abs(switched[0] - met(run, 2)) < 1e-6,
             ),
-            measured("RMSE in soft contact, N m s/rad", one.errors[0], soft, why, Outcome.OMITTED),
             measured(
-                "RMSE in stiff contact, N m s/rad", one.errors[1], stiff, why, Outcome.OMITTED
+                "RMSE in soft contact, N m s/rad", one.errors[0], soft, why, Reproducibility.OMITTED
+            ),
+            measured(
+                "RMSE in stiff contact, N m s/rad",
+                one.errors[1],
+                stiff,
+                why,
+                Reproducibility.OMITTED,
             ),
             Statement(
                 "which contact has the larger error",
                 "stiff" if one.axis == "phi" else "soft",
                 "soft" if soft > stiff else "stiff",
-                Outcome.HARDWARE_ONLY,
+                Reproducibility.HARDWARE_ONLY,
                 "the printed axes contradict each other, and the model has one for both",
             ),
         ),

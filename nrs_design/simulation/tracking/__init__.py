@@ -9,7 +9,7 @@ from nrs_design.simulation.tracking.experiment import (
 )
 from nrs_design.simulation.tracking.friction import DryFriction
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Mechanism, Stepper
-from nrs_design.simulation.tracking.record import Record
+from nrs_design.simulation.tracking.record import TrackingRecord
 from nrs_design.simulation.tracking.simulate import LEFT_OUT, simulate
 from nrs_design.simulation.tracking.track import (
     CONTROLLERS,
@@ -30,9 +30,9 @@ __all__ = [
     "Experiment",
     "JointState",
     "Mechanism",
-    "Record",
     "Stepper",
     "Track",
+    "TrackingRecord",
     "ablation_tracks",
     "build_track",
     "experiment_tilt",

@@ -16,7 +16,7 @@ DISPLAY = np.array([180 / pi, 180 / pi, 1e3])
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class TrackingRecord:
     """What one experiment gave.
 
     Parameters

@@ -11,8 +11,9 @@ from nrs_design.controllers.motion import JointReference, LawState
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.models.robot import direct_kinematics
 from nrs_design.models.robot.vectors import Array
+from nrs_design.progress import Progress, silent
 from nrs_design.simulation.tracking.plant import DriveArrays, JointState, Stepper
-from nrs_design.simulation.tracking.record import Record
+from nrs_design.simulation.tracking.record import TrackingRecord
 from nrs_design.simulation.tracking.track import Track
 
 # Steps of the mechanism between two ticks: more do not change the fourth digit of any error.
@@ -39,8 +40,8 @@ def simulate(
     *,
     steps: int = STEPS_PER_TICK,
     held_phase: float = HELD_PHASE,
-    tell: Callable[[str], None] = lambda step: None,
-) -> list[Record]:
+    tell: Progress = silent,
+) -> list[TrackingRecord]:
     """Simulate every experiment of every track.
 
     Experiments of the same rate run in lockstep, which does not change what they give.
@@ -58,7 +59,7 @@ def simulate(
 
     Returns
     -------
-    list of Record
+    list of TrackingRecord
         In the order of the tracks and their experiments.
 
     Raises
@@ -70,7 +71,7 @@ def simulate(
     """
     single = [one for track in tracks for one in track.split()]
     order = sorted(range(len(single)), key=lambda index: _clock(single[index]))
-    records: dict[int, Record] = {}
+    records: dict[int, TrackingRecord] = {}
     for (duration, rate, period), group in groupby(order, key=lambda i: _clock(single[i])):
         indices = list(group)
         many = "experiment" if len(indices) == 1 else "experiments together"
@@ -98,7 +99,7 @@ def _ticks(batch: Sequence[Track]) -> Array:
     return np.asarray(period * np.arange(round(duration / period) + 1), dtype=np.float64)
 
 
-def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[Record]:
+def _lockstep(batch: Sequence[Track], steps: int, held: int) -> list[TrackingRecord]:
     time, period = _ticks(batch), batch[0].law.period
     wanted = _stacked([one.experiments[0].reference(one.mechanism.robot, time) for one in batch])
     drives = DriveArrays.of([one.drive for one in batch])
@@ -166,9 +167,11 @@ def _stacked(references: list[JointReference]) -> JointReference:
     )
 
 
-def _record(track: Track, time: Array, angles: Array, positions: Array, commands: Array) -> Record:
+def _record(
+    track: Track, time: Array, angles: Array, positions: Array, commands: Array
+) -> TrackingRecord:
     robot, experiment = track.mechanism.robot, track.experiments[0]
-    return Record(
+    return TrackingRecord(
         controller=track.controller,
         experiment=experiment,
         time=time,

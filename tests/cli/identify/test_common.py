@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.cli.identify.common import Outputs, numbers, read_all, sources
+from nrs_design.cli.identify.common import Destinations, estimate_numbers, read_all, sources
 from nrs_design.errors import NrsDesignError, OutputError, SpecError
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.statistics import Estimate
@@ -12,8 +12,8 @@ from tests.support import SOFT_TISSUE
 
 
 def test_unlimited_is_null_in_json():
-    assert numbers(Estimate(2.0, 1.0, 3.0)) == {"value": 2.0, "low": 1.0, "high": 3.0}
-    assert numbers(Estimate(2.0, 1.0, float("inf")))["high"] is None
+    assert estimate_numbers(Estimate(2.0, 1.0, 3.0)) == {"value": 2.0, "low": 1.0, "high": 3.0}
+    assert estimate_numbers(Estimate(2.0, 1.0, float("inf")))["high"] is None
 
 
 def test_files_are_known_by_their_hash():
@@ -41,7 +41,7 @@ def test_a_column_without_a_name(entry):
 
 
 def checked(write=None, report=None):
-    return Outputs.checked(write, report, None, as_json=False, quiet=True)
+    return Destinations.checked(write, report, None, as_json=False, quiet=True)
 
 
 def test_outputs_are_refused_before_the_work(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator import identify_actuator
-from nrs_design.identification.actuator.motor import Motor
+from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord
@@ -15,7 +15,7 @@ from tests.identification import motors, synthetic
 from tests.identification.support import MOTOR, sinusoids, source
 
 KINDS = ("stair", "chirp", "PRBS", "multisine", "closed loop")
-TRUE = Motor(motors.GAIN, motors.TIME_CONSTANT, motors.FRICTION, motors.DELAY)
+TRUE = MotorModel(motors.GAIN, motors.TIME_CONSTANT, motors.FRICTION, motors.DELAY)
 
 
 def found(record):
@@ -126,7 +126,7 @@ def test_the_true_motor_stays_where_it_is():
 def test_a_start_with_too_little_friction():
     """A step that is cut for one parameter only leaves the valley, and the search ended there."""
     records = sinusoids(1, (2, 6, 14))
-    fit = fit_in_time(records, Motor(4.27e-4, 0.0292, 25.0, 0.002))
+    fit = fit_in_time(records, MotorModel(4.27e-4, 0.0292, 25.0, 0.002))
     assert fit.motor.friction == pytest.approx(synthetic.FRICTION, rel=0.02)
     assert fit.tells_friction
     assert not fit_in_time(records, replace(fit.motor, friction=None)).tells_friction

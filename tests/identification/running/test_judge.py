@@ -7,14 +7,15 @@ import pytest
 
 from nrs_design.errors import DataError, DesignError
 from nrs_design.identification.datasets.columns import parse_mapping
-from nrs_design.identification.running import bounds_of, judge_run, read_run
+from nrs_design.identification.running import judge_run, read_run, read_run_bounds
+from nrs_design.identification.running.bounds import Stiffness
 from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
 from nrs_design.spec import read_spec
 from tests.identification import runs
 from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
 
-SOFT = bounds_of(read_spec(SOFT_TISSUE))
-SAMPLED = bounds_of(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
+SOFT = read_run_bounds(read_spec(SOFT_TISSUE))
+SAMPLED = read_run_bounds(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
 
 
 def log(tmp_path, data=None, text=None, entries=()):
@@ -37,7 +38,7 @@ def test_bounds_of_the_spec():
     assert pair == pytest.approx((720.56 * 0.24**2, 768.17 * 0.24**2))
     assert (SOFT.torque, SOFT.transitions, SOFT.delay) == (0.3, None, None)
     with pytest.raises(DesignError, match="kind switched-system"):
-        bounds_of(read_spec(COMMUTING))
+        read_run_bounds(read_spec(COMMUTING))
 
 
 def test_a_good_run(tmp_path):
@@ -181,7 +182,7 @@ def with_switching(tmp_path, rules):
     text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
     path = tmp_path / "spec.nrs.yaml"
     path.write_text(text)
-    return bounds_of(read_spec(path))
+    return read_run_bounds(read_spec(path))
 
 
 @pytest.mark.parametrize(
@@ -202,6 +203,15 @@ def test_dwell_times(tmp_path, rules, status, words):
         assert any(word in found.first.words for word in words.split("|"))
 
 
+def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
+    rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
+    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
+    stays = check(found, "dwell times")
+    assert str(stays.status) == "not judged"
+    assert "name contacts" in stays.measured
+    assert found.verdict == "inconclusive"
+
+
 def test_rules_without_a_column(tmp_path):
     text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
     record = log(tmp_path, text=text)
@@ -211,7 +221,7 @@ def test_rules_without_a_column(tmp_path):
 
 
 def test_a_tissue_that_remembers(tmp_path):
-    bounds = bounds_of(read_spec(ROBOT / "nose.nrs.yaml"))
+    bounds = read_run_bounds(read_spec(ROBOT / "nose.nrs.yaml"))
     text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
     assert "remembers" in check(judged(log(tmp_path, text=text), bounds), "stiffness").measured
 
@@ -319,3 +329,48 @@ def test_a_command_of_another_unit_of_its_kind_is_converted(tmp_path):
     text = runs.text(*runs.run()).replace("command_rpm", "command_deg_s")
     found = check(judged(log(tmp_path, text=text), command_limit=3000.0), "saturation")
     assert "largest command 333.33 rpm" in found.measured
+
+
+def without_modes(data):
+    return "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*data).split("\n"))
+
+
+def test_without_modes_inside_is_what_every_controller_may_meet(tmp_path):
+    """A stiffness that one controller alone may meet is no proof of a run by any of them."""
+    other = Stiffness(((10.0, 20.0),), ())
+    bounds = replace(SOFT, stiffness={"insertion": SOFT.stiffness["insertion"], "other": other})
+    record = log(tmp_path, text=without_modes(runs.run()))
+    found = check(judged(record, bounds), "stiffness")
+    assert str(found.status) == "undecided"
+    assert "no column for mode" in found.measured
+    assert str(check(judged(record), "stiffness").status) == "inside"
+    stiff = log(tmp_path, text=without_modes(runs.run(stiffness=90.0)))
+    assert str(check(judged(stiff, bounds), "stiffness").status) == "outside"
+
+
+def test_stays_too_short_for_a_window_are_said(tmp_path):
+    """What stands in no window may have any stiffness."""
+    t, angle, torque, command, modes = runs.run()
+    modes = np.where((t > 1.0) & (t < 1.02), "withdrawal", "insertion")
+    found = check(judged(log(tmp_path, (t, angle, torque, command, modes))), "stiffness")
+    assert str(found.status) == "undecided"
+    assert "9 of 5000 rows in no window" in found.measured
+    free = replace(SOFT, stiffness={**SOFT.stiffness, "withdrawal": None})
+    found = check(judged(log(tmp_path, (t, angle, torque, command, modes)), free), "stiffness")
+    assert str(found.status) == "inside"
+
+
+def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path):
+    """2 ms in log and loop; a log in ms that is read in s has none of its periods."""
+    assert "no whole" not in check(judged(log(tmp_path), SAMPLED), "jitter").measured
+    slower = replace(SAMPLED, period=0.003)
+    assert "no whole number of periods" in check(judged(log(tmp_path), slower), "jitter").measured
+    faster = replace(SAMPLED, period=0.001)
+    assert "no whole" not in check(judged(log(tmp_path), faster), "jitter").measured
+
+
+def test_the_spec_may_say_where_the_driver_saturates(tmp_path):
+    known = replace(SOFT, saturates=1500.0)
+    assert str(check(judged(log(tmp_path), known), "saturation").status) == "outside"
+    found = check(judged(log(tmp_path), known, command_limit=3000.0), "saturation")
+    assert (str(found.status), found.allowed) == ("inside", "below 3000 rpm")

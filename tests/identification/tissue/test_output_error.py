@@ -5,7 +5,7 @@ import pytest
 
 from nrs_design.identification.tissue import fit_record, output_error
 from nrs_design.identification.tissue.output_error import rmse
-from nrs_design.identification.tissue.problem import Problem
+from nrs_design.identification.tissue.problem import LeastSquaresProblem
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
     LAWS,
@@ -106,7 +106,7 @@ def test_a_touch_that_only_grazes_the_tissue():
 @pytest.mark.parametrize("law", [Maxwell(1.129, 20.0), synthetic.CONCHA])
 def test_derivatives_of_stretches_that_do_not_begin_at_rest(law):
     """Of the law and of what fades from the beginning of each touch, at constants that stay."""
-    problem = Problem(type(law), prepare(robot_record(law, slow(1), 0.005, 1)))
+    problem = LeastSquaresProblem(type(law), prepare(robot_record(law, slow(1), 0.005, 1)))
     point = problem.at(np.log(law.values) + 0.1)
     values = point.best[problem.offsets.shape[1] :]
     assert len(values) > 1

@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue import identify_tissue
-from nrs_design.identification.tissue.tangent import tangent
+from nrs_design.identification.tissue.tangent import tangent_of
 from nrs_design.identification.write_spec import merge_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley
 from nrs_design.spec import parse_spec, read_spec
@@ -93,4 +93,4 @@ def test_a_linear_law_has_none():
 @pytest.mark.parametrize("preload", [(0.0, 0.001), (0.001, 0.02)])
 def test_beyond_the_record(preload):
     with pytest.raises(DataError, match="are not within the deflections"):
-        tangent(identified(1).chosen, preload)
+        tangent_of(identified(1).chosen, preload)

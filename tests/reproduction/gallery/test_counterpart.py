@@ -2,7 +2,7 @@ import pytest
 
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
-    Outcome,
+    Reproducibility,
     measured,
     stated,
     taken,
@@ -12,22 +12,22 @@ from nrs_design.reproduction.gallery.counterpart import (
 @pytest.mark.parametrize(
     ("value", "outcome"),
     [
-        (1.0499, Outcome.REPRODUCED),
-        (0.951, Outcome.REPRODUCED),
-        (1.051, Outcome.NOT_REPRODUCED),
-        (0.949, Outcome.NOT_REPRODUCED),
-        (-1.0, Outcome.NOT_REPRODUCED),
+        (1.0499, Reproducibility.REPRODUCED),
+        (0.951, Reproducibility.REPRODUCED),
+        (1.051, Reproducibility.NOT_REPRODUCED),
+        (0.949, Reproducibility.NOT_REPRODUCED),
+        (-1.0, Reproducibility.NOT_REPRODUCED),
     ],
 )
 def test_a_measurement_is_met_within_five_percent(value, outcome):
     found = measured("x", "1.0", value, "because")
     assert found.outcome is outcome
-    assert found.why == ("" if outcome is Outcome.REPRODUCED else "because")
+    assert found.why == ("" if outcome is Reproducibility.REPRODUCED else "because")
 
 
 def test_an_omitted_input_is_never_a_reproduction():
-    found = measured("x", "2", 2.0, "the speed is not printed", Outcome.OMITTED)
-    assert (found.outcome, found.why) == (Outcome.OMITTED, "the speed is not printed")
+    found = measured("x", "2", 2.0, "the speed is not printed", Reproducibility.OMITTED)
+    assert (found.outcome, found.why) == (Reproducibility.OMITTED, "the speed is not printed")
     assert found.simulated == "2 (+0 %)"
 
 
@@ -38,8 +38,10 @@ def test_deviations_are_shown_in_percent_or_in_times():
 
 def test_words_and_inputs():
     assert stated("x", "less", "less", holds=True, why="w").why == ""
-    assert stated("x", "less", "more", holds=False, why="w").outcome is Outcome.NOT_REPRODUCED
-    assert taken("x", "15", 15.0).outcome is Outcome.TAKEN
+    assert (
+        stated("x", "less", "more", holds=False, why="w").outcome is Reproducibility.NOT_REPRODUCED
+    )
+    assert taken("x", "15", 15.0).outcome is Reproducibility.TAKEN
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from nrs_design.reproduction import runs
-from nrs_design.reproduction.gallery.counterpart import Outcome
+from nrs_design.reproduction.gallery.counterpart import Reproducibility
 from nrs_design.reproduction.gallery.figures import TOPICS, draw_counterparts
 
 # Typed from the text of 6.3.1.2, 6.3.2.3, 6.3.3.1, 6.3.3.3 and 6.4.2, one line for each figure.
@@ -54,12 +54,14 @@ def test_other_figures_have_no_printed_numbers(counterparts):
 def test_whatever_is_not_reproduced_says_why(counterparts):
     for one in counterparts:
         for statement in one.statements:
-            assert statement.why or statement.outcome is Outcome.REPRODUCED, statement
+            assert statement.why or statement.outcome is Reproducibility.REPRODUCED, statement
 
 
 def test_an_instant_that_was_put_in_comes_out(counterparts):
     """The run is where the thesis was, to the digit that is printed."""
-    taken = [s for one in counterparts for s in one.statements if s.outcome is Outcome.TAKEN]
+    taken = [
+        s for one in counterparts for s in one.statements if s.outcome is Reproducibility.TAKEN
+    ]
     assert len(taken) == 12
     for statement in taken:
         unit = 10.0 ** -len(statement.printed.partition(".")[2])
@@ -75,7 +77,7 @@ def test_at_rest_the_robot_displays_its_damping(by_figure):
     for figure in ("6.14", "6.15"):
         shown = [s for s in by_figure[figure].statements if s.quantity.startswith("displayed")]
         assert [s.simulated.partition(" ")[0] for s in shown] == ["2.15"] * 3
-        assert {s.outcome for s in shown} == {Outcome.REPRODUCED}
+        assert {s.outcome for s in shown} == {Reproducibility.REPRODUCED}
 
 
 def test_withdrawals_are_those_of_the_table(by_figure):
@@ -104,7 +106,7 @@ def test_the_axes_of_one_model_cannot_both_be_right(by_figure):
         next(s.outcome for s in by_figure[figure].statements if s.quantity.startswith("overshoot"))
         for figure in ("6.26", "6.27")
     ]
-    assert outcomes == [Outcome.REPRODUCED, Outcome.NOT_REPRODUCED]
+    assert outcomes == [Reproducibility.REPRODUCED, Reproducibility.NOT_REPRODUCED]
 
 
 def test_the_six_moves_have_a_sign_for_each_pair(counterparts):
@@ -115,8 +117,8 @@ def test_the_six_moves_have_a_sign_for_each_pair(counterparts):
         *("-6", "-5", "-2", "-2", "-35", "-33", "-30"),
         *("+4", "+7", "+1", "approximately the same", "+97", "+92", "+79"),
     ]
-    assert {s.outcome for s in changes} == {Outcome.OMITTED}
-    assert [s.outcome for s in hands.statements[:2]] == [Outcome.REPRODUCED] * 2
+    assert {s.outcome for s in changes} == {Reproducibility.OMITTED}
+    assert [s.outcome for s in hands.statements[:2]] == [Reproducibility.REPRODUCED] * 2
 
 
 def test_progress_names_every_topic(monkeypatch):

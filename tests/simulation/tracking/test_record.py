@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.simulation.tracking import Experiment, Record
+from nrs_design.simulation.tracking import Experiment, TrackingRecord
 
 ERROR = np.array([[0.01, 0.0, 1e-3], [-0.01, 0.02, -1e-3]])
 
@@ -11,7 +11,7 @@ def record():
     experiment = Experiment("psi", (0.0, 0.0, 0.2), 0.1, np.pi, hold=1.0)
     wanted = np.ones((2, 3))
     command = np.array([[1.0, -5.0, 2.0], [3.0, 4.0, 0.0]])
-    return Record(
+    return TrackingRecord(
         "any", experiment, np.arange(2.0), wanted, wanted - ERROR, wanted - 2 * ERROR, command
     )
 

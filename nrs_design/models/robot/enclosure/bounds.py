@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from nrs_design.errors import DesignError
-from nrs_design.models.robot.enclosure.enclose import Enclosed, Goal, Progress, enclose
+from nrs_design.models.robot.enclosure.enclose import Enclosed, Goal, enclose
 from nrs_design.models.robot.enclosure.quantities import (
     AbstractQuantity,
     GravityGradient,
@@ -22,6 +22,7 @@ from nrs_design.models.robot.enclosure.quantities import (
 from nrs_design.models.robot.geometry import is_reachable, unreachable
 from nrs_design.models.robot.robot import Robot, Workspace
 from nrs_design.models.robot.workspace import workspace_grid
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.robot_bounds import SCHEMA, UNITS, content_id
@@ -72,7 +73,7 @@ def compute_bounds(
     robot: Robot,
     space: Space,
     budget: float = inf,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
 ) -> dict[str, Enclosed]:
     """Enclose all that a certificate of coupled axes asks of a robot.
 
@@ -114,7 +115,7 @@ def confirm_bounds(
     robot: Robot,
     document: Mapping[str, Any],
     budget: float = inf,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
 ) -> Iterator[str]:
     """Show the bounds of a file again; yield what is wrong with them.
 
@@ -175,7 +176,7 @@ def space_of(document: Mapping[str, Any]) -> Space:
     return Space(said["phi_deg"], said["psi_deg"], (low, high))
 
 
-def to_document(
+def bounds_document(
     name: str, sha256: str, space: Space, found: Mapping[str, Enclosed], version: str
 ) -> dict[str, Any]:
     """Return the file of bounds, every number rounded to its safe side.

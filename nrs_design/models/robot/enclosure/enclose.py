@@ -14,6 +14,7 @@ from nrs_design.models.robot.enclosure.balls import Floats
 from nrs_design.models.robot.enclosure.cover import Boxes, Cover, cover, cut
 from nrs_design.models.robot.enclosure.quantities import AbstractQuantity
 from nrs_design.models.robot.robot import Robot, Workspace
+from nrs_design.progress import Progress, silent
 
 # A sine and a number of a spec are off by a few units of the last place at most.
 OUTSIDE = 2.0**-45
@@ -24,7 +25,6 @@ ZOOMS = 6
 CLOSER = 0.3
 # Relative distance below which two values are one: rounding is far below it.
 TIE = 1e-10
-Progress = Callable[[str], None]
 # Which bound will do, given the largest value that was found.
 Goal = Callable[[float], float]
 
@@ -132,7 +132,7 @@ def enclose(
     workspace: Workspace,
     goal: Goal,
     budget: float = inf,
-    progress: Progress = lambda step: None,
+    progress: Progress = silent,
 ) -> Enclosed:
     """Show a bound on a quantity over a workspace.
 

@@ -177,7 +177,7 @@ class Jet:
         return Jet(order, self.half, middle, whole)
 
 
-def coordinates(middle: Sequence[Floats], half: Sequence[Floats], order: int) -> list[Jet]:
+def coordinate_jets(middle: Sequence[Floats], half: Sequence[Floats], order: int) -> list[Jet]:
     """Return the three coordinates themselves.
 
     Parameters
@@ -194,7 +194,7 @@ def coordinates(middle: Sequence[Floats], half: Sequence[Floats], order: int) ->
     ]
 
 
-def direction(slopes: Sequence[Jet], cos: Balls, sin: Balls) -> tuple[Jet, Jet]:
+def direction_jets(slopes: Sequence[Jet], cos: Balls, sin: Balls) -> tuple[Jet, Jet]:
     """Return cosine and sine of an angle, of one order more than its derivatives.
 
     Parameters

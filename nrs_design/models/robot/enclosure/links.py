@@ -14,7 +14,7 @@ from functools import cached_property, reduce
 
 from nrs_design.models.robot.body import Body
 from nrs_design.models.robot.enclosure.balls import Balls, Floats
-from nrs_design.models.robot.enclosure.jet import Jet, coordinates, degree, direction
+from nrs_design.models.robot.enclosure.jet import Jet, coordinate_jets, degree, direction_jets
 from nrs_design.models.robot.robot import Leg, Robot
 
 # What a number of the robot is off by when its spec has been read in floating point, against the
@@ -57,7 +57,7 @@ class Links:
     order: int
 
     def _frame(self, order: int) -> _Frame:
-        return _Frame(self.robot, coordinates(self.middle, self.half, order))
+        return _Frame(self.robot, coordinate_jets(self.middle, self.half, order))
 
     def inertia(self) -> Matrix:
         """Return M, the matrix of inertia at the joints."""
@@ -222,8 +222,8 @@ class _Leg:
         x, y, u, v = (jet.middle[0] for jet in (end[0] - l0, end[1], along, across))
         scale = inverse.middle[0]
         cos_beta, sin_beta = (x * u - y * v) * scale, (y * u + x * v) * scale
-        beta = direction(_shortened(crank), cos_beta, sin_beta)
-        kappa = direction(
+        beta = direction_jets(_shortened(crank), cos_beta, sin_beta)
+        kappa = direction_jets(
             _shortened(coupler),
             (x - l1 * cos_beta) * l2.reciprocal(),
             (y - l1 * sin_beta) * l2.reciprocal(),

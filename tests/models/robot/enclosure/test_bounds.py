@@ -10,25 +10,37 @@ import pytest
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.models.robot import (
     Space,
+    bounds_document,
     compute_bounds,
     confirm_bounds,
     coriolis_matrix,
     mass_matrix,
-    to_document,
 )
 from nrs_design.models.robot.enclosure.bounds import goal_of
 from nrs_design.models.robot.enclosure.cover import Boxes, cover, cut
 from nrs_design.models.robot.enclosure.enclose import enclose, find_largest
-from nrs_design.models.robot.enclosure.quantities import GravityGradient, Inertia, VelocityTorques
+from nrs_design.models.robot.enclosure.quantities import (
+    GravityGradient,
+    Inertia,
+    Mobility,
+    VelocityTorques,
+)
 from nrs_design.spec.robot_bounds import content_id
+from tests.support import ROOT
 
+QUANTITIES = {
+    "heaviest": Inertia(),
+    "lightest": Mobility(),
+    "velocity_torques": VelocityTorques(),
+    "gravity_gradient": GravityGradient(),
+}
 TAMPERED = {"heaviest": 0.9, "velocity_torques": 0.7, "gravity_gradient": 0.9}
 SPACE = Space("0.5", "0.5", ("199.5", "200.5"))
 
 
 @pytest.fixture(scope="module")
 def document(robot):
-    return to_document("arm", 64 * "0", SPACE, compute_bounds(robot, SPACE), "1")
+    return bounds_document("arm", 64 * "0", SPACE, compute_bounds(robot, SPACE), "1")
 
 
 def tampered(document, key, factor):
@@ -170,11 +182,43 @@ def test_a_box_with_a_stretched_leg_has_no_bound(robot):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("said", "key", "shown"),
+    [
+        ("largest eigenvalue", "heaviest", True),
+        ("smallest eigenvalue", "lightest", True),
+        # To show these two takes half a minute.
+        ("Coriolis", "velocity_torques", False),
+        ("gradient", "gravity_gradient", False),
+    ],
+)
+def test_the_table_of_the_page(robot, said, key, shown):
+    """``--phi 4 --psi 4 --depth 195,205``: what is found, and a bound as near as is said."""
+    lines = (ROOT / "docs/robot/bounds.md").read_text("utf-8").splitlines()
+    (row,) = (line for line in lines if line.startswith(f"| {said}"))
+    _, bound, found, pose, boxes = (cell.strip() for cell in row.strip("| ").split("|"))
+    space = Space("4", "4", ("195", "205"))
+    room = 1.35 if key == "velocity_torques" else 1.02
+    quantity = QUANTITIES[key]
+    if shown:
+        whole = enclose(robot, quantity, space.workspace, goal_of(room))
+        document = bounds_document("arm", 64 * "0", space, {key: whole}, "1")
+        assert bound == document["bounds"][key]
+        assert int(boxes) == document["found"][key]["boxes"]
+    largest, (phi, psi, d) = find_largest(robot, quantity, space.workspace)
+    at = f"{np.degrees(phi):.3g} deg, {np.degrees(psi):.3g} deg, {1e3 * d:.3g} mm"
+    worst = 1 / largest if key == "lightest" else largest
+    assert (found, pose) == (f"{worst:.6g}", at)
+    # The last digit of a bound is rounded to its safe side.
+    distance = worst / float(bound) if key == "lightest" else float(bound) / worst
+    assert 1 < distance < room * (1 + 1e-4)
+
+
+@pytest.mark.slow
 def test_pinocchio_over_ten_thousand_poses_of_the_workspace(robot):
     """What the file in this repository says, against the dynamics of another library."""
     from benchmarks.pinocchio_tree import Tree
     from nrs_design.spec.robot_bounds import read_bounds
-    from tests.support import ROOT
 
     bounds, document = read_bounds(ROOT / "specs/robots/neuroboscope.bounds.json")
     space = Space(

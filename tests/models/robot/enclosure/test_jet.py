@@ -7,7 +7,7 @@ import pytest
 from flint import arb, arb_series, ctx
 
 from nrs_design.models.robot.enclosure.balls import Balls
-from nrs_design.models.robot.enclosure.jet import coordinates, direction
+from nrs_design.models.robot.enclosure.jet import coordinate_jets, direction_jets
 
 ORDERS = range(1, 6)
 MIDDLE, HALF = 0.75, 0.03
@@ -16,7 +16,7 @@ MIDDLE, HALF = 0.75, 0.03
 def line(order):
     """Return the first coordinate, over one box."""
     zeros = np.zeros(1)
-    return coordinates([zeros + MIDDLE, zeros, zeros], [zeros + HALF, zeros, zeros], order)[0]
+    return coordinate_jets([zeros + MIDDLE, zeros, zeros], [zeros + HALF, zeros, zeros], order)[0]
 
 
 def turned(order):
@@ -24,7 +24,7 @@ def turned(order):
     x = line(max(order - 1, 1))
     still = x.constant(Balls(0.0))
     slopes = [x * 2.0, still, still]
-    return direction(slopes, *(near(f(arb(MIDDLE) ** 2)) for f in (arb.cos, arb.sin)))
+    return direction_jets(slopes, *(near(f(arb(MIDDLE) ** 2)) for f in (arb.cos, arb.sin)))
 
 
 def near(number):

@@ -1,0 +1,127 @@
+"""A proof in a process of its own says what it says in this one, or nothing."""
+
+import os
+import signal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from nrs_design.certificates import beside
+from nrs_design.certificates.beside import proof_beside
+from nrs_design.certificates.certificate import content_id
+from nrs_design.certificates.prove import Verification, prove
+from nrs_design.certificates.verify import read_document, verify_document
+from nrs_design.errors import InternalError
+from nrs_design.spec import read_spec
+from tests.support import ROOT
+
+SHIPPED = {path.name.split(".")[0] for path in (ROOT / "reports").glob("*.cert.json")}
+SPECS = sorted(
+    path for path in (ROOT / "specs").glob("*/*.nrs.yaml") if path.name.split(".")[0] in SHIPPED
+)
+SPEC = ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml"
+
+if not beside.can_copy():
+    pytest.skip("needs Linux and two processors", allow_module_level=True)
+
+
+def _document(spec: Path) -> dict[str, Any]:
+    return read_document(ROOT / "reports" / f"{spec.name.removesuffix('.nrs.yaml')}.cert.json")
+
+
+@pytest.mark.parametrize(
+    "spec", [SPEC, *(pytest.param(path, marks=pytest.mark.slow) for path in SPECS if path != SPEC)]
+)
+def test_shipped_certificates_hold_as_they_do_in_one_process(spec: Path) -> None:
+    document, loaded = _document(spec), read_spec(spec)
+    with proof_beside(document) as proof:
+        assert proof is not None
+        both = verify_document(document, loaded, proof=proof)
+    alone = verify_document(document, loaded)
+    assert (both.fault, both.certificate) == (None, alone.certificate)
+
+
+def _worse(document: dict[str, Any]) -> None:
+    (statement,) = document["statements"]
+    statement["Q"]["numerators"][0][0] = 0
+
+
+def _renamed(document: dict[str, Any]) -> None:
+    document["modes"][0]["name"] += "!"
+
+
+def _foreign(document: dict[str, Any]) -> None:
+    document["spec"]["name"] = "another"
+
+
+def _malformed(document: dict[str, Any]) -> None:
+    del document["statements"]
+
+
+@pytest.mark.parametrize("change", [_worse, _renamed, _foreign, _malformed])
+@pytest.mark.parametrize("signed", [True, False])
+def test_a_changed_certificate_is_rejected_for_the_same_reason(change: Any, signed: bool) -> None:
+    document, loaded = _document(SPEC), read_spec(SPEC)
+    change(document)
+    if signed:
+        document["id"] = content_id(document)
+    with proof_beside(document) as proof:
+        both = verify_document(document, loaded, proof=proof)
+    assert both.fault is not None
+    assert both.fault == verify_document(document, loaded).fault
+
+
+def test_a_process_that_ends_without_an_answer_has_proved_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    document = _document(SPEC)
+    _worse(document)
+    document["id"] = content_id(document)
+    here = os.getpid()
+
+    def prove_here_only(document: dict[str, Any]) -> Verification:
+        if os.getpid() != here:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return prove(document)
+
+    monkeypatch.setattr(beside, "prove", prove_here_only)
+    with proof_beside(document) as proof:
+        assert proof is not None
+        fault = proof()
+    assert fault is not None
+    assert "Q" in fault
+
+
+def test_what_fails_there_is_raised_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(document: object) -> None:
+        raise InternalError("flint disagrees")
+
+    monkeypatch.setattr(beside, "prove", fail)
+    with proof_beside(_document(SPEC)) as proof:
+        assert proof is not None
+        with pytest.raises(InternalError, match="flint disagrees"):
+            proof()
+
+
+def test_on_one_processor_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
+    with proof_beside(_document(SPEC)) as proof:
+        assert proof is None
+
+
+def test_without_room_for_a_process_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail() -> int:
+        raise BlockingIOError
+
+    monkeypatch.setattr(os, "fork", fail)
+    with proof_beside(_document(SPEC)) as proof:
+        assert proof is None
+
+
+def test_the_former_schema_is_proved_with_the_spec_only() -> None:
+    document, loaded = _document(SPEC), read_spec(SPEC)
+    document["schema"] = "nrs-design/certificate/3"
+    with proof_beside(document) as proof:
+        both = verify_document(document, loaded, proof=proof)
+    assert both.fault == verify_document(document, loaded).fault

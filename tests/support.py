@@ -8,14 +8,16 @@ import shutil
 import subprocess
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from time import process_time
-from typing import NoReturn
+from typing import Any, NoReturn
 from unittest.mock import patch
 
 import pytest
+import typer
 from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
@@ -97,6 +99,18 @@ def write_spec(
     return read_spec(path)
 
 
+# What the options of a command are is read from its function, and does not change.
+PARAMETERS_OF = cache(typer.main.get_params_from_function)
+
+
+def thinned(values: Iterable[Any], kept: int) -> list[Any]:
+    """Parameters of which the default session takes the first only, the slow session the rest."""
+    return [
+        pytest.param(value, marks=[] if i < kept else [pytest.mark.slow])
+        for i, value in enumerate(values)
+    ]
+
+
 def run(*arguments: str | Path | int, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Run the command line in this process, which takes a tenth of the time of a new one.
 
@@ -107,6 +121,7 @@ def run(*arguments: str | Path | int, cwd: Path) -> subprocess.CompletedProcess[
     with (
         contextlib.chdir(cwd),
         patch.object(sys, "argv", command),
+        patch.object(typer.main, "get_params_from_function", PARAMETERS_OF),
         contextlib.redirect_stdout(io.StringIO()) as out,
         contextlib.redirect_stderr(io.StringIO()) as err,
         warnings.catch_warnings(),

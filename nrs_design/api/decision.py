@@ -110,7 +110,7 @@ class Decision:
         """
         from nrs_design.reporting import render_html
 
-        if file is not None and Path(file).suffix not in (".html", ".htm"):
+        if file is not None and Path(file).suffix.lower() not in (".html", ".htm"):
             raise OutputError(
                 "is not the name of a page",
                 path=Path(file),

@@ -133,10 +133,10 @@ def _proof(
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
     from nrs_design.pipeline import run_certification
-    from nrs_design.pipeline.certified_runs import read_certificate
+    from nrs_design.pipeline.certified_runs import read_valid_certificate
 
     if file is not None:
-        return read_certificate(file, designed)
+        return read_valid_certificate(file, designed)
     if not bound or designed.spec.disturbances is None:
         return None
     step("certifying its bounds")

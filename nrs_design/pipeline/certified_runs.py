@@ -119,7 +119,7 @@ def hold_rate(
     )
 
 
-def read_certificate(file: Path, designed: Designed) -> Certificate:
+def read_valid_certificate(file: Path, designed: Designed) -> Certificate:
     """Return what a certificate file holds, checked exactly against the spec.
 
     Raises

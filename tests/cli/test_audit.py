@@ -105,8 +105,15 @@ def test_a_foreign_certificate_is_rejected(tmp_path, proof):
     assert "the certificate is rejected: it belongs to another spec" in done.stderr
 
 
-@pytest.mark.parametrize("ending", ["html", "pdf"])
-@pytest.mark.parametrize(("stiffness", "code"), [(43.0, 3), (60.0, 1)])
+@pytest.mark.parametrize(
+    ("ending", "stiffness", "code"),
+    [
+        ("html", 43.0, 3),
+        ("pdf", 60.0, 1),
+        pytest.param("pdf", 43.0, 3, marks=pytest.mark.slow),
+        pytest.param("html", 60.0, 1, marks=pytest.mark.slow),
+    ],
+)
 def test_report(tmp_path, ending, stiffness, code):
     page = tmp_path / f"page.{ending}"
     log = write(tmp_path, stiffness=stiffness)

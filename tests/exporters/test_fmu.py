@@ -4,6 +4,7 @@ import hashlib
 import io
 import zipfile
 from dataclasses import replace
+from functools import cache
 
 import fmpy
 import numpy as np
@@ -27,14 +28,20 @@ def program(law, export):
     return Program(export.record, law, CNames(export.record.spec.name))
 
 
+@pytest.fixture(scope="module")
+def model(sampled_export):
+    """Compile the model of a law once."""
+    return cache(lambda law: packed(contents(program(LAWS[law], sampled_export), compiler("cc"))))
+
+
 @pytest.fixture
-def opened(tmp_path, sampled_export):
-    """Open a model of a law as an importer does; it is closed at the end."""
+def opened(tmp_path, model):
+    """Open the model of a law as an importer does; it is closed at the end."""
     slaves = []
 
     def of(law):
         file = tmp_path / "model.fmu"
-        file.write_bytes(packed(contents(program(law, sampled_export), compiler("cc"))))
+        file.write_bytes(model(law))
         told = fmpy.read_model_description(file)
         folder = fmpy.extract(file, unzipdir=tmp_path / "model")
         identity = {"guid": told.guid, "modelIdentifier": told.coSimulation.modelIdentifier}
@@ -68,7 +75,7 @@ def test_fmpy_finds_no_problem(tmp_path, sampled_export, shape):
 def test_every_bit_is_that_of_the_replica(opened, shape):
     """1,000 steps in a row, with inputs that are not numbers, infinite or subnormal, too."""
     law = LAWS[shape]
-    slave, at = opened(law)
+    slave, at = opened(shape)
     run(slave, at)
     vectors = make_vectors(law)
     given = {v.name: vectors.rows[:, vectors.columns.index(v.name)] for v in law.inputs}
@@ -112,7 +119,7 @@ def test_a_simulator_runs_it(tmp_path, sampled_export):
 
 
 def test_it_starts_at_rest_where_the_joint_is_and_again_after_a_reset(opened):
-    slave, at = opened(LAWS["inertia"])
+    slave, at = opened("inertia")
     run(slave, at, 0.25)
     assert slave.getReal([at["state.reference"], at["command"]]) == [0.25, 0.0]
     slave.setReal([at["torque"]], [0.5])
@@ -125,7 +132,7 @@ def test_it_starts_at_rest_where_the_joint_is_and_again_after_a_reset(opened):
 
 
 def test_a_long_communication_step_is_many_samples(opened):
-    slave, at = opened(LAWS["inertia"])
+    slave, at = opened("inertia")
     found = []
     for count in (1, 5):
         run(slave, at, 0.1)
@@ -142,14 +149,14 @@ def test_a_long_communication_step_is_many_samples(opened):
     [(0.0, 1.5 * T), (0.0, 0.0), (0.0, -T), (0.0, float("nan")), (0.0, 1e300), (T / 2, T)],
 )
 def test_steps_that_no_clock_makes_are_refused(opened, now, length):
-    slave, at = opened(LAWS["inertia"])
+    slave, at = opened("inertia")
     run(slave, at)
     with pytest.raises(FMICallException):
         slave.doStep(now, length)
 
 
 def test_what_is_no_input_is_not_set(opened):
-    slave, at = opened(LAWS["inertia"])
+    slave, at = opened("inertia")
     for name in ("command", "state.reference"):
         with pytest.raises(FMICallException):
             slave.setReal([at[name]], [1.0])

@@ -6,19 +6,26 @@ import json
 
 import pytest
 
+from nrs_design.models.robot import thesis_tilts
 from nrs_design.pipeline.robots import run_robot
 from nrs_design.reporting import render_html
 from nrs_design.reporting.document import Illustration, Paragraph, Table
 from nrs_design.reporting.robot import robot_report
-from tests.support import ROOT, run
+from tests.support import ROOT, run, thinned
 
 ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 
 
-@pytest.fixture(scope="module")
-def robot_page():
-    """The page, which takes seconds to compute; its command is given this one."""
-    return robot_report(*run_robot(ROBOT))
+@pytest.fixture(scope="module", params=thinned([15, 1], 1), ids=lambda every: f"every {every} deg")
+def robot_page(request):
+    """The page, which takes seconds to compute; its command is given this one.
+
+    The correction is drawn over fewer tilts by default, which nothing here looks at.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        tilts = thesis_tilts()[:: request.param]
+        patch.setattr("nrs_design.reporting.robot.thesis_tilts", lambda: tilts)
+        return robot_report(*run_robot(ROBOT))
 
 
 def blocks(report, kind):

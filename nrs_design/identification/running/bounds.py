@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import build_environments
@@ -25,6 +26,14 @@ class Stiffness:
 
     ranges: tuple[tuple[float, float], ...]
     foreign: tuple[str, ...]
+
+
+class Unseen(NamedTuple):
+    """What a spec takes for granted and no log shows: its name, why, and what is allowed."""
+
+    name: str
+    why: str
+    allowed: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +63,8 @@ class RunBounds:
         Whether the spec asks for a proof that holds while contact is lost.
     command : str
         Unit of the motor's command.
+    unseen : tuple of Unseen
+        What else must hold, and no log shows.
     saturates : float or None
         Command at which the driver saturates, in that unit; None if the spec does not say.
     proved : bool
@@ -70,6 +81,7 @@ class RunBounds:
     period: float | None
     losable: bool
     command: str
+    unseen: tuple[Unseen, ...] = ()
     saturates: float | None = None
     proved: bool = False
 
@@ -133,8 +145,20 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         period=_period(spec),
         losable=spec.contact == "losable",
         command=spec.actuator.command,
+        unseen=tuple(_unseen(spec)),
         saturates=None if spec.limits.command is None else spec.limits.command.si,
     )
+
+
+def _unseen(spec: InteractionDesignSpec) -> Iterator[Unseen]:
+    if spec.coupling is not None:
+        speed = spec.coupling.speed
+        allowed = "near zero" if speed is None else f"below {speed.text}"
+        yield Unseen("speed of all axes", "a log is of one axis", allowed)
+    for name in spec.touched:
+        if (preload := spec.environments[name].preload_range) is not None:
+            why = "a log does not say where its surface is"
+            yield Unseen(f"preload of {name}", why, " to ".join(end.text for end in preload))
 
 
 def _period(spec: InteractionDesignSpec) -> float | None:

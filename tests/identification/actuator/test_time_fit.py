@@ -30,8 +30,11 @@ def test_the_simulation_is_that_of_fine_steps(kind, is_angle):
     assert np.abs(error).max() < (1e-5 if is_angle else 2e-3)
 
 
-@pytest.mark.parametrize("is_angle", [True, False])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    ("kind", "is_angle"),
+    [*((kind, True) for kind in KINDS), ("multisine", False)]
+    + [pytest.param(kind, False, marks=pytest.mark.slow) for kind in KINDS if kind != "multisine"],
+)
 def test_parameters(kind, is_angle):
     """Near, at least; that intervals hold them in 95 % of cases is counted elsewhere."""
     result = found(motors.record(kind, 1, is_angle=is_angle))

@@ -203,6 +203,20 @@ def test_dwell_times(tmp_path, rules, status, words):
         assert any(word in found.first.words for word in words.split("|"))
 
 
+@pytest.mark.parametrize(
+    ("spec", "name", "allowed"),
+    [
+        ("soft-tissue-axes", "speed of all axes", "below 14 deg/s"),
+        ("concha", "preload of concha", "0.1 rad to 0.3 rad"),
+    ],
+)
+def test_what_no_log_shows_is_not_judged_so_the_run_is_not_inside(tmp_path, spec, name, allowed):
+    bounds = read_run_bounds(read_spec(ROBOT / f"{spec}.nrs.yaml"))
+    unseen = check(judged(log(tmp_path), bounds, command_limit=3000), name)
+    assert (str(unseen.status), unseen.allowed) == ("not judged", allowed)
+    assert SOFT.unseen == ()
+
+
 def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
     rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
     found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, Shows
+from nrs_design.proof.evidence.conewise_quadratic import find_odd_multipliers
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.switching import Reset, Switching
@@ -401,3 +402,12 @@ def test_rounding_is_covered_where_there_are_multipliers_for_it():
     assert replace(STEPS, roundings=(1,)).covers_rounding
     covered = replace(STEPS, roundings=(1,))
     assert type(covered).from_fields(covered.to_fields(), bouncing_in_steps()) == covered
+
+
+def test_where_contact_is_kept_there_are_no_multipliers():
+    """As evidence asks that covers both."""
+    kept = replace(bouncing(1), contact=None)
+    assert find_odd_multipliers((), kept) is None
+    assert find_odd_multipliers((1,), kept) == (
+        "there is not one multiplier for each condition that needs it"
+    )

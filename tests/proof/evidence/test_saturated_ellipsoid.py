@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.channels import Coupling
 from nrs_design.proof.evidence import SaturatedEllipsoid, Shows, read_evidence
+from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import CutOff, Saturation
 from nrs_design.proof.second_opinion import agrees
@@ -89,6 +90,14 @@ def test_limits_that_are_wider_are_covered():
         assert HELD.find_fault(replace(system, saturation=what)) is None
     narrow = replace(system.saturation, signals=(replace(signal, limit=Fraction(1, 2)),))
     assert "beyond its limit" in HELD.find_fault(replace(system, saturation=narrow))
+
+
+def test_a_denominator_may_be_as_long_as_is_read():
+    system, half = changed(limit=Fraction(4)), ((1 << MAX_INTEGER_BITS - 1,),)
+    long = replace(HELD, Q=half, denominator_log2=MAX_INTEGER_BITS)
+    assert long.find_fault(system) is None
+    longer = replace(HELD, Q=half, denominator_log2=MAX_INTEGER_BITS + 1)
+    assert "out of range" in longer.find_fault(system)
 
 
 def test_a_row_is_held_against_the_square_of_its_limit():

@@ -23,8 +23,8 @@ def verify(certificate: str | Path, spec: str | Path | None = None) -> Verificat
     Returns
     -------
     Verification
-        Its `fault` says why the certificate is rejected, None if it is valid; true in a condition
-        if it is valid. What is shown, ``certificate.verdict``, may be a refutation.
+        Its `fault` says why the certificate is rejected, None if it is valid. What is shown,
+        ``certificate.verdict``, may be a refutation; true in a condition if it is a proof.
 
     Raises
     ------

@@ -53,8 +53,9 @@ class Verification:
     forms: tuple[list[IntegerMatrix], ...] = field(default=(), repr=False, compare=False)
 
     def __bool__(self) -> bool:
-        """Whether the certificate is valid; what it shows may be a refutation."""
-        return self.fault is None
+        """Whether the certificate is valid and proves; one that refutes is valid, too."""
+        certificate = self.certificate
+        return self.fault is None and certificate is not None and certificate.verdict == "proved"
 
 
 def prove(document: Mapping[str, Any]) -> Verification:

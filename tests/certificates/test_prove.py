@@ -166,3 +166,12 @@ def test_what_is_written_is_json():
     assert json.loads(json.dumps(document)) == document
     assert document["id"] == content_id(document)
     assert document["switching"] == {**RULES, "dwell_time": document["switching"]["dwell_time"]}
+
+
+def test_only_a_valid_proof_is_true_in_a_condition(pair):
+    """A certificate that refutes is valid, but no reason to switch a robot on."""
+    document, _ = pair
+    found = prove(document)
+    assert found.fault is None
+    assert bool(found) == (document["verdict"] == "proved")
+    assert not prove(changed(document, ("id",), "another"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 from nrs_design.proof.enclosure import balls, exponential, lower_integers, precision
 from nrs_design.proof.evidence.fields import Matrix
@@ -12,6 +13,8 @@ from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.switching import Edge
 
 
+# Asked for at every switch from a mode.
+@lru_cache(maxsize=256)
 def power(A: RationalMatrix, exponent: int) -> RationalMatrix:
     """Return the power of a square matrix."""
     n = A.shape[0]

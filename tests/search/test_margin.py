@@ -314,7 +314,7 @@ class TestOfSpecs:
         box = run_margin(result, Limits(max_degree=2), told.append)
         assert box.proved >= 1
         # What is proved as declared is not tried again.
-        assert told[0] == "box scaled by 2"
+        assert told[0] == "box scaled by 2 (proved: 1)"
         assert holds(box.proof.system, box.proof.evidence)
 
     @pytest.mark.slow

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
+from string import ascii_uppercase
 
 from making.combinations import FEATURES, Answer, Feature, Pair
 from making.tables import cell
@@ -83,7 +84,7 @@ def _grid(every: Sequence[Pair], refusals: Sequence[Refusal]) -> Iterator[str]:
 
 
 def _lettered() -> Iterator[tuple[str, Feature]]:
-    return ((chr(ord("A") + k), item) for k, item in enumerate(FEATURES))
+    return zip(ascii_uppercase[: len(FEATURES)], FEATURES, strict=True)
 
 
 def _reasons(refusals: Sequence[Refusal]) -> Iterator[str]:

@@ -277,12 +277,14 @@ def _runs(
     if engine not in (None, "exact", "sampled", "mujoco"):
         remedy = "write exact, sampled or mujoco"
         raise DesignError(f"there is no engine {engine!r}", remedy=remedy)
+    from nrs_design.spec.sampling import LONGEST_DELAY
+
     if any(not isinstance(name, str) for name in scenarios):
         raise DesignError("a scenario has no name", remedy="give names: simulate('one', 'two')")
     if period is not None and not 1e-5 <= period <= 1:
         raise DesignError(f"the period is {period} s", remedy="give 1e-5 to 1 s")
-    if delay is not None and not 0 <= delay <= 10:
-        raise DesignError(f"the delay is {delay} samples", remedy="give 0 to 10")
+    if delay is not None and not 0 <= delay <= LONGEST_DELAY:
+        raise DesignError(f"the delay is {delay} samples", remedy=f"give 0 to {LONGEST_DELAY}")
     if engine is None and (period is not None or delay is not None):
         engine = "sampled"
     return Runs(scenarios, engine, period, delay)
@@ -316,9 +318,11 @@ def _limits(
     spec: Spec, budget: float | None, max_degree: int | None, gradient: Gradient | None
 ) -> Limits:
     """Return how far the search goes: as the spec says, where nothing else is said."""
+    from nrs_design.spec.certification import HIGHEST_DEGREE
+
     if budget is not None and not 0 < budget < math.inf:
         raise DesignError(f"the budget is {budget}", remedy="give seconds above zero")
-    if max_degree is not None and not 2 <= max_degree <= 64:
-        raise DesignError(f"max_degree is {max_degree}", remedy="give 2 to 64")
+    if max_degree is not None and not 2 <= max_degree <= HIGHEST_DEGREE:
+        raise DesignError(f"max_degree is {max_degree}", remedy=f"give 2 to {HIGHEST_DEGREE}")
     limits = pipeline.search_limits(spec, pipeline.Overrides(max_degree, budget))
     return replace(limits, gradient=gradient or Gradient())

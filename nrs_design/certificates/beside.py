@@ -12,7 +12,7 @@ import os
 import signal
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.certificates.prove import prove
@@ -20,11 +20,11 @@ from nrs_design.certificates.prove import prove
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-    from nrs_design.certificates.verify import Fault
+    from nrs_design.certificates.verify import FindFault
 
 
 @contextmanager
-def proof_beside(document: Mapping[str, Any]) -> Iterator[Fault | None]:
+def proof_beside(document: Mapping[str, Any]) -> Iterator[FindFault | None]:
     """Begin to prove a document, and give what waits for the fault of it; None if it cannot begin.
 
     Parameters
@@ -40,19 +40,20 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[Fault | None]:
     context = get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
     process = context.Process(target=_tell_fault, args=(document, sender), daemon=True)
-    try:
+    with suppress(OSError):
         process.start()
-    except OSError:
+    sender.close()
+    if process.pid is None:
         # No room for another process: this one does it all.
+        receiver.close()
         yield None
         return
-    sender.close()
 
     def fault() -> str | None:
         try:
             told: str | None = receiver.recv()
-        except EOFError:
-            # Whatever stopped it, stops this or is said here.
+        except (EOFError, OSError):
+            # No answer, or a part of one. Whatever stopped it, stops this or is said here.
             return prove(document).fault
         return told
 

@@ -38,7 +38,7 @@ __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"
 
 MAX_BYTES = 32 * 2**20
 # Says why a proof is rejected, or None.
-Fault = Callable[[], str | None]
+FindFault = Callable[[], str | None]
 
 
 def verify(
@@ -76,7 +76,7 @@ def verify_document(
     spec: LoadedSpec | None = None,
     coordinates: str | None = None,
     plant: Plant | None = None,
-    proof: Fault | None = None,
+    proof: FindFault | None = None,
 ) -> Verification:
     """Re-check a parsed certificate.
 

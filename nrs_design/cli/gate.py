@@ -199,7 +199,7 @@ def _certify(
     with progress("gate", quiet=quiet) as step:
         files = Files(reports, html=html, locked=locked)
         outcome = run_gate(specs, files, step, Overrides(*search))
-    return _with_passed_over(write_lock(outcome, lock, prune=prune), paths)
+    return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 
 
 def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
@@ -210,10 +210,10 @@ def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
     specs, content = find_specs(paths), read_lock(lock)
     with progress("gate", quiet=quiet) as step:
         outcome = run_locked(specs, content, lock, step, named=paths)
-    return _with_passed_over(outcome, paths)
+    return _with_not_examined(outcome, paths)
 
 
-def _with_passed_over(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
+def _with_not_examined(outcome: GateOutcome, paths: list[Path]) -> GateOutcome:
     from nrs_design.gating.find_specs import SUFFIXES, find_misnamed, find_passed_over
 
     for why, found in {

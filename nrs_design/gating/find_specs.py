@@ -8,11 +8,12 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.spec.load import SPEC_KINDS
 
 SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
 # A line of a spec, somewhere in so many bytes from its beginning.
-_KIND = re.compile(rb"^kind: *(interaction-design|switched-system|robot)\b", re.MULTILINE)
+_KIND = re.compile(rf"^kind: *({'|'.join(SPEC_KINDS)})\b".encode(), re.MULTILINE)
 _LOOKED_AT = 16_384
 
 

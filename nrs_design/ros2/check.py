@@ -197,7 +197,8 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         except SpecError as error:
             obligations += [_unreadable(path, node, fault) for fault in error.faults]
             continue
-        around = question.around(1 / _rate(law, _manager_of(node, nodes), question.rate, path))
+        manager = _manager_of(node, nodes)
+        around = question.around(1 / _rate(law, manager, question.rate, path))
         notes |= dict.fromkeys(assumptions(around))
         obligations.append(_readable(path, node))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
@@ -212,7 +213,7 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
 
 def _manager_of(node: RosNode, nodes: tuple[RosNode, ...]) -> RosNode | None:
     """Return the controller manager in the namespace of a node, or the only one."""
-    managers = [n for n in nodes if n.name.rpartition("/")[2] == MANAGER]
+    managers = [n for n in nodes if n.base_name == MANAGER]
     near = [n for n in managers if n.namespace == node.namespace]
     found = near or managers
     return found[0] if len(found) == 1 else None
@@ -231,7 +232,7 @@ def _types(manager: RosNode | None) -> dict[str, str]:
 def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
     """Yield what the law depends on and another node may say of it, too."""
     for other in nodes:
-        if other is node or other.name.rpartition("/")[2] == MANAGER or not node.may_share(other):
+        if other is node or other.base_name == MANAGER or not node.may_share(other):
             continue
         for name in other.values:
             if name in LAW or name.startswith(f"{CHAIN}."):
@@ -244,8 +245,8 @@ def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
 
 def _absent(path: Path, nodes: tuple[RosNode, ...]) -> Iterator[Caution]:
     """Yield the admittance controllers that a manager runs, and this file says nothing of."""
-    named = {node.name.rpartition("/")[2] for node in nodes}
-    for manager in (node for node in nodes if node.name.rpartition("/")[2] == MANAGER):
+    named = {node.base_name for node in nodes}
+    for manager in (node for node in nodes if node.base_name == MANAGER):
         for name, kind in _types(manager).items():
             if kind == TYPE and not named & {name, "**"}:
                 place = manager.place(f"{name}.type")

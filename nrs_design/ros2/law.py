@@ -149,7 +149,7 @@ def is_admittance(node: RosNode, types: Mapping[str, str]) -> bool:
     types : mapping of str to str
         What a controller manager says of its controllers.
     """
-    kind = types.get(node.name.rpartition("/")[2])
+    kind = types.get(node.base_name)
     if kind is not None:
         return kind == TYPE
     return any(name.startswith("admittance.") for name in node.values)

@@ -47,15 +47,21 @@ class RosNode:
         """Its name but for the last part."""
         return self.name.rpartition("/")[0]
 
+    @property
+    def base_name(self) -> str:
+        """The last part of its name."""
+        return self.name.rpartition("/")[2]
+
     def may_share(self, other: RosNode) -> bool:
         """Tell whether parameters of one may count for the other: by a wildcard, or the same name.
 
         Which of two counts depends on the release of ROS 2 and on their order.
         """
-        if self.name == other.name:
-            return True
-        last = self.name.rpartition("/")[2], other.name.rpartition("/")[2]
-        return "*" in self.name + other.name and (last[0] == last[1] or "*" in "".join(last))
+        if "*" in self.name and "*" in other.name:
+            # Some node may be meant by both.
+            bases = self.base_name, other.base_name
+            return bases[0] == bases[1] or "*" in "".join(bases)
+        return _means(self.name, other.name) or _means(other.name, self.name)
 
     def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
         """Return a fault at a parameter, or at one item of its list.
@@ -78,6 +84,16 @@ class RosNode:
         if index is not None and isinstance(value, Sequence) and index < len(value.items):
             return value.items[index].position
         return self.places.get(name, self.position)
+
+
+def _means(pattern: str, name: str) -> bool:
+    """Tell whether a name, in which ``**`` is any parts and ``*`` is one, means a node."""
+    parts = pattern.strip("/").split("/")
+    wanted = (
+        "(/[^/]+)*" if part == "**" else "/[^/]+" if "*" in part else f"/{re.escape(part)}"
+        for part in parts
+    )
+    return re.fullmatch("".join(wanted), f"/{name.strip('/')}") is not None
 
 
 def read_nodes(path: Path) -> tuple[RosNode, ...]:

@@ -146,7 +146,8 @@ def _doubt_bounds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
             "proved without the one or the other is listed; or remove outer_period or coupling)",
         )
     command = None if spec.disturbances is None else spec.disturbances.command
-    if command is not None and is_less(command, limit := spec.limits.velocity):
+    limit = spec.limits.velocity
+    if command is not None and is_less(command, limit):
         yield Doubt(
             ("disturbances", "command"),
             f"bounds are for velocity commands up to {command.text}, and limits.velocity lets them "

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -93,6 +94,21 @@ def test_a_process_that_ends_without_an_answer_has_proved_nothing(
     assert "Q" in fault
 
 
+def test_a_part_of_an_answer_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    def cut_off(connection: Connection) -> object:
+        raise OSError("got end of file during message")
+
+    monkeypatch.setattr(Connection, "recv", cut_off)
+    document = _document(SPEC)
+    _worse(document)
+    document["id"] = content_id(document)
+    with proof_beside(document) as proof:
+        assert proof is not None
+        fault = proof()
+    assert fault is not None
+    assert "Q" in fault
+
+
 def test_what_fails_there_is_raised_here(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(document: object) -> None:
         raise InternalError("flint disagrees")
@@ -101,7 +117,7 @@ def test_what_fails_there_is_raised_here(monkeypatch: pytest.MonkeyPatch) -> Non
     with proof_beside(_document(SPEC)) as proof:
         assert proof is not None
         with pytest.raises(InternalError, match="flint disagrees"):
-            proof()
+            verify_document(_document(SPEC), read_spec(SPEC), proof=proof)
 
 
 def test_on_one_processor_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:

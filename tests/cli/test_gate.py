@@ -10,6 +10,7 @@ import pytest
 
 from nrs_design.cli import main
 from nrs_design.gating.rules import RULES
+from tests.support import COMMUTING, run
 from tests.terminal import run_on_terminal
 
 ROOT = Path(__file__).parents[2]
@@ -325,3 +326,12 @@ def test_a_missed_goal_is_missed_when_locked_and_gains_are_shown(gate, capsys):
 def test_the_document_may_not_replace_a_spec(gate):
     assert gate("specs", "--no-reports", "--out", "specs/stable.nrs.yaml") == 2
     assert Path("specs/stable.nrs.yaml").read_text() == STABLE
+
+
+def test_a_spec_by_another_name_is_not_passed_over_in_silence(tmp_path):
+    (tmp_path / "one.nrs.yaml").write_text(COMMUTING.read_text())
+    (tmp_path / "two.yaml").write_text(COMMUTING.read_text())
+    done = run("gate", tmp_path, "--no-reports", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "not examined, for want of a name that ends in .nrs.yaml: " in done.stderr
+    assert "two.yaml" in done.stderr

@@ -97,6 +97,8 @@ def test_a_wildcard_that_says_nothing_of_the_law_and_other_nodes(tmp_path):
         stream.write(
             "/**:\n  ros__parameters: {use_sim_time: true}\n"
             "/**/gripper:\n  ros__parameters: {update_rate: 100}\n"
+            "/other/*:\n  ros__parameters: {update_rate: 100}\n"
+            "/other/**:\n  ros__parameters: {update_rate: 100}\n"
         )
     assert statuses(file, Question((0, 2), SOFT, None))[0].verdict == "proved"
 

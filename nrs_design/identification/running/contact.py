@@ -79,7 +79,7 @@ def judge_contact(
     return _stiffness(log, bounds, judged, basis), contact, windows
 
 
-def _unseen(log: RunLog, bounds: RunBounds, judged: list[_Judged]) -> int:
+def _rows_outside_windows(log: RunLog, bounds: RunBounds, judged: list[_Judged]) -> int:
     """Return how many rows no window holds, of those in which something may be touched."""
     touching = np.ones(len(log.time), dtype=bool)
     if log.modes is not None:
@@ -167,7 +167,7 @@ def _stiffness(log: RunLog, bounds: RunBounds, judged: list[_Judged], basis: str
     measured += f", {open_ends} undecided" if open_ends else ""
     if open_ends and log.modes is None and len(bounds.stiffness) > 1:
         measured += " (no column for mode: inside is what is so whichever controller is active)"
-    unseen = _unseen(log, bounds, judged)
+    unseen = _rows_outside_windows(log, bounds, judged)
     if unseen:
         measured += f"; {unseen} of {len(log.time)} rows in no window: a stay, or what is between "
         measured += f"two gaps, has fewer than {FEWEST_ROWS}"

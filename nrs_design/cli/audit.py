@@ -19,7 +19,7 @@ from nrs_design.cli.identify.common import (
 from nrs_design.cli.options import Date, Json, Quiet
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
-from nrs_design.errors import CertificateError, DesignError
+from nrs_design.errors import CertificateError
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import Check, RunJudgement
@@ -70,12 +70,13 @@ def audit(
     Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
     """
     from nrs_design.identification.running import judge_run, read_run, read_run_bounds
+    from nrs_design.identification.running.bounds import parse_command_limit
     from nrs_design.spec import read_spec
 
     outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
     loaded = read_spec(spec)
     bounds = read_run_bounds(loaded)
-    limit = None if command_limit is None else _limit_of(command_limit, bounds.command)
+    limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
     reason, losable = _proof_of(certificate, loaded)
     (run,) = read_all([log], read_run, columns or [], quiet=quiet)
     with progress("judging", quiet=quiet):
@@ -94,29 +95,6 @@ def audit(
         page=lambda: _page(found, loaded.spec.name, reason),
     )
     raise typer.Exit(_EXIT[found.verdict])
-
-
-def _limit_of(text: str, command: str) -> float:
-    """Read the limit of the driver; a bare number is in the unit of the motor's command."""
-    from nrs_design.spec import kinds
-    from nrs_design.spec.exact import parse_exact
-    from nrs_design.spec.quantity import parse_quantity
-
-    text = text.strip()
-    if not text[-1:].isalpha():
-        limit = float(parse_exact(text))
-    else:
-        quantity = parse_quantity(text, kinds.COMMAND)
-        held = kinds.COMMAND.unit_in(quantity.dimension)
-        if held != command:
-            raise DesignError(
-                f"--command-limit {text!r} is in {held}, and the motor of the spec takes {command}",
-                remedy=f"write it in {command}",
-            )
-        limit = quantity.si
-    if not limit > 0:
-        raise DesignError(f"--command-limit {text!r} is not positive", remedy="such as '24 V'")
-    return limit
 
 
 def _page(found: RunJudgement, name: str, reason: str) -> Report:

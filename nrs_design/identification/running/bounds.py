@@ -8,8 +8,10 @@ from typing import NamedTuple
 
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import build_environments
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec, kinds
 from nrs_design.spec.controllers import contact_names, touched_in
+from nrs_design.spec.exact import parse_exact
+from nrs_design.spec.quantity import parse_quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +120,38 @@ def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
             remedy="name a spec of kind interaction-design",
         )
     return bounds_of_spec(spec)
+
+
+def parse_command_limit(text: str, command: str) -> float:
+    """Read where the driver saturates; a bare number is in the unit of the motor's command.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``24 V`` or ``24``.
+    command : str
+        Unit of the motor's command.
+
+    Raises
+    ------
+    SpecError, DesignError
+        If it is no quantity, in another unit, or not positive.
+    """
+    text = text.strip()
+    if text[-1:].isalpha():
+        quantity = parse_quantity(text, kinds.COMMAND)
+        held = kinds.COMMAND.unit_in(quantity.dimension)
+        if held != command:
+            raise DesignError(
+                f"--command-limit {text!r} is in {held}, and the motor of the spec takes {command}",
+                remedy=f"write it in {command}",
+            )
+        limit = quantity.si
+    else:
+        limit = float(parse_exact(text))
+    if limit <= 0:
+        raise DesignError(f"--command-limit {text!r} is not positive", remedy="such as '24 V'")
+    return limit
 
 
 def switching_rules(spec: InteractionDesignSpec) -> SwitchingSpec:

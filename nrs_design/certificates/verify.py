@@ -96,11 +96,14 @@ def verify_document(
     if proof is None or document.get("schema") == FORMER:
         return confirmed(lambda: _verify(document, spec, coordinates, plant, check_document))
 
-    def proved(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
-        return Verification(read_certificate(document, system), proof())
+    def stated(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
+        return Verification(read_certificate(document, system), None)
 
-    # The proof has been confirmed where it was made.
-    return judged(lambda: _verify(document, spec, coordinates, plant, proved))
+    belongs = judged(lambda: _verify(document, spec, coordinates, plant, stated))
+    if belongs.fault is not None:
+        return belongs
+    # The proof is confirmed where it is made; what fails there is no judgement.
+    return Verification(belongs.certificate, proof())
 
 
 def _verify(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
@@ -176,7 +176,7 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         If the file cannot be read, holds no admittance controller, or does not say its rate.
     """
     nodes = read_nodes(path)
-    controllers = [n for n in nodes if is_admittance(n, _types(_manager_of(n, nodes)))]
+    controllers = [n for n in nodes if is_admittance(n, _types(_managers_of(n, nodes)))]
     if not controllers:
         names = ", ".join(node.name for node in nodes)
         raise SpecError(
@@ -197,7 +197,12 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         except SpecError as error:
             obligations += [_unreadable(path, node, fault) for fault in error.faults]
             continue
-        manager = _manager_of(node, nodes)
+        managers = _managers_of(node, nodes)
+        manager = managers[0] if len(managers) == 1 else None
+        asked = () if manager is None or question.rate is not None else _shared_rate(manager, nodes)
+        if rates := [*asked]:
+            obligations += [_unreadable(path, node, fault) for fault in rates]
+            continue
         around = question.around(1 / _rate(law, manager, question.rate, path))
         notes |= dict.fromkeys(assumptions(around))
         obligations.append(_readable(path, node))
@@ -211,22 +216,31 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
     return GateOutcome((outcome,), tuple(f"taken for granted: {note}" for note in notes))
 
 
-def _manager_of(node: RosNode, nodes: tuple[RosNode, ...]) -> RosNode | None:
-    """Return the controller manager in the namespace of a node, or the only one."""
+def _managers_of(node: RosNode, nodes: tuple[RosNode, ...]) -> list[RosNode]:
+    """Return the controller managers in the namespace of a node, or all."""
     managers = [n for n in nodes if n.base_name == MANAGER]
-    near = [n for n in managers if n.namespace == node.namespace]
-    found = near or managers
-    return found[0] if len(found) == 1 else None
+    return [n for n in managers if n.namespace == node.namespace] or managers
 
 
-def _types(manager: RosNode | None) -> dict[str, str]:
-    """Return the types of controllers, as their manager says."""
+def _types(managers: Iterable[RosNode]) -> dict[str, str]:
+    """Return the types of controllers, as their managers say."""
     types: dict[str, str] = {}
-    for name, value in () if manager is None else manager.values.items():
+    for name, value in (pair for manager in managers for pair in manager.values.items()):
         listed = texts(value)
         if name.endswith(".type") and listed:
             types[name.removesuffix(".type")] = listed[0].text
     return types
+
+
+def _shared_rate(manager: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
+    """Yield the rates that another node may give a manager, too."""
+    for other in nodes:
+        if other is not manager and "update_rate" in other.values and manager.may_share(other):
+            yield other.fault(
+                "update_rate",
+                f"counts for {manager.name}, too; if both say it, releases differ in which counts",
+                f"write it at {manager.name} alone, or give the rate as --rate",
+            )
 
 
 def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
@@ -247,7 +261,7 @@ def _absent(path: Path, nodes: tuple[RosNode, ...]) -> Iterator[Caution]:
     """Yield the admittance controllers that a manager runs, and this file says nothing of."""
     named = {node.base_name for node in nodes}
     for manager in (node for node in nodes if node.base_name == MANAGER):
-        for name, kind in _types(manager).items():
+        for name, kind in _types([manager]).items():
             if kind == TYPE and not named & {name, "**"}:
                 place = manager.place(f"{name}.type")
                 message = (

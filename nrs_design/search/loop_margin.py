@@ -114,7 +114,7 @@ def find_longest_delay(
             _halve(declared, longest, lambda delay: is_found(delay, Verdict.PROVED))
         if Verdict.REFUTED in tried.values():
             beyond = min(delay for delay in tried if tried[delay] is Verdict.REFUTED)
-            below = max(delay for delay in tried if delay < beyond)
+            below = max((delay for delay in tried if delay < beyond), default=beyond)
             _halve(below, beyond, lambda delay: not is_found(delay, Verdict.REFUTED))
     proved = max((d for d in tried if tried[d] is Verdict.PROVED), default=None)
     refuted = min((d for d in tried if tried[d] is Verdict.REFUTED), default=None)

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -118,6 +120,35 @@ def test_what_fails_there_is_raised_here(monkeypatch: pytest.MonkeyPatch) -> Non
         assert proof is not None
         with pytest.raises(InternalError, match="flint disagrees"):
             verify_document(_document(SPEC), read_spec(SPEC), proof=proof)
+
+
+def test_a_defect_of_the_proof_is_no_fault_of_the_certificate(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def fail(document: object) -> None:
+        raise ValueError("a library stumbled")
+
+    monkeypatch.setattr(beside, "prove", fail)
+    document, loaded = _document(SPEC), read_spec(SPEC)
+    with (
+        proof_beside(document) as proof,
+        pytest.raises(ValueError, match="a library stumbled"),
+    ):
+        verify_document(document, loaded, proof=proof)
+
+
+def test_it_ends_with_the_process_that_waits_for_it(tmp_path: Path) -> None:
+    """Whoever stops the program waits for its output to be closed, by both processes."""
+    program = (
+        "import os, signal, time\n"
+        "from nrs_design.certificates import beside\n"
+        "beside.prove = lambda document: time.sleep(60)\n"
+        "with beside.proof_beside({}) as proof:\n"
+        "    time.sleep(0.5)\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=20)
+    assert done.returncode == -signal.SIGKILL
 
 
 def test_on_one_processor_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -121,6 +121,31 @@ def test_every_controller_runs_at_the_rate_of_its_own_manager(tmp_path):
         statuses(file, Question((0, 2), SOFT, None))
 
 
+def test_a_rate_that_another_node_may_give_the_manager(tmp_path):
+    file = changed(tmp_path)
+    with file.open("a") as stream:
+        stream.write("/**/controller_manager:\n  ros__parameters: {update_rate: 20}\n")
+    found, status, _ = statuses(file, Question((0, 2), SOFT, None))
+    assert found.verdict is None
+    assert Status.ERROR in status
+    assert "counts for controller_manager, too" in found.obligations[0].message
+    assert statuses(file, Question((0, 2), SOFT, None, Fraction(500)))[0].verdict == "proved"
+
+
+def test_a_type_counts_whichever_of_several_managers_says_it(tmp_path):
+    """One that is known by its type only, with its mass missing, must not vanish."""
+    kind = "admittance_controller/AdmittanceController"
+    file = changed(tmp_path)
+    with file.open("a") as stream:
+        stream.write(
+            f"/b/controller_manager:\n  ros__parameters: {{second: {{type: {kind}}}}}\n"
+            "/**/second:\n  ros__parameters: {joints: [x]}\n"
+        )
+    found, status, _ = statuses(file, Question((0, 2), SOFT, None, Fraction(500)))
+    assert Status.ERROR in status
+    assert any("second" in item.message for item in found.obligations)
+
+
 def test_no_rate(tmp_path):
     file = changed(tmp_path, ("    update_rate: 500\n", ""))
     with pytest.raises(SpecError, match="rate of the control loop") as caught:

@@ -75,6 +75,11 @@ def test_the_longest_delay_takes_few_decisions(verdicts, declared, expected):
     assert len(asked) == len(set(asked)) <= 8
 
 
+def test_a_shortest_delay_that_is_refuted_below_one_that_is_open():
+    found = find_longest_delay(0, 1, 2, {0: R, 1: N, 2: P}.__getitem__, lambda delay: False)
+    assert found.refuted == 0
+
+
 def test_the_longest_period():
     """Proved up to 3, refuted from 5 on; in between nobody knows."""
 

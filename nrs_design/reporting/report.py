@@ -84,7 +84,7 @@ def build_report(
         verdict=str(certification.verdict),
         claim=claim_of(certification),
         remarks=remarks_of(certification),
-        facts=(*facts(result), *goal_facts(analysis)),
+        facts=(*facts(result), *goal_facts(spec, analysis)),
         sections=(
             proof_section(result),
             *_present(remedies_section(result, margins, subsets)),

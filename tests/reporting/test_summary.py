@@ -8,6 +8,7 @@ import pytest
 from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
 from nrs_design.reporting import build_report
+from nrs_design.reporting.sections.goals import goal_facts
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.support import SOFT_TISSUE
@@ -81,6 +82,20 @@ def test_a_goal_of_the_certificate_alone_is_a_goal(tmp_path):
     result = run_certification(read_spec(path))
     (light,) = (x for x in lights_of(result, run_analysis(result.designed)) if x.name == "Goals")
     assert (str(light.state), light.text) == ("unknown", "decay_rate: nrs-design gate decides")
+
+
+def test_goals_that_are_met_beside_one_that_is_not_judged_are_no_green_light(tmp_path):
+    path = tmp_path / "a.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    goals = "goals: {decay_rate: 300 1/s, max_sensitivity_peak: 50}\n"
+    path.write_text(text + goals, encoding="utf-8")
+    result = run_certification(read_spec(path))
+    analysis = run_analysis(result.designed)
+    (light,) = (x for x in lights_of(result, analysis) if x.name == "Goals")
+    said = "all 2 met (floating point); decay_rate: nrs-design gate decides"
+    assert (str(light.state), light.text) == ("unknown", said)
+    ((_, fact),) = goal_facts(result.loaded.spec, analysis)
+    assert fact == "all 2 met; decay_rate: nrs-design gate decides"
 
 
 @pytest.mark.parametrize(

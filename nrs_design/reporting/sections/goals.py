@@ -10,10 +10,12 @@ from nrs_design.reporting.document import Block, Bullets, Derived, Linked, Parag
 from nrs_design.reporting.sections.places import contact_at, linked, with_line
 from nrs_design.reporting.sections.titles import GOALS
 from nrs_design.spec import doubt_spec
+from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Designed
+    from nrs_design.spec import Spec
 
 _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 
@@ -35,16 +37,25 @@ def goals_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     return Section(GOALS, tuple(blocks))
 
 
-def goal_facts(analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
-    """Return for the head of the report how many goals are missed."""
+def goal_facts(spec: Spec, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
+    """Return for the head of the report how many goals are missed, and what it does not judge."""
     if analysis is None or not analysis.measured:
         return ()
     goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
+    unjudged = unjudged_goals(spec)
     if not goals:
-        return ((GOALS, "no goals set"),)
-    said = f"{missed} of {len(goals)} MISSED" if missed else "all met"
+        return ((GOALS, unjudged or "no goals set"),)
+    judged = f"{missed} of {len(goals)} MISSED" if missed else f"all {len(goals)} met"
+    said = "; ".join(filter(None, (judged if missed or unjudged else "all met", unjudged)))
     return ((GOALS, Derived(said, GOALS)),)
+
+
+def unjudged_goals(spec: Spec) -> str:
+    """Say which goals are about what is proved, which the gate judges; empty without them."""
+    goals = getattr(spec, "goals", None)
+    named = [key for key in sorted(OF_THE_CERTIFICATE) if getattr(goals, key, None) is not None]
+    return f"{', '.join(named)}: nrs-design gate decides" if named else ""
 
 
 def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:

@@ -76,7 +76,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
     proved += _beside(result)
     common = _not_covered_by_design(result) if design else _not_covered(system, evidence)
     blocks: list[Block] = [
-        Bullets("Proved", tuple(proved)),
+        Bullets("Proved", tuple(dict.fromkeys(proved))),
         Bullets("Not proved", (*page.limits(), *_memory(system), *common)),
     ]
     if result.certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:

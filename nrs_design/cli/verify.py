@@ -234,7 +234,10 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
     verdict = certificate.verdict
     if spec is None:
         say(f"{verdict.upper()} for the modes in the file, checked exactly.", verdict=verdict)
-        say("  not compared with a spec: name it to check that these are its modes, gains and assumptions")
+        say(
+            "  not compared with a spec: name it to check that these are its modes, gains and "
+            "assumptions"
+        )
     else:
         say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:

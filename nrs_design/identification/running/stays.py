@@ -12,6 +12,7 @@ import numpy as np
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
+from nrs_design.proof.text import counted
 
 _NAME = "dwell times"
 
@@ -49,7 +50,7 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
         return Check(_NAME, BoundStatus.NOT_JUDGED, reason, allowed, basis)
-    measured = f"{len(stays) - 1} switches"
+    measured = "1 switch" if len(stays) == 2 else f"{len(stays) - 1} switches"
     first = next(_violations(stays, bounds), None)
     status = BoundStatus.INSIDE if first is None else BoundStatus.OUTSIDE
     return Check(_NAME, status, measured, allowed or "arbitrary", basis, first)
@@ -63,7 +64,7 @@ def _allowed(bounds: RunBounds) -> str:
         if longest < inf:
             rules.append(f"{name} at most {longest:g} s")
     if bounds.transitions is not None:
-        rules.append(f"{len(bounds.transitions)} transitions")
+        rules.append(counted(len(bounds.transitions), "transition"))
     return ", ".join(rules)
 
 

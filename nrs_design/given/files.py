@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from nrs_design.errors import DataError
-from nrs_design.files import open_regular, read_json_text
+from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.given.matrices import refuse_times
 from nrs_design.given.unpacked import check_mat, check_npz
 from nrs_design.proof.text import quoted
@@ -145,7 +145,7 @@ def _read_json(raw: bytes) -> dict[str, Any]:
         parse_float=str,
         parse_int=str,
         parse_constant=_not_finite,
-        object_pairs_hook=_unique,
+        object_pairs_hook=unique_keys,
     )
     if not isinstance(content, dict):
         raise ValueError("expected a JSON object")
@@ -154,14 +154,6 @@ def _read_json(raw: bytes) -> dict[str, Any]:
         raise ValueError(f"{quoted(foreign[0])} is not known here")
     _check_entries(_count(content))
     return content
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Refuse a mode that another of its name would hide."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise ValueError("a name occurs twice in one object")
-    return found
 
 
 def _read_npz(raw: bytes) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.allowance import Cost
+from nrs_design.search.allowance import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -77,6 +77,32 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
         factor += size * (size / 2 + touched)
     memory = PER_ENTRY * rows * variables + PER_FACTOR_ENTRY * factor
     return Cost(PER_PROGRAM + PER_PRODUCT * products, memory)
+
+
+def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
+    """Make the last unknown as large as all blocks stay positive semidefinite with.
+
+    Parameters
+    ----------
+    blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
+        A constant, and what every unknown adds to it.
+    allowance : Allowance
+        Time and memory.
+
+    Returns
+    -------
+    ndarray, shape (N,), or None
+        As `maximize_margin` returns it.
+    """
+    unknowns = len(blocks[0][1])
+    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
+    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
+    return maximize_margin(
+        np.concatenate([-pack(images).T for _, images in blocks]),
+        np.concatenate([pack(constant) for constant, _ in blocks]),
+        [len(constant) for constant, _ in blocks],
+        time_limit=allowance.left,
+    )
 
 
 def maximize_margin(

@@ -10,8 +10,11 @@ from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.parameter_box import Box
 
-# Binary digits of the enclosures of exponentials: each costs time in every proof.
-EXPONENTIAL_BITS = 32
+# Binary digits of the enclosure of an exponential: its ends are one number in doubles, by which a
+# search knows that they are one mode.
+EXPONENTIAL_BITS = 56
+# Where tau has a range, each digit costs time in every proof.
+RANGED_BITS = 32
 # Of s, per period, there are this many more, so that its rounding hardly turns the chord.
 MORE_BITS = 4
 
@@ -30,8 +33,9 @@ def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
     period : Fraction
         In s.
     """
-    tau, unit = ranges.time_constant, Fraction(1, 2**EXPONENTIAL_BITS)
+    tau = ranges.time_constant
     fast, slow = (exponential_between(-period / end) for end in (tau.low, tau.high))
+    unit = Fraction(1, 2 ** (EXPONENTIAL_BITS if tau.low == tau.high else RANGED_BITS))
     E_low, E_high = _down(fast[0], unit), _up(slow[1], unit)
     if tau.low == tau.high:
         return Box({"Km": ranges.gain, "E": Interval(E_low, E_low, E_high)})

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS, motor_box
+from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS, RANGED_BITS, motor_box
 
 PERIOD, TAU, KM = F(1, 500), F("0.0351"), F("4.8417e-4")
 shares = st.fractions(0, 1, max_denominator=1000)
@@ -53,7 +53,7 @@ def test_a_corner_rounded_inwards_leaves_a_motor_out(symbol, end):
     """By one unit of E, so none of the three is wider than it must be by much."""
     box = box_of(TAU * F(9, 10), TAU * F(11, 10))
     interval = box.ranges[symbol]
-    unit = F(1, 2**EXPONENTIAL_BITS)
+    unit = F(1, 2**RANGED_BITS)
     moved = {"low": interval.low, "high": interval.high}
     moved[end] += 2 * unit if end == "low" else -2 * unit
     box = type(box)({**box.ranges, symbol: Interval(F(0), **moved)}, chord=box.chord)
@@ -87,3 +87,4 @@ def test_a_known_time_constant_leaves_the_two_ends_of_its_exponential():
     E = box.ranges["E"]
     assert E.low <= low < high <= E.high
     assert E.high - E.low == F(1, 2**EXPONENTIAL_BITS)
+    assert float(E.low) == float(E.high)

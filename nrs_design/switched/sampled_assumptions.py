@@ -308,7 +308,7 @@ def _actuator_text(ranges: ActuatorRanges) -> str:
         + ("" if ranges.fixed else ", and may change at every sample")
         + ". A proof covers exp(-T/tau) in what encloses it; what refutes may be at "
         + (
-            f"an end, less than 2^-{EXPONENTIAL_BITS} away"
+            f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
             if tau.low == tau.high
             else "a corner of that, of no motor of the range"
         )

@@ -16,7 +16,7 @@ from nrs_design.reporting.document import Derived, Light, Sentence, State
 from nrs_design.reporting.formatting import plural
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.register import register_of
-from nrs_design.reporting.sections.goals import unjudged_goals
+from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.head import proved_rate
 from nrs_design.reporting.sections.titles import ASSUMPTIONS, EVIDENCE, GOALS, MEANT, MODES
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
@@ -122,24 +122,8 @@ def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, .
     spec = result.loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         return (proof, _open(result))
-    return (proof, _goals(spec, analysis), _margins(spec, analysis), _data(spec), _open(result))
-
-
-def _goals(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
-    name = "Goals"
-    unjudged = unjudged_goals(spec)
-    more = f"; {unjudged}" if unjudged else ""
-    if analysis is None:
-        return Light(name, State.UNKNOWN, f"not computed{more}")
-    goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
-    missed = sum(not found.met for found in goals)
-    if not goals:
-        return Light(name, State.UNKNOWN, unjudged or "no goals set", GOALS)
-    if missed:
-        return Light(name, State.BAD, f"{missed} of {len(goals)} missed{more}", GOALS)
-    # A green light would be taken for all goals.
-    state = State.UNKNOWN if unjudged else State.GOOD
-    return Light(name, state, f"all {len(goals)} met (floating point){more}", GOALS)
+    goals = Light("Goals", *judged_goals(result, analysis), GOALS)
+    return (proof, goals, _margins(spec, analysis), _data(spec), _open(result))
 
 
 def _margins(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:

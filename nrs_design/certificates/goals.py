@@ -86,6 +86,8 @@ def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) ->
     if rate is None:
         return CertifiedGoal("decay_rate", "no decay rate in 1/s was proved", text, False)
     said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
+    if certificate is not None and certificate.system.saturation is not None:
+        said += " while no signal saturates"
     return CertifiedGoal("decay_rate", said, text, rate >= wanted)
 
 

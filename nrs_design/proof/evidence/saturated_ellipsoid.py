@@ -82,8 +82,9 @@ class SaturatedEllipsoid(AbstractEvidence):
         """The level."""
         return self.level
 
-    def proved_rate(self, system: SwitchedSystem) -> Fraction:
-        """Return the rate within the ellipsoid."""
+    @property
+    def start_rate(self) -> Fraction:
+        """The alpha in 1/s."""
         return self.rate
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:

@@ -12,6 +12,7 @@ from nrs_design.reporting import build_report
 from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
+from tests.proof.systems import bouncing, pushed
 from tests.support import SOFT_TISSUE
 
 
@@ -42,6 +43,16 @@ def test_free_motion_is_named_only_where_its_loss_is_covered():
     said = "among 4 modes in contact and 2 of free motion, with contact lost"
     assert said in summary_of(result)[0]
     assert "among 4 modes, as long as contact is kept" in summary_of(without)[0]
+
+
+def test_disturbances_without_a_proved_bound_are_said_in_the_lead(soft_tissue):
+    certification = soft_tissue.certification
+    channels = pushed(bouncing()).channels
+    system = replace(certification.system, channels=channels)
+    disturbed = replace(soft_tissue, certification=replace(certification, system=system))
+    said = ", and no bound under the disturbances of the spec is proved."
+    assert summary_of(disturbed)[0].endswith(said)
+    assert "no bound" not in summary_of(soft_tissue)[0]
 
 
 @pytest.mark.parametrize("case", ["dwell", "inconclusive", "resets", "parameter", "dwell-refuted"])

@@ -432,6 +432,7 @@ class TestForgery:
                     forged = {**document, "statements": [statement]}
                     assert verify_document(resign(forged), spec).fault is not None
 
+    @pytest.mark.slow
     def test_a_bound_with_other_names_or_numbers(self, tmp_path):
         text = SOFT_TISSUE.read_text().replace("[720.56 N/m, 768.17 N/m]", "[747 N/m, 748 N/m]")
         path = tmp_path / "bounded.nrs.yaml"

@@ -132,6 +132,7 @@ def test_the_end_comes_at_once_but_after_what_others_want_done(tmp_path, argumen
     assert (tmp_path / "done").exists()
 
 
+@pytest.mark.slow
 def test_settings_of_libraries_are_defaults_only(tmp_path):
     _, facts = loaded_by(tmp_path, "--version")
     assert (facts["OPENBLAS_NUM_THREADS"], facts["PYDANTIC_DISABLE_PLUGINS"]) == ("1", "__all__")

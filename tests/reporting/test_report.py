@@ -240,6 +240,7 @@ def test_simulated_run_stays_below_its_bound(report, case):
     assert (curves["run"].get_ydata() <= bound.get_ydata() * (1 + 1e-9)).all()
 
 
+@pytest.mark.slow
 def test_rungs_are_listed_without_times_unless_asked_for(tmp_path):
     path = tmp_path / "polynomial.nrs.yaml"
     path.write_text(f"kind: switched-system\nname: p\n{KINDS['polynomial']}")
@@ -258,6 +259,7 @@ def test_rungs_are_listed_without_times_unless_asked_for(tmp_path):
     assert all(float(row[2]) >= 0 for row in tables[1].rows)
 
 
+@pytest.mark.slow
 def test_without_evidence_only_the_gains_are_shown():
     result = run_certification(read_spec(ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"))
     bare = build_report(result)
@@ -301,6 +303,7 @@ def test_unstable_force_loop_is_reported_without_margins(tmp_path):
     assert Fraction(gains.blocks[0].rows[1][4]) > 0
 
 
+@pytest.mark.slow
 def test_many_modes_are_shortened(tmp_path):
     modes = "\n".join(f"  - {{name: m{i}, A: [[-{i + 1}, 1], [-1, -2]]}}" for i in range(40))
     path = tmp_path / "many.nrs.yaml"
@@ -536,6 +539,7 @@ def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
     assert "The run switches freely, which is more than the spec allows." in text
 
 
+@pytest.mark.slow
 def test_ranges_under_a_polynomial_in_discrete_time(tmp_path):
     path = tmp_path / "ranges.nrs.yaml"
     path.write_text(
@@ -581,6 +585,7 @@ def many(tmp_path_factory):
     return report_of(path)
 
 
+@pytest.mark.slow
 def test_fourteen_modes_have_their_full_names_and_their_own_look(many):
     names = [
         f"insertion-{i}/{e}" for i in range(7) for e in ("nasal-concha", "silicone-soft-phantom")

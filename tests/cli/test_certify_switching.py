@@ -196,7 +196,7 @@ def test_shipped_specs_are_proved(tmp_path, path):
         ("lmi", COMMUTING, 0, "proved/exists"),
         ("lmi", SIX, 3, "inconclusive/unknown"),
         ("gradient", SOFT_TISSUE, 0, "proved/exists"),
-        ("gradient", SIX, 3, "inconclusive/unknown"),
+        pytest.param("gradient", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
         ("obstruction", SIX, 3, "inconclusive/impossible"),
         ("obstruction", COMMUTING, 3, "inconclusive/unknown"),
         ("mixture", WIDE, 3, "inconclusive/unknown"),

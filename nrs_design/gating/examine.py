@@ -209,16 +209,7 @@ class Examiner:
             return
         goals = spec.goals
         if goals.peak_torque is not None:
-            wanted = goals.peak_torque
-            level = None
-            if certificate is not None:
-                found = bound_on(certificate.system, certificate.statements, "force")
-                level = None if found is None else found.level
-            said = "no bound on the force was proved"
-            if level is not None:
-                said = f"the force is proved to stay below {rounded_up(level, 'N*m')}"
-            met = level is not None and level <= wanted.exact
-            yield self._certified("peak_torque", f"{said}; {wanted.text} is wanted", met=met)
+            yield self._peak_torque(goals.peak_torque, certificate)
         if goals.decay_rate is not None:
             wanted, rate = goals.decay_rate, _decay(certificate)
             said = "no decay rate in 1/s was proved"
@@ -244,6 +235,20 @@ class Examiner:
             yield self._certified("constant_force", message, met=met)
         if goals.initial_force is not None:
             yield self._initial_force(goals.initial_force, certificate)
+
+    def _peak_torque(self, wanted: Quantity, certificate: Certificate | None) -> Obligation:
+        found = None
+        if certificate is not None:
+            found = bound_on(certificate.system, certificate.statements, "force")
+        said = "no bound on the force was proved"
+        if found is not None:
+            acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
+            said = (
+                f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay "
+                f"below {rounded_up(found.level, 'N*m')}, from rest"
+            )
+        met = found is not None and found.level <= wanted.exact
+        return self._certified("peak_torque", f"{said}; {wanted.text} is wanted", met=met)
 
     def _initial_force(self, wanted: Quantity | str, certificate: Certificate | None) -> Obligation:
         statements = () if certificate is None else certificate.statements

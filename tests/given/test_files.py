@@ -21,6 +21,12 @@ def check(proposal, names=("A1", "A2")):
     assert np.array(proposal.P).tolist() == P.tolist()
 
 
+def test_times_are_no_numbers(tmp_path):
+    np.savez(tmp_path / "a.npz", A=A.astype("timedelta64[s]"), P=P)
+    with pytest.raises(DataError, match="A holds times or dates"):
+        read_proposal(tmp_path / "a.npz")
+
+
 def test_npz_stack_and_numbered(tmp_path):
     np.savez(tmp_path / "a.npz", A=A, P=P)
     check(read_proposal(tmp_path / "a.npz"))

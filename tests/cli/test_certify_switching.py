@@ -44,6 +44,7 @@ def test_proved(tmp_path):
     assert document["verdict"] == "proved"
 
 
+@pytest.mark.slow
 def test_a_constant_force_that_is_not_covered_is_said(tmp_path):
     """43 to 62 N m/rad needs two parts: no function for all of it is found."""
     example = ROOT / "docs" / "examples" / "pushed-in.nrs.yaml"
@@ -123,6 +124,7 @@ def test_inconclusive_with_a_remark_keeps_it(tmp_path):
     assert document["verdict"] == "inconclusive"
 
 
+@pytest.mark.slow
 def test_two_resets_from_one_mode_to_another(tmp_path):
     path = ROOT / "docs" / "examples" / "contact-either-way.nrs.yaml"
     result = run("certify-switching", path, cwd=tmp_path)
@@ -194,7 +196,7 @@ def test_shipped_specs_are_proved(tmp_path, path):
         ("lmi", COMMUTING, 0, "proved/exists"),
         ("lmi", SIX, 3, "inconclusive/unknown"),
         ("gradient", SOFT_TISSUE, 0, "proved/exists"),
-        ("gradient", SIX, 3, "inconclusive/unknown"),
+        pytest.param("gradient", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
         ("obstruction", SIX, 3, "inconclusive/impossible"),
         ("obstruction", COMMUTING, 3, "inconclusive/unknown"),
         ("mixture", WIDE, 3, "inconclusive/unknown"),
@@ -408,6 +410,7 @@ def test_json_without_a_proof(tmp_path, spec, code, verdict):
     assert (document["claim"] is None) == (verdict == "inconclusive")
 
 
+@pytest.mark.slow
 def test_the_default_degree_follows_the_budget(tmp_path):
     """This pair needs a degree beyond 12."""
     pair = [[-1, -1], [1, -1]], [[-1, "-10.95"], ["20/219", -1]]
@@ -417,6 +420,7 @@ def test_the_default_degree_follows_the_budget(tmp_path):
     assert int(json.loads(result.stdout)["method"].removeprefix("polynomial of degree ")) > 12
 
 
+@pytest.mark.slow
 def test_a_spec_says_how_far_the_search_goes_and_options_override_it(tmp_path):
     path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
     path.write_text(path.read_text() + "certification: {max_degree: 4, budget: 20 s}\n")
@@ -599,6 +603,7 @@ def test_viscoelastic_contact_and_mixed_controllers(tmp_path, spec, state):
 
 
 class TestGradientOptions:
+    @pytest.mark.slow
     def test_the_rate_is_optimized_and_the_way_is_told(self, tmp_path):
         """The LMI proves 3.914 1/s for this pair, and the iteration alone without it 1.2."""
         arguments = ("certify-switching", SOFT_TISSUE, "--method", "gradient", "--json")
@@ -638,6 +643,7 @@ class TestGradientOptions:
         assert "PROVED" in done.stdout
 
 
+@pytest.mark.slow
 def test_bounds_in_json(tmp_path):
     """In continuous time, with a command: force and velocity; the limit is 0.3 N*m."""
     text = f"{SOFT_TISSUE.read_text(encoding='utf-8')}\ndisturbances: {{command: 8 deg/s}}\n"

@@ -106,6 +106,7 @@ def test_an_empty_row_is_a_matrix_of_none(tmp_path):
     assert read_proposal(tmp_path / "a.json").modes == {"A1": [[]]}
 
 
+@pytest.mark.slow
 def test_packed_files_are_not_unfolded_beyond_measure(tmp_path):
     large = np.zeros(34 * 2**20, dtype=np.int8)
     np.savez_compressed(tmp_path / "a.npz", P=large)

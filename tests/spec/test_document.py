@@ -242,6 +242,7 @@ GROWING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", GROWING.values(), ids=GROWING)
 def test_time_grows_no_faster_than_the_text(make: Callable[[int], str]) -> None:
     # Eight times the text: eight times the time, or sixty-four if it grew with the square.

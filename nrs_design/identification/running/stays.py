@@ -146,7 +146,7 @@ def _doubts(stays: list[_Stay], bounds: RunBounds) -> Iterator[str]:
             yield f"rows are missing about {stay.begin:.6g} s, where switches may have been"
         if stay.ended and stay.shortest < shortest:
             end = f" to {stay.longest:.4g} s" if place else " s at least: the log begins with it"
-            yield f"{stay.mode} lasted {stay.shortest:.4g}{end}, from {stay.begin:.6g} s on"
+            yield f"from {stay.begin:.6g} s on {stay.mode} lasted {stay.shortest:.4g}{end}"
         if stay.logged > longest:
             lasted = f"{stay.shortest:.4g} to {stay.logged:.4g} s"
-            yield f"{stay.mode} lasted {lasted}, from {stay.begin:.6g} s on"
+            yield f"from {stay.begin:.6g} s on {stay.mode} lasted {lasted}"

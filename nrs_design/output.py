@@ -75,13 +75,44 @@ PDF = re.compile(rb"%PDF-.*<pdf:Keywords>" + MAKER.encode() + rb"\b", re.DOTALL)
 PNG = re.compile(
     rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
 )
-
+# What the ending of its file makes of a page.
+PAGES: dict[str, bytes | re.Pattern[bytes]] = {".html": PAGE, ".htm": PAGE, ".pdf": PDF}
 
 # More than the longest of them that is no pattern, and than any file that a pattern is to tell.
 _LONGEST, _WHOLE = 256, 2**26
 
 Beginning = bytes | tuple[bytes, ...] | re.Pattern[bytes]
 Output = tuple[Path, str | bytes, Beginning]
+
+
+def page_kind(path: Path) -> bytes | re.Pattern[bytes]:
+    """Return `PAGE` or `PDF`, as the name of a page ends.
+
+    Raises
+    ------
+    OutputError
+        If no page ends so.
+    """
+    kind = PAGES.get(path.suffix.lower())
+    if kind is None:
+        raise OutputError(
+            f"{path.suffix or 'no ending'} is not a type of report",
+            path=path,
+            remedy="end it in .html or .pdf",
+        )
+    return kind
+
+
+def check_html(path: Path) -> None:
+    """Refuse a name that is not one of a page in HTML.
+
+    Raises
+    ------
+    OutputError
+        If it is not.
+    """
+    if page_kind(path) is not PAGE:
+        raise OutputError("is not the name of a page in HTML", path=path, remedy="end it in .html")
 
 
 def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"") -> None:

@@ -19,7 +19,9 @@ from nrs_design.output import (
     SVG,
     WORST_RUN,
     alone_in,
+    check_html,
     check_place,
+    page_kind,
     write_output,
     write_outputs,
 )
@@ -252,3 +254,14 @@ def test_two_who_change_one_file_take_turns(tmp_path):
 def test_a_place_that_is_free_stays_as_it_is(tmp_path):
     check_place(tmp_path / "a/b/page.html", PAGE)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_is_what_its_name_ends_in(tmp_path):
+    """One table for reports, identification, reproduction and the library."""
+    assert [page_kind(Path(name)) for name in ("a.html", "a.HTM", "a.pdf")] == [PAGE, PAGE, PDF]
+    for name in ("page.png", "page"):
+        with pytest.raises(OutputError, match="is not a type of report"):
+            page_kind(Path(name))
+    check_html(Path("a.htm"))
+    with pytest.raises(OutputError, match="not the name of a page in HTML"):
+        check_html(Path("a.pdf"))

@@ -4,25 +4,29 @@ The proof of the modes that a certificate holds and the question whose modes the
 of each other (`nrs_design.certificates.verify`). On one processor, or where a process cannot be
 copied cheaply, one follows the other. A process that ends without an answer has said nothing: the
 proof is then checked here.
+
+The copy and the pipes are made by hand: to load `multiprocessing` takes as long as a tenth of the
+proof.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from threading import Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from nrs_design.certificates.prove import prove
 
 if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
-    from multiprocessing.process import BaseProcess
-
     from nrs_design.certificates.verify import FindFault
+
+# Of an answer, read at once.
+PART = 2**16
 
 
 @contextmanager
@@ -38,12 +42,12 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[FindFault | None]:
     if begun is None:
         yield None
         return
-    process, receiver = begun
+    process, answer, hold = begun
 
     def fault() -> str | None:
         try:
-            told: str | None = receiver.recv()
-        except (EOFError, OSError):
+            told: str | None = json.loads(_read_all(answer))
+        except ValueError:
             # No answer, or a part of one. Whatever stopped it, stops this or is said here.
             return prove(document).fault
         return told
@@ -51,24 +55,39 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[FindFault | None]:
     try:
         yield fault
     finally:
-        process.kill()
-        process.join()
-        receiver.close()
+        # Where nobody wants to know of children that end, it may be gone.
+        with suppress(ProcessLookupError, ChildProcessError):
+            os.kill(process, signal.SIGKILL)
+            os.waitpid(process, 0)
+        os.close(answer)
+        os.close(hold)
 
 
-def _begin(document: Mapping[str, Any]) -> tuple[BaseProcess, Connection] | None:
-    """Begin to prove a document; None without room for another process."""
-    from multiprocessing import get_context
+def _begin(document: Mapping[str, Any]) -> tuple[int, int, int] | None:
+    """Begin to prove a document; None without room for another process.
 
-    context = get_context("fork")
+    Returns
+    -------
+    tuple of int
+        The process, where its answer is read, and what is open for as long as this process lives.
+    """
+    pipes: list[int] = []
     try:
-        receiver, sender = context.Pipe(duplex=False)
-        process = context.Process(target=_tell_fault, args=(document, sender), daemon=True)
-        process.start()
+        pipes += os.pipe()
+        pipes += os.pipe()
+        process = os.fork()
     except OSError:
+        for pipe in pipes:
+            os.close(pipe)
         return None
-    sender.close()
-    return process, receiver
+    answer, tell, life, hold = pipes
+    if process == 0:
+        os.close(answer)
+        os.close(hold)
+        _tell_fault(document, tell, life)
+    os.close(tell)
+    os.close(life)
+    return process, answer, hold
 
 
 def can_copy() -> bool:
@@ -76,22 +95,30 @@ def can_copy() -> bool:
     return sys.platform == "linux" and len(os.sched_getaffinity(0)) > 1
 
 
-def _tell_fault(document: Mapping[str, Any], sender: Connection) -> None:
-    """Send the fault; an error is not sent, since it must be raised where it is seen."""
-    # Who interrupts the program is answered by the other process, which ends this one.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    Thread(target=_end_with_parent, daemon=True).start()
+def _tell_fault(document: Mapping[str, Any], tell: int, life: int) -> NoReturn:
+    """Send the fault and end; an error is not sent, since it must be raised where it is seen."""
     try:
-        fault = prove(document).fault
-    except Exception:
-        return
-    sender.send(fault)
+        # Who interrupts the program is answered by the other process, which ends this one.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        Thread(target=_end_with_parent, args=(life,), daemon=True).start()
+        told = json.dumps(prove(document).fault).encode()
+        while told:
+            told = told[os.write(tell, told) :]
+    finally:
+        # Nothing of the other process is done a second time at the end of this one.
+        os._exit(0)
 
 
-def _end_with_parent() -> None:
+def _end_with_parent(life: int) -> None:
     """End when nobody waits for an answer any more, however the other process was stopped."""
-    from multiprocessing import parent_process
+    # Nobody writes: it is read when the other end is closed.
+    os.read(life, 1)
+    os._exit(1)
 
-    if (parent := parent_process()) is not None:
-        parent.join()
-        os._exit(1)
+
+def _read_all(pipe: int) -> bytes:
+    """Read until the other end is closed."""
+    parts = []
+    while part := os.read(pipe, PART):
+        parts.append(part)
+    return b"".join(parts)

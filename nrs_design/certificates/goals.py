@@ -77,7 +77,11 @@ def _peak_torque(wanted: Fraction, text: str, certificate: Certificate | None) -
         found = bound_on(certificate.system, certificate.statements, "force")
     if found is None:
         return CertifiedGoal("peak_torque", "no bound on the force was proved", text, False)
-    said = f"the force is proved to stay below {rounded_up(found.level, 'N*m')}"
+    acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
+    said = (
+        f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
+        f"{rounded_up(found.level, 'N*m')}, from rest"
+    )
     return CertifiedGoal("peak_torque", said, text, found.level <= wanted)
 
 

@@ -99,7 +99,7 @@ def certify_switching(
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import Overrides, run_certification, search_limits
-    from nrs_design.pipeline.margins import check_margins, run_proof_margins
+    from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
 
@@ -125,7 +125,6 @@ def certify_switching(
         )
     # What is shown is kept, and told, before the margins: those take minutes.
     written = _write(result, path, quiet=quiet or as_json)
-    check_margins(result, margin=margin, shortest_dwell=shortest_dwell)
     if not quiet and not as_json:
         _print(result, verbose=verbose)
     more = "margins" if margin or shortest_dwell else "what else is proved"

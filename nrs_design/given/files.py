@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular, read_json_text
+from nrs_design.given.matrices import refuse_times
 from nrs_design.given.unpacked import check_mat, check_npz
 from nrs_design.proof.text import quoted
 
@@ -169,6 +170,8 @@ def _read_npz(raw: bytes) -> dict[str, Any]:
     check_npz(raw)
     with np.load(BytesIO(raw), allow_pickle=False) as archive:
         arrays = {key: archive[key] for key in archive.files}
+    for key, array in arrays.items():
+        refuse_times(array, key)
     _check_entries(sum(array.size for array in arrays.values()))
     return {key: array.tolist() for key, array in arrays.items()}
 

@@ -4,6 +4,9 @@ A matrix that is affine in each parameter alone (all others held) is, anywhere i
 convex combination of its corners: at ``p = (1-t) low + t high`` along one axis it is ``(1-t)``
 times that at the low end plus ``t`` times that at the high end, and so on along the other axes.
 The weights are products of such shares: not negative, with sum one, the same for all entries.
+
+Two parameters in which it is affine together may be known to lie above the chord between both
+ends; then the triangle of the ends and the corner above the chord suffices, for the same reason.
 """
 
 from __future__ import annotations
@@ -34,10 +37,14 @@ class Box:
     inverse : frozenset of str
         Parameters in one over which matrices are affine; they are positive. One over such a
         parameter runs through the interval between the inverse ends, so the corners are the same.
+    chord : tuple of str, optional
+        Two parameters x and y in which matrices are affine together, with ``(x, y)`` never below
+        the line from ``(x.low, y.low)`` to ``(x.high, y.high)``: the corner below it is none.
     """
 
     ranges: Mapping[str, Interval]
     inverse: frozenset[str] = frozenset()
+    chord: tuple[str, str] | None = None
 
     def beside(self, other: Box) -> Box:
         """Return the box of the parameters of both.
@@ -45,11 +52,14 @@ class Box:
         Raises
         ------
         InternalError
-            If a symbol stands for two parameters.
+            If a symbol stands for two parameters, or both have a chord.
         """
         if common := self.ranges.keys() & other.ranges.keys():
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
-        return Box({**self.ranges, **other.ranges}, self.inverse | other.inverse)
+        if self.chord and other.chord:
+            raise InternalError("a box of parameters has two chords")
+        ranges = {**self.ranges, **other.ranges}
+        return Box(ranges, self.inverse | other.inverse, self.chord or other.chord)
 
     def middle(self, symbol: str) -> Fraction:
         """Return the value halfway in the coordinate in which matrices are affine."""
@@ -60,8 +70,9 @@ class Box:
 
     def values(self) -> Iterator[dict[str, Fraction]]:
         """Yield the values of the parameters at every corner, the last one turning fastest."""
-        for ends in product(*(interval.ends for interval in self.ranges.values())):
-            yield dict(zip(self.ranges, (value for _, value in ends), strict=True))
+        values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
+        for at in self._points(values):
+            yield _values(values, at)
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
         """Yield the corners, the last parameter turning fastest.
@@ -85,7 +96,7 @@ class Box:
             If the matrix is not affine along each axis.
         """
         values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
-        corners = {at: rows_at(_values(values, at)) for at in product(*values.values())}
+        corners = {at: rows_at(_values(values, at)) for at in self._points(values)}
         self._check_corners_suffice(rows_at, corners, name)
         for at, rows in corners.items():
             pairs = zip(values, at, strict=True)
@@ -100,28 +111,54 @@ class Box:
         the whole box rests on it: on all points of the grid of low end, middle and high end of
         every axis, the matrix must be the mean of its two neighbors along one axis on which it is
         in the middle; so it is the mean of the corners around it. For entries of a degree of at
-        most two in each coordinate this decides it.
+        most two in each coordinate, and in both of a chord, this decides it: of a triangle, the
+        grid has the corners and the middles of the sides.
         """
         known = dict(corners)
         values = {symbol: self._grid(symbol) for symbol in self.ranges}
         # Rows that are the same objects are compared once; kept here, no other gets their ids.
         compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
         # Neighbors are in the middle on one axis less, so they come first.
-        for at in sorted(product(*values.values()), key=lambda at: at.count(MIDDLE)):
+        for at in sorted(self._points(values), key=lambda at: at.count(MIDDLE)):
             if MIDDLE not in at:
                 continue
-            axis = at.index(MIDDLE)
-            low, high = (known[*at[:axis], end, *at[axis + 1 :]] for end in ("min", "max"))
+            moved = self._moved(at)
+            low, high = (
+                known[tuple(end if i in moved else label for i, label in enumerate(at))]
+                for end in ("min", "max")
+            )
             found = known[at] = rows_at(_values(values, at))
             triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
             if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
             compared |= triples
 
+    def _points(self, values: Mapping[str, Mapping[str, Fraction]]) -> Iterator[tuple[str, ...]]:
+        """Yield the labels of the points of a grid that are not below the chord."""
+        for at in product(*values.values()):
+            if self.chord is None or not _is_below(*(at[i] for i in self._chord_axes())):
+                yield at
+
+    def _moved(self, at: Sequence[str]) -> set[int]:
+        """Return along which axes a point has its two neighbors; in the middle of a chord, both."""
+        if self.chord is not None and all(at[i] == MIDDLE for i in self._chord_axes()):
+            return {*self._chord_axes()}
+        return {at.index(MIDDLE)}
+
+    def _chord_axes(self) -> Iterator[int]:
+        symbols = [*self.ranges]
+        return (symbols.index(symbol) for symbol in self.chord or ())
+
     def _grid(self, symbol: str) -> dict[str, Fraction]:
         """Return the labelled ends of a range, and the middle between two."""
         ends = dict(self.ranges[symbol].ends)
         return ends | ({MIDDLE: self.middle(symbol)} if len(ends) > 1 else {})
+
+
+def _is_below(x: str, y: str) -> bool:
+    """Tell whether a point is below the chord by its labels; those of a point are empty."""
+    order = ("", "min", MIDDLE, "max")
+    return bool(x and y) and order.index(x) > order.index(y)
 
 
 def _values(values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]) -> dict[str, Fraction]:

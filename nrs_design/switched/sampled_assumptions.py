@@ -33,6 +33,7 @@ from nrs_design.switched.assumptions import (
 from nrs_design.switched.joint import motor_text
 from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_gains import SampledGains
+from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS
 
 _INPUTS = "All inputs are zero (velocity command, motion of the environment); "
 _PLACED_INPUTS = (
@@ -301,7 +302,17 @@ def _samples(count: int) -> str:
 
 
 def _actuator_text(ranges: ActuatorRanges) -> str:
-    return motor_text(ranges) + ("" if ranges.fixed else ", and may change at every sample")
+    tau = ranges.time_constant
+    return (
+        motor_text(ranges)
+        + ("" if ranges.fixed else ", and may change at every sample")
+        + ". A proof covers exp(-T/tau) in what encloses it; what refutes may be at "
+        + (
+            f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
+            if tau.low == tau.high
+            else "a corner of that, of no motor of the range"
+        )
+    )
 
 
 def _coefficients(frame: Frame, gains: Mapping[str, SampledGains]) -> str:

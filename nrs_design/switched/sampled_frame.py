@@ -215,7 +215,7 @@ class Frame:
         contact = values.get("k", ZERO), values.get("b", ZERO)
         # An older sample is a state, whatever is touched now.
         seen = contact if delay == 0 else (ZERO, ZERO)
-        made = _sample(self, self.listed, law, delay, seen, turn, retuned="a" in values)
+        made = _sample(self, law, delay, seen, turn, retuned="a" in values)
         ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
         Km, E, tau = values["Km"], values["E"], self.time_constant
         s = values["s"] if tau is None else tau * (1 - E)
@@ -300,7 +300,6 @@ class _Sample:
 @lru_cache(maxsize=64)
 def _sample(
     frame: Frame,
-    listed: ListedLaw,
     law: SampledLaw,
     delay: int,
     contact: tuple[Fraction, Fraction],
@@ -311,7 +310,7 @@ def _sample(
     """Return what `Frame.rows_and_slip` knows before the motor's parameters."""
     shares, at = _beginning(frame)
     force = at.samples[delay - 1] if delay else _force(frame, *contact)
-    step = frame._step(law, at, force, shares)
+    listed, step = frame.listed, frame._step(law, at, force, shares)
     following, nothing = listed.following, zero(len(at.delta))
     lags, velocity = [*at.lags], [at.velocity] if frame.has_inertia else []
     integral = [at.integral] if frame.gathers else []

@@ -62,10 +62,10 @@ def close_sampled_loop(
     """Assemble every mode of the sampled loop.
 
     One mode for each controller, delay and corner of the ranges of stiffness, damping, gains and
-    actuator. The map is affine in stiffness, damping, ``Km``, ``E``, ``s`` and in what the
-    coefficients of a law are made of, each for itself, so it is a convex combination of the corners
-    in the whole box. E and s are transcendental: both are enclosed, and so they have ranges even
-    where gain and time constant are known.
+    actuator. The map is affine in stiffness, damping, ``Km``, in ``E`` and ``s`` together and in
+    what the coefficients of a law are made of, each for itself, so it is a convex combination of
+    the corners in the whole box. E and s are transcendental: both are enclosed, and so they have
+    ranges even where gain and time constant are known.
 
     Parameters
     ----------

@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -96,11 +95,17 @@ def test_a_process_that_ends_without_an_answer_has_proved_nothing(
     assert "Q" in fault
 
 
-def test_a_part_of_an_answer_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    def cut_off(connection: Connection) -> object:
-        raise OSError("got end of file during message")
+@pytest.mark.parametrize("part", [b"nul", b'"its Q is'])
+def test_a_part_of_an_answer_is_none(monkeypatch: pytest.MonkeyPatch, part: bytes) -> None:
+    here, write = os.getpid(), os.write
 
-    monkeypatch.setattr(Connection, "recv", cut_off)
+    def write_a_part(pipe: int, told: bytes) -> int:
+        if os.getpid() == here:
+            return write(pipe, told)
+        write(pipe, part)
+        os._exit(0)
+
+    monkeypatch.setattr(os, "write", write_a_part)
     document = _document(SPEC)
     _worse(document)
     document["id"] = content_id(document)
@@ -151,6 +156,28 @@ def test_it_ends_with_the_process_that_waits_for_it(tmp_path: Path) -> None:
     assert done.returncode == -signal.SIGKILL
 
 
+def test_a_long_answer_arrives_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Longer than a pipe holds, so in parts."""
+    long = "no " * 100_000
+
+    def reject(document: object) -> Verification:
+        return Verification(None, long)
+
+    monkeypatch.setattr(beside, "prove", reject)
+    with proof_beside({}) as proof:
+        assert proof is not None
+        assert proof() == long
+
+
+def test_nothing_is_left_open_and_no_process_is_left() -> None:
+    before = set(os.listdir("/proc/self/fd"))
+    with proof_beside(_document(SPEC)):
+        pass
+    assert set(os.listdir("/proc/self/fd")) == before
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
 def test_on_one_processor_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
     with proof_beside(_document(SPEC)) as proof:
@@ -162,8 +189,10 @@ def test_without_room_for_a_process_nothing_begins(monkeypatch: pytest.MonkeyPat
         raise BlockingIOError
 
     monkeypatch.setattr(os, "fork", fail)
+    before = set(os.listdir("/proc/self/fd"))
     with proof_beside(_document(SPEC)) as proof:
         assert proof is None
+    assert set(os.listdir("/proc/self/fd")) == before
 
 
 def test_the_former_schema_is_proved_with_the_spec_only() -> None:

@@ -82,6 +82,10 @@ def test_an_unproved_spec_is_said_loudly(tmp_path):
     done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path)
     assert done.returncode == 3
     assert "UNPROVED SPEC: no certificate is named" in done.stdout
+    # What is long stands below the table, once.
+    table = done.stdout[: done.stdout.index("what is allowed for")].splitlines()
+    assert max(map(len, table)) < 150
+    assert done.stdout.count("where the driver saturates is not known") == 1
     assert "not judged: saturation" in done.stdout
 
 

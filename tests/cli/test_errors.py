@@ -133,6 +133,7 @@ def test_a_design_without_answer_points_at_its_field(tmp_path):
     assert "error[NRS002]: controller insertion: no admittance" in shown
 
 
+@pytest.mark.slow
 def test_colour_on_a_terminal_unless_refused(faulty):
     assert "\x1b[1;31merror[NRS001]" in run_on_terminal(80, "check", "a.nrs.yaml", cwd=faulty)[0]
     plain, code = run_on_terminal(80, "check", "a.nrs.yaml", cwd=faulty, NO_COLOR="1")

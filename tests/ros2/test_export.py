@@ -114,6 +114,7 @@ def test_the_checker_of_files_agrees(found, tmp_path):
     assert not outcome.specs[0].cautions
 
 
+@pytest.mark.slow
 def test_every_file_says_what_it_is_worth(design, found):
     for item in found:
         for fact in (
@@ -156,6 +157,7 @@ def test_what_is_not_proved_is_not_written():
 FILTER = "sensor: {filter: {order: 1, cutoff: 100 rad/s}}\n"
 
 
+@pytest.mark.slow
 def test_the_filter_is_written_out():
     filtered = designed(("contact: losable", f"contact: losable\n{FILTER}"))
     for item in exported(filtered):

@@ -75,7 +75,8 @@ def test_modes_and_states_of_the_thesis_robot(tmp_path):
 
 def test_a_tolerance_of_the_motor_gives_its_corners(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}", *TOLERANCE)
-    assert len(system.modes) == 64
+    # Controllers, ages of the sample, ends of k and Km, and a triangle of E and s.
+    assert len(system.modes) == 2 * 2 * 2 * 2 * 3
     assert "may change at every sample" in " ".join(system.assumptions)
 
 

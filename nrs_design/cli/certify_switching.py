@@ -250,6 +250,8 @@ def _unlooked(result: Result) -> tuple[str, ...]:
 
 
 def _print(result: Result, *, verbose: bool) -> None:
+    from nrs_design.certificates.goals import certified_goals
+
     certification = result.certification
     name = result.loaded.spec.name
     verdict = str(certification.verdict)
@@ -268,6 +270,9 @@ def _print(result: Result, *, verbose: bool) -> None:
             # What was not looked for took no time.
             took = f" ({attempt.seconds * 1e3:.1f} ms)" if attempt.seconds else ""
             say(f"  {attempt.step}: {attempt.outcome}{took}")
+    for goal in certified_goals(result.loaded.spec, result.certificate):
+        ends = "met" if goal.met else "NOT PROVED"
+        say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
     say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
     say("  taken for granted (nrs-design report says how to test each):")
     for assumption in certification.system.assumptions:

@@ -669,6 +669,22 @@ def test_a_bound_that_is_missing_is_said(tmp_path):
     assert "conewise quadratic: " not in result.stdout
 
 
+@pytest.mark.parametrize(("wanted", "ends"), [("0.5 1/s", "met"), ("300 1/s", "NOT PROVED")])
+def test_goals_of_the_proof_are_said_where_it_is(tmp_path, wanted, ends):
+    """The verdict is about stability alone, and so is the exit code."""
+    path = tmp_path / "wanting.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(f"{text}goals: {{decay_rate: {wanted}}}\n", encoding="utf-8")
+    done = run("certify-switching", path, cwd=tmp_path)
+    assert done.returncode == 0
+    assert f"  goal decay_rate, {wanted}: {ends}: the proved decay rate is 3.91406" in done.stdout
+    told = json.loads(run("certify-switching", path, "--json", cwd=tmp_path).stdout)
+    (goal,) = told["goals"]
+    assert (goal["goal"], goal["wanted"], goal["proved"]) == ("decay_rate", wanted, ends == "met")
+    said = run("tune", path, cwd=tmp_path).stdout
+    assert "Not judged here: decay_rate. A proof decides: nrs-design certify-switching." in said
+
+
 AT_ONCE = ROOT / "docs" / "examples" / "tissue-and-tool-at-once.nrs.yaml"
 
 

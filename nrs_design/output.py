@@ -6,8 +6,8 @@ import os
 import re
 import tempfile
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
-from errno import ENOTDIR
+from contextlib import contextmanager, suppress
+from errno import EACCES, ENOTDIR
 from pathlib import Path
 
 from nrs_design.errors import OutputError
@@ -195,6 +195,36 @@ def check_place(path: Path, replaces: Beginning = b"") -> None:
         folder = next(folder for folder in path.parents if folder.exists())
         if not folder.is_dir():
             raise NotADirectoryError(ENOTDIR, os.strerror(ENOTDIR))
+        # A file is written beside the one that it replaces, so it is the folder that counts.
+        if not os.access(folder, os.W_OK | os.X_OK):
+            raise PermissionError(EACCES, os.strerror(EACCES))
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Wait until no other process of ours is in a folder, and keep others out meanwhile.
+
+    What is read, changed and written again would lose what another one writes in between. The
+    system lets go when a process ends, however it ends. Where it has no such lock (Windows, some
+    network drives), nobody waits.
+
+    Parameters
+    ----------
+    folder : Path
+        Or one that is yet to be made: then the nearest that is there.
+    """
+    try:
+        from fcntl import LOCK_EX, flock
+    except ImportError:
+        yield
+        return
+    handle = os.open(next(f for f in (folder, *folder.parents) if f.is_dir()), os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            flock(handle, LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 import os
 import stat
+import threading
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from nrs_design.output import (
     SCHEMA,
     SVG,
     WORST_RUN,
+    alone_in,
     check_html,
     check_place,
     page_kind,
@@ -223,6 +225,30 @@ def test_a_place_is_refused_before_the_work_as_it_would_be_after_it(tmp_path, na
         write_output(tmp_path / name, "page", replaces=PAGE)
     assert str(before.value) == str(after.value)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link"]
+
+
+def test_a_folder_that_cannot_be_written_to_is_refused_before_the_work(tmp_path, monkeypatch):
+    """The tests may run as root, who can write anywhere."""
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(OutputError, match=r"Permission denied.*choose a writable folder"):
+        check_place(tmp_path / "a/page.html", PAGE)
+
+
+def test_two_who_change_one_file_take_turns(tmp_path):
+    file = tmp_path / "a" / "count"
+
+    def add() -> None:
+        for _ in range(20):
+            with alone_in(file.parent):
+                count = int(file.read_text()) if file.exists() else 0
+                write_output(file, str(count + 1))
+
+    threads = [threading.Thread(target=add) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert file.read_text() == "40"
 
 
 def test_a_place_that_is_free_stays_as_it_is(tmp_path):

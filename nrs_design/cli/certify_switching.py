@@ -172,7 +172,7 @@ def _help_summary(
     told: dict[str, Any] = {"relief": list(find_relief(result)), "next_steps": list(steps)}
     if parts is not None:
         told["subsets"] = [
-            {"left_out": p.left_out, "claim": p.claim, "needs": p.needs} for p in parts
+            {"left_out": p.left_out, "claim": p.claim or None, "needs": p.needs} for p in parts
         ]
         told["subsets_without"] = list(_unlooked(result))
     return told
@@ -212,9 +212,9 @@ def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
     if parts is None or (not parts and str(result.certification.verdict) == "proved"):
         return
-    from nrs_design.pipeline.subsets import subset_lines
+    from nrs_design.pipeline.subsets import parts_title, subset_lines
 
-    say("  not proved together; with as little left out as possible:")
+    say(f"  {parts_title(result)}:")
     for line in subset_lines(parts):
         say(f"  {line}")
     if unlooked := " and ".join(_unlooked(result)):

@@ -93,6 +93,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "Bt": item.Bt,
         "Kt": item.problem.loop.Kt,
         "cost": item.cost,
+        "given": [gain for gain in ("Mt", "Bt") if getattr(item.given, gain).fixed],
         "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
         "sensitivity_peak": finite(margins.sensitivity_peak),
         "gain_margin": finite(margins.gain_margin),

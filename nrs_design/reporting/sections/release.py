@@ -54,6 +54,7 @@ _NO_DEFLECTION = (
 )
 _ONE_MODE = "Rules forbid to switch at any time, so one mode holds throughout."
 _ONE_AXIS = "It is that of one axis on which the others do not act."
+_LINEAR = "Nothing is cut off at a limit in it, whatever saturates on the robot."
 _UNPROVED = "Stability is not proved: that this run comes to rest is no sign of it."
 _BOUND = (
     "The dashed lines follow from the certificate, from this start, for every switching signal; "
@@ -111,6 +112,7 @@ def _said(result: Result, system: SwitchedSystem, outputs: Outputs) -> str:
         (_ANYWHERE, bool(outputs.free)),
         (_ONE_AXIS, bool(system.couplings)),
         (_NO_DEFLECTION, outputs.deflection is None),
+        (_LINEAR, True),
         (_UNPROVED, result.certification.verdict is not Verdict.PROVED),
     )
     return " ".join(text for text, applies in texts if applies)

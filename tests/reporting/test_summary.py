@@ -55,6 +55,10 @@ def test_disturbances_without_a_proved_bound_are_said_in_the_lead(soft_tissue):
     assert "no bound" not in summary_of(soft_tissue)[0]
 
 
+def test_a_motor_without_ranges_is_not_said_to_have_them(soft_tissue):
+    assert "the motor is linear, and has no tolerance" in summary_of(soft_tissue)[1]
+
+
 @pytest.mark.parametrize("case", ["dwell", "inconclusive", "resets", "parameter", "dwell-refuted"])
 def test_arbitrary_switching_is_claimed_only_where_it_is_declared(report, case):
     assert "arbitrary switching" not in report(case).summary[0]

@@ -44,6 +44,7 @@ MAX_SCALAR = 1000
 _SURROGATE = re.compile("[\ud800-\udfff]")
 # How pages begin, which are met beside specs of the same name.
 _PAGE = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!doctype html|<html\b|%PDF-)", re.IGNORECASE)
+_TABLES = {".csv", ".tsv", ".npz", ".mat", ".xlsx", ".parquet"}
 _WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
 # What YAML 1.2 reads as a truth value or a number, when it is not quoted.
@@ -106,6 +107,12 @@ def read_source(path: Path) -> tuple[bytes, str]:
         raise SpecError(
             "this is a page, not a spec", path=path, remedy="name the *.nrs.yaml file it is about"
         )
+    if path.suffix.lower() in _TABLES:
+        raise SpecError(
+            "this is a table, not a spec",
+            path=path,
+            remedy="name a *.nrs.yaml file; where a command takes both, the record comes first",
+        )
     if len(content) > MAX_BYTES:
         raise SpecError(
             f"the file is larger than {MAX_BYTES} bytes",
@@ -115,6 +122,10 @@ def read_source(path: Path) -> tuple[bytes, str]:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
+        if b"\0" in content:
+            raise SpecError(
+                "the file is not UTF-8 text", path=path, remedy="name a *.nrs.yaml file"
+            ) from None
         before = content[: error.start].decode("utf-8-sig")
         place = _Places(before).at(len(before))
         raise SpecError(

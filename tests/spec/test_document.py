@@ -271,3 +271,23 @@ def test_nodes_are_counted_where_no_comma_or_line_tells(monkeypatch: pytest.Monk
 
 def test_the_longest_text_is_read() -> None:
     assert to_data(parse_document("a: " + "x" * MAX_SCALAR)) == {"a": "x" * MAX_SCALAR}
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("run.csv", b"time_s,force_N\n0,1\n", "this is a table, not a spec"),
+        ("run.npz", b"PK\x03\x04\0", "this is a table, not a spec"),
+        ("run.png", b"\x89PNG\r\n\x1a\n\0", "the file is not UTF-8 text"),
+        ("a.nrs.yaml", "kind: x".encode("utf-16"), "the file is not UTF-8 text"),
+        ("b.nrs.yaml", "name: Gr\xf6\xdfe".encode("latin-1"), "byte 0xf6 is not UTF-8 text"),
+    ],
+)
+def test_files_of_another_kind_are_named(
+    tmp_path: Path, name: str, content: bytes, said: str
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(SpecError) as caught:
+        read_source(path)
+    assert caught.value.message == said

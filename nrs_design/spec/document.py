@@ -390,12 +390,11 @@ class _Builder:
     def _value(self, key: str, key_place: Position, event: NodeEvent) -> Node:
         """Read the value of a key; a missing one is reported where the key stands."""
         if isinstance(event, ScalarEvent) and event.style is None and _NULL.fullmatch(event.value):
-            self._note(
-                f"the key {quoted(key)} has no value",
-                key_place,
-                "write decimals with a point: a comma ends a value"
-                if key[:1].isdigit()
-                else "write a value or remove the key",
-            )
+            remedy = "write a value or remove the key"
+            if key[:1].isdigit():
+                # Nothing else is said then: the number before the comma seems to lack its unit.
+                remedy = "write decimals with a point: a comma ends a value"
+                self._fail(f"the key {quoted(key)} has no value", key_place, remedy)
+            self._note(f"the key {quoted(key)} has no value", key_place, remedy)
             return Scalar("", key_place)
         return self._node(event)

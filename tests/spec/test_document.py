@@ -291,3 +291,12 @@ def test_files_of_another_kind_are_named(
     with pytest.raises(SpecError) as caught:
         read_source(path)
     assert caught.value.message == said
+
+
+def test_a_decimal_comma_hides_what_would_be_said_of_its_halves(tmp_path: Path) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text("a: {lever_arm: 0,24 m}\nb:\n")
+    with pytest.raises(SpecError) as caught:
+        parse_document(path.read_text(), path)
+    assert len(caught.value.faults) == 1
+    assert caught.value.remedy == "write decimals with a point: a comma ends a value"

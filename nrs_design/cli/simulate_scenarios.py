@@ -238,7 +238,10 @@ def _setting(run: Run) -> str:
         return f"{said}; continuous time, force of the moment"
     period, youngest, oldest = run.sampling
     age = f"{oldest}" if youngest == oldest else f"{youngest} to {oldest}, drawn anew at each"
-    return f"{said}; a sample every {period:.6g} s, age of the force in samples: {age}"
+    clock = f"a sample every {period:.6g} s"
+    if run.outer not in (None, period):
+        clock = f"motion loop every {period:.6g} s, force sample every {run.outer:.6g} s"
+    return f"{said}; {clock}, age of the force in samples: {age}"
 
 
 def _rate(rate: CertifiedRate) -> str:

@@ -120,6 +120,8 @@ def test_controllers_in_force_and_age_of_the_force_are_said(spec, tmp_path):
     assert "age of the force in samples: 0 to 1, drawn anew at each\n" in told
     late = run("simulate", path, "--delay", "3", cwd=tmp_path).stdout
     assert "age of the force in samples: 3\n" in late
+    twice = run("simulate", path, "--outer-period", "0.001", cwd=tmp_path).stdout
+    assert "motion loop every 0.002 s, force sample every 0.001 s" in twice
 
 
 def test_a_spec_without_scenarios_has_one(spec, tmp_path):

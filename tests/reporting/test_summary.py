@@ -50,7 +50,7 @@ def test_disturbances_without_a_proved_bound_are_said_in_the_lead(soft_tissue):
     channels = pushed(bouncing()).channels
     system = replace(certification.system, channels=channels)
     disturbed = replace(soft_tissue, certification=replace(certification, system=system))
-    said = ", and no bound under the disturbances of the spec is proved."
+    said = "; no bound under the disturbances of the spec is proved."
     assert summary_of(disturbed)[0].endswith(said)
     assert "no bound" not in summary_of(soft_tissue)[0]
 

@@ -81,12 +81,11 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
             if evidence.covers_rounding
             else "for a law computed without rounding"
         )
-    if system.channels and not any(
-        item.bound(system) is not None for item in result.certification.statements
-    ):
-        parts.append("and no bound under the disturbances of the spec is proved")
+    bounds = (item.bound(system) for item in result.certification.statements)
+    unbounded = system.channels and not any(bound is not None for bound in bounds)
+    more = ("; no bound under the disturbances of the spec is proved",) if unbounded else ()
     joined = (piece for part in parts[1:] for piece in (", ", part))
-    return Sentence(parts[0], *joined, *_saturated(result), ".")
+    return Sentence(parts[0], *joined, *_saturated(result), *more, ".")
 
 
 def _saturated(result: Result) -> tuple[str, ...]:

@@ -52,6 +52,8 @@ def summary_of(result: Result) -> tuple[str, str]:
     if evidence.shows is Shows.STABILITY:
         return _proved(result, evidence), granted
     kept = ", in kept contact" if system.contact is not None else ""
+    if system.roundings:
+        kept += ", among modes that enclose what the motor does"
     name = page_of(system, evidence).name
     return (
         f"Refuted: no guarantee of stability is possible under {_signals(system)}{kept}; the "

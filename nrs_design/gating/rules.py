@@ -282,7 +282,8 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "The statement is false, and a witness shows it, checked exactly: a mode that is "
                 "not stable by itself, an average of modes that is not, a periodic switching "
                 "signal along which a motion grows, or a value of a constant parameter with one of "
-                "these.",
+                "these. Modes of a sampled loop enclose what the motor does, as closely as the "
+                "assumptions say: a witness there may be of no motor in the range.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",

@@ -5,8 +5,8 @@ convex combination of its corners: at ``p = (1-t) low + t high`` along one axis 
 times that at the low end plus ``t`` times that at the high end, and so on along the other axes.
 The weights are products of such shares: not negative, with sum one, the same for all entries.
 
-Two parameters in which it is affine together may be known to lie above the chord between both
-ends; then the triangle of the ends and the corner above the chord suffices, for the same reason.
+Two parameters in which it is affine together may be known to lie in a triangle; then its three
+corners suffice, for the same reason.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product, starmap
+from types import MappingProxyType
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.noun import dataclass
@@ -24,6 +25,29 @@ RowsAt = Callable[[Mapping[str, Fraction]], Rows]
 
 # Between the ends of a range, which are labelled as `Interval.ends` does.
 MIDDLE = "middle"
+_SHARES: Mapping[str, Fraction] = MappingProxyType(
+    {"min": Fraction(0), MIDDLE: Fraction(1, 2), "max": Fraction(1)}
+)
+# Where there is no triangle.
+_ANYWHERE = (Fraction(0), Fraction(1))
+
+
+@dataclass(frozen=True, slots=True)
+class Triangle:
+    """Where two parameters with ranges lie together.
+
+    Parameters
+    ----------
+    x, y : str
+        In which matrices are affine together. Two corners are the lower ends of both ranges, and
+        the upper ends of both.
+    between : tuple of Fraction
+        The third one, which is called the lower end of x and the upper end of y.
+    """
+
+    x: str
+    y: str
+    between: tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,14 +61,13 @@ class Box:
     inverse : frozenset of str
         Parameters in one over which matrices are affine; they are positive. One over such a
         parameter runs through the interval between the inverse ends, so the corners are the same.
-    chord : tuple of str, optional
-        Two parameters x and y in which matrices are affine together, with ``(x, y)`` never below
-        the line from ``(x.low, y.low)`` to ``(x.high, y.high)``: the corner below it is none.
+    triangle : Triangle, optional
+        Where two of the parameters are, instead of anywhere in their ranges.
     """
 
     ranges: Mapping[str, Interval]
     inverse: frozenset[str] = frozenset()
-    chord: tuple[str, str] | None = None
+    triangle: Triangle | None = None
 
     def beside(self, other: Box) -> Box:
         """Return the box of the parameters of both.
@@ -52,14 +75,14 @@ class Box:
         Raises
         ------
         InternalError
-            If a symbol stands for two parameters, or both have a chord.
+            If a symbol stands for two parameters, or both have a triangle.
         """
         if common := self.ranges.keys() & other.ranges.keys():
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
-        if self.chord and other.chord:
-            raise InternalError("a box of parameters has two chords")
+        if self.triangle and other.triangle:
+            raise InternalError("a box of parameters has two triangles")
         ranges = {**self.ranges, **other.ranges}
-        return Box(ranges, self.inverse | other.inverse, self.chord or other.chord)
+        return Box(ranges, self.inverse | other.inverse, self.triangle or other.triangle)
 
     def middle(self, symbol: str) -> Fraction:
         """Return the value halfway in the coordinate in which matrices are affine."""
@@ -72,7 +95,7 @@ class Box:
         """Yield the values of the parameters at every corner, the last one turning fastest."""
         values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
         for at in self._points(values):
-            yield _values(values, at)
+            yield self._at(values, at)
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
         """Yield the corners, the last parameter turning fastest.
@@ -96,7 +119,7 @@ class Box:
             If the matrix is not affine along each axis.
         """
         values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
-        corners = {at: rows_at(_values(values, at)) for at in self._points(values)}
+        corners = {at: rows_at(self._at(values, at)) for at in self._points(values)}
         self._check_corners_suffice(rows_at, corners, name)
         for at, rows in corners.items():
             pairs = zip(values, at, strict=True)
@@ -111,8 +134,8 @@ class Box:
         the whole box rests on it: on all points of the grid of low end, middle and high end of
         every axis, the matrix must be the mean of its two neighbors along one axis on which it is
         in the middle; so it is the mean of the corners around it. For entries of a degree of at
-        most two in each coordinate, and in both of a chord, this decides it: of a triangle, the
-        grid has the corners and the middles of the sides.
+        most two in each coordinate, and in both of a triangle, this decides it: of that, the grid
+        has the corners and the middles of the sides.
         """
         known = dict(corners)
         values = {symbol: self._grid(symbol) for symbol in self.ranges}
@@ -127,43 +150,50 @@ class Box:
                 known[tuple(end if i in moved else label for i, label in enumerate(at))]
                 for end in ("min", "max")
             )
-            found = known[at] = rows_at(_values(values, at))
+            found = known[at] = rows_at(self._at(values, at))
             triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
             if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
             compared |= triples
 
     def _points(self, values: Mapping[str, Mapping[str, Fraction]]) -> Iterator[tuple[str, ...]]:
-        """Yield the labels of the points of a grid that are not below the chord."""
+        """Yield the labels of the points of a grid, of a triangle those in it."""
         for at in product(*values.values()):
-            if self.chord is None or not _is_below(*(at[i] for i in self._chord_axes())):
+            x, y = self._shares(at)
+            if x <= y:
                 yield at
 
-    def _moved(self, at: Sequence[str]) -> set[int]:
-        """Return along which axes a point has its two neighbors; in the middle of a chord, both."""
-        if self.chord is not None and all(at[i] == MIDDLE for i in self._chord_axes()):
-            return {*self._chord_axes()}
-        return {at.index(MIDDLE)}
+    def _at(
+        self, values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]
+    ) -> dict[str, Fraction]:
+        """Return the values of all symbols where the labels of a point say."""
+        found = {symbol: values[symbol][label] for symbol, label in zip(values, at, strict=True)}
+        if self.triangle is not None:
+            shares, both = self._shares(at), (self.triangle.x, self.triangle.y)
+            for symbol, between in zip(both, self.triangle.between, strict=True):
+                low, high = self.ranges[symbol].low, self.ranges[symbol].high
+                found[symbol] = low + shares[1] * (between - low) + shares[0] * (high - between)
+        return found
 
-    def _chord_axes(self) -> Iterator[int]:
+    def _moved(self, at: Sequence[str]) -> set[int]:
+        """Return along which axes a point has its two neighbors; across a triangle, both."""
+        axes = self._triangle_axes()
+        return {*axes} if axes and all(at[i] == MIDDLE for i in axes) else {at.index(MIDDLE)}
+
+    def _shares(self, at: Sequence[str]) -> tuple[Fraction, Fraction]:
+        """Return how far a point is on the way from the third corner, and on that to it."""
+        axes = self._triangle_axes()
+        return (_SHARES[at[axes[0]]], _SHARES[at[axes[1]]]) if axes else _ANYWHERE
+
+    def _triangle_axes(self) -> tuple[int, ...]:
         symbols = [*self.ranges]
-        return (symbols.index(symbol) for symbol in self.chord or ())
+        both = () if self.triangle is None else (self.triangle.x, self.triangle.y)
+        return tuple(symbols.index(symbol) for symbol in both)
 
     def _grid(self, symbol: str) -> dict[str, Fraction]:
         """Return the labelled ends of a range, and the middle between two."""
         ends = dict(self.ranges[symbol].ends)
         return ends | ({MIDDLE: self.middle(symbol)} if len(ends) > 1 else {})
-
-
-def _is_below(x: str, y: str) -> bool:
-    """Tell whether a point is below the chord by its labels; those of a point are empty."""
-    order = ("", "min", MIDDLE, "max")
-    return bool(x and y) and order.index(x) > order.index(y)
-
-
-def _values(values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]) -> dict[str, Fraction]:
-    """Return the values of all symbols where the labels of a point say."""
-    return {symbol: values[symbol][label] for symbol, label in zip(values, at, strict=True)}
 
 
 def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:

@@ -7,13 +7,14 @@ import pytest
 
 from nrs_design.gating.examine import Examiner
 from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.proof.evidence import Shows
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
 from nrs_design.reporting import build_report
 from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.proof.systems import bouncing, pushed
-from tests.support import SOFT_TISSUE
+from tests.support import ROOT, SOFT_TISSUE
 
 
 @pytest.mark.parametrize(
@@ -50,13 +51,22 @@ def test_disturbances_without_a_proved_bound_are_said_in_the_lead(soft_tissue):
     channels = pushed(bouncing()).channels
     system = replace(certification.system, channels=channels)
     disturbed = replace(soft_tissue, certification=replace(certification, system=system))
-    said = ", and no bound under the disturbances of the spec is proved."
+    said = "; no bound under the disturbances of the spec is proved."
     assert summary_of(disturbed)[0].endswith(said)
     assert "no bound" not in summary_of(soft_tissue)[0]
 
 
 def test_a_motor_without_ranges_is_not_said_to_have_them(soft_tissue):
     assert "the motor is linear, and has no tolerance" in summary_of(soft_tissue)[1]
+
+
+def test_what_refutes_a_sampled_loop_is_said_to_be_of_modes_that_enclose_it():
+    """In both sentences that say so, and in the claim: a corner is of no motor."""
+    result = run_certification(read_spec(ROOT / "docs/examples/late-force.nrs.yaml"))
+    system, evidence = result.certification.system, result.certification.evidence
+    assert evidence.shows is Shows.INSTABILITY
+    assert "among modes that enclose what the motor does" in summary_of(result)[0]
+    assert "may be no motor in the range that grows so" in evidence.claim(system)
 
 
 @pytest.mark.parametrize("case", ["dwell", "inconclusive", "resets", "parameter", "dwell-refuted"])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.parameter_box import Box
+from nrs_design.switched.parameter_box import Box, Triangle
 
 F = Fraction
 UNIT = Interval(F(1), F(1), F(3))
@@ -97,25 +97,25 @@ def test_rows_that_corners_share_are_compared_too(power):
             list(BOTH.corners(rows_at, "m"))
 
 
-TRIANGLE = Box({"x": UNIT, "y": Interval(F(2), F(-1), F(4))}, chord=("x", "y"))
+TRIANGLE = Box(
+    {"x": UNIT, "y": Interval(F(2), F(-1), F(4))}, triangle=Triangle("x", "y", (F(2), F(7, 2)))
+)
 
 
-def test_below_a_chord_there_is_no_corner():
+def test_a_triangle_has_three_corners():
     names = [name for name, _ in corners(TRIANGLE, lambda x, y: x + y)]
     assert names == ["m/x-min/y-min", "m/x-min/y-max", "m/x-max/y-max"]
-    assert [(v["x"], v["y"]) for v in TRIANGLE.values()] == [(1, -1), (1, 4), (3, 4)]
+    assert [(v["x"], v["y"]) for v in TRIANGLE.values()] == [(1, -1), (2, F(7, 2)), (3, 4)]
 
 
-def test_a_chord_does_not_mind_what_is_a_point_or_beside():
+def test_what_is_beside_a_triangle_has_its_own_corners():
     beside = Box({"z": UNIT}).beside(TRIANGLE)
     assert len(corners(beside, lambda x, y, z: z * (x + y))) == 6
     assert len(corners(TRIANGLE.beside(Box({"z": UNIT})), lambda x, y, z: z * (x - y))) == 6
-    narrow = Box({"x": Interval.point(F(1)), "y": UNIT}, chord=("x", "y"))
-    assert len(corners(narrow, lambda x, y: x + y)) == 2
 
 
 @given(st.lists(st.fractions(-9, 9), min_size=6, max_size=6), shares, shares, shares)
-def test_every_value_above_a_chord_is_the_same_average_of_corners(c, s, t, u):
+def test_every_value_in_a_triangle_is_the_same_average_of_corners(c, s, t, u):
     """With z beside: (a + b x + c y) (1 + d z), say, and more of the kind."""
 
     def entry(x, y, z):
@@ -125,7 +125,7 @@ def test_every_value_above_a_chord_is_the_same_average_of_corners(c, s, t, u):
     # Shares of the three corners, so a point of the triangle.
     first, second = s * t, s * (1 - t)
     weights = (first, second, 1 - first - second)
-    points = ((1, -1), (1, 4), (3, 4))
+    points = ((1, -1), (2, F(7, 2)), (3, 4))
     x, y = (sum(w * p[i] for w, p in zip(weights, points, strict=True)) for i in (0, 1))
     mean = sum(
         w * v * rows[0][0]
@@ -137,25 +137,27 @@ def test_every_value_above_a_chord_is_the_same_average_of_corners(c, s, t, u):
 @pytest.mark.parametrize(
     "entry",
     [
-        # Affine in each, but not together: the missing corner would count.
+        # Affine in each, but not together: what is between three corners would not be covered.
         lambda x, y, z: x * y,
         lambda x, y, z: z * x * y,
         lambda x, y, z: (z - 1) * (z - 3) * x,
         lambda x, y, z: x**2,
         lambda x, y, z: y**2,
-        lambda x, y, z: (x - 1) * (y - 4),
-        lambda x, y, z: (x - 1) * (x - 3),
+        # Zero along one side each, or at all corners and middles but one.
+        lambda x, y, z: (y - F(7, 2) - F(x - 2) / 2) * x,
+        lambda x, y, z: (y + 1 - F(9, 2) * (x - 1)) * y,
         lambda x, y, z: (5 * (x - 1) - 2 * (y + 1)) ** 2,
+        lambda x, y, z: (5 * (x - 1) - 2 * (y + 1)) * (y - F(7, 2) - F(x - 2) / 2),
     ],
 )
-def test_what_is_not_affine_together_stops_at_a_chord(entry):
+def test_what_is_not_affine_together_stops_at_a_triangle(entry):
     with pytest.raises(InternalError, match="mode m is not affine in each parameter"):
         corners(TRIANGLE.beside(Box({"z": UNIT})), entry)
 
 
-def test_a_box_has_one_chord():
-    other = Box({"v": UNIT, "w": UNIT}, chord=("v", "w"))
-    with pytest.raises(InternalError, match="two chords"):
+def test_a_box_has_one_triangle():
+    other = Box({"v": UNIT, "w": UNIT}, triangle=Triangle("v", "w", (F(1), F(2))))
+    with pytest.raises(InternalError, match="two triangles"):
         TRIANGLE.beside(other)
 
 

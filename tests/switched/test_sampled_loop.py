@@ -89,6 +89,21 @@ def test_a_tolerance_of_the_motor_gives_its_corners(tmp_path):
     assert NOMINAL_MOTOR not in kinds_of(system)
 
 
+def test_a_loop_that_is_stable_with_every_motor_is_not_refuted(tmp_path):
+    """The fourth corner of the box, of no motor, has an eigenvalue of size 1.01."""
+    tenth = ("0.0351 s", "{nominal: 0.0351 s, range: [0.0319 s, 0.0386 s]}")
+    text = FORCE_LIMIT.read_text(encoding="utf-8")
+    system = system_of(
+        tmp_path,
+        "{period: 20 ms, delay: 0}\ncontact: kept",
+        tuple(f"time_constant: {tau}" for tau in tenth),
+        text=text,
+    )
+    largest = max(abs(np.linalg.eigvals(mode.A.floats())).max() for mode in system.modes)
+    assert largest == pytest.approx(0.93197, abs=1e-4)
+    assert certify(system, limits=Limits(optimize_rate=False)).verdict is Verdict.PROVED
+
+
 def test_without_inertia_there_is_no_velocity(tmp_path):
     system = system_of(
         tmp_path,

@@ -26,7 +26,10 @@ from nrs_design.proof.text import exact_text
 WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
 ROUNDED = "What single-precision arithmetic rounds in the law is included."
 NOT_ROUNDED = "This holds for the law computed without rounding."
-GROWN_WITHOUT_ROUNDING = "This growth is that of the law computed without rounding."
+GROWN_WITHOUT_ROUNDING = (
+    "This growth is that of the law computed without rounding, in modes that enclose what the "
+    "motor does: there may be no motor in the range that grows so."
+)
 GROWN_ALONE = (
     "This growth is that of one axis on which the others do not act, which is within what is said "
     "of them."

@@ -52,6 +52,8 @@ def summary_of(result: Result) -> tuple[str, str]:
     if evidence.shows is Shows.STABILITY:
         return _proved(result, evidence), granted
     kept = ", in kept contact" if system.contact is not None else ""
+    if system.roundings:
+        kept += ", among modes that enclose what the motor does"
     name = page_of(system, evidence).name
     return (
         f"Refuted: no guarantee of stability is possible under {_signals(system)}{kept}; the "
@@ -81,12 +83,11 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
             if evidence.covers_rounding
             else "for a law computed without rounding"
         )
-    if system.channels and not any(
-        item.bound(system) is not None for item in result.certification.statements
-    ):
-        parts.append("and no bound under the disturbances of the spec is proved")
+    bounds = (item.bound(system) for item in result.certification.statements)
+    unbounded = system.channels and not any(bound is not None for bound in bounds)
+    more = ("; no bound under the disturbances of the spec is proved",) if unbounded else ()
     joined = (piece for part in parts[1:] for piece in (", ", part))
-    return Sentence(parts[0], *joined, *_saturated(result), ".")
+    return Sentence(parts[0], *joined, *_saturated(result), *more, ".")
 
 
 def _saturated(result: Result) -> tuple[str, ...]:

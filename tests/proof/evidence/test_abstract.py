@@ -12,7 +12,7 @@ from nrs_design.proof.evidence import (
     AbstractEvidence,
     Shows,
 )
-from nrs_design.proof.evidence.abstract import find_indefinite
+from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_indefinite
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -131,7 +131,7 @@ NOT_ROUNDED = " This holds for the law computed without rounding."
         (Shows.STABILITY, NOT_ROUNDED),
         (Shows.BOUND, NOT_ROUNDED),
         (Shows.CONVERGENCE, NOT_ROUNDED),
-        (Shows.INSTABILITY, " This growth is that of the law computed without rounding."),
+        (Shows.INSTABILITY, f" {GROWN_WITHOUT_ROUNDING}"),
         (Shows.NO_COMMON_QUADRATIC, ""),
     ],
 )

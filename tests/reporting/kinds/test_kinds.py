@@ -134,3 +134,10 @@ def test_no_code_asks_for_the_kind_of_evidence():
         for line in questions(nodes_of(path), known)
     ]
     assert asked == []
+
+
+def test_the_modes_of_a_sampled_loop_are_not_said_to_be_the_corners_of_its_ranges():
+    """Of the four corners of a motor's exponentials, one is left out, and one is another."""
+    system, evidence = genuine("periodic-quadratic, rounding")
+    (said,) = page_of(system, evidence).between_corners()
+    assert "corners of what encloses the declared parameter ranges" in said

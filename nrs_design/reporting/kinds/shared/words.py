@@ -135,6 +135,13 @@ def all_corners(
         "parameter alone, or in its inverse, so all values between the corners are covered as "
         f"well, {how}."
     )
+    if system.roundings:
+        # Of a sampled loop, which has exponentials of the motor's numbers.
+        text = (
+            "The modes are the corners of what encloses the declared parameter ranges. The "
+            "matrices are affine in each parameter, in exponentials of the motor's together, so "
+            f"all values in between are covered as well, {how}."
+        )
     if system.time is Time.DISCRETE and not evidence.keeps_bound_in_mixtures:
         text += " Between the corners, the bound holds up to a constant factor."
     return text

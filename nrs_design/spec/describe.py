@@ -143,10 +143,7 @@ def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
     for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
         written = getattr(actuator, name)
         unit = kind.unit_in(written.nominal.dimension)
-        yield _quantity(f"actuator.{name}", written.nominal, unit)
-        if not written.fixed:
-            low, high = written.range
-            yield Line(f"actuator.{name}.range", f"[{low.text}, {high.text}]", "", "")
+        yield from _ranged(f"actuator.{name}", written, written, unit)
     if actuator.range_covers is not None:
         covered = MOTOR_COVERS[actuator.range_covers]
         yield Line("actuator.range_covers", actuator.range_covers, covered, "")

@@ -19,6 +19,13 @@ def test_the_largest_command_is_shown_where_it_is_given() -> None:
     assert ("limits.command", "4000 rpm", "4000", "rpm") in describe(interaction(text))
 
 
+def test_ranges_of_the_motor_are_shown_in_si() -> None:
+    path = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
+    lines = {name: rest for name, *rest in describe(load_spec(path))}
+    assert lines["actuator.time_constant.range"][1:] == ["[0.034398, 0.035802]", "s"]
+    assert lines["actuator.gain.range"][2] == "rad/s/rpm"
+
+
 def test_lever_arms_are_resolved() -> None:
     # Thesis 6.3.1: 43.0356 N*m/rad.
     rows = describe(interaction(IMPEDANCE))

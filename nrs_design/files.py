@@ -6,7 +6,7 @@ import errno
 import os
 import stat
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 # More values than any honest file holds; each takes some 100 bytes when it is parsed.
 MAX_JSON_VALUES = 1_000_000
@@ -48,3 +48,17 @@ def read_json_text(content: bytes) -> str:
     if sum(map(content.count, (b",", b"[", b"{"))) > MAX_JSON_VALUES:
         raise ValueError(f"it holds more than {MAX_JSON_VALUES} values")
     return content.decode("utf-8")
+
+
+def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Make an object of JSON of its pairs; refuse one that another of its name would hide.
+
+    Raises
+    ------
+    ValueError
+        If a key occurs twice.
+    """
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key occurs twice")
+    return found

@@ -6,8 +6,8 @@ import os
 import re
 import tempfile
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
-from errno import ENOTDIR
+from contextlib import contextmanager, suppress
+from errno import EACCES, ENOTDIR
 from pathlib import Path
 
 from nrs_design.errors import OutputError
@@ -75,13 +75,44 @@ PDF = re.compile(rb"%PDF-.*<pdf:Keywords>" + MAKER.encode() + rb"\b", re.DOTALL)
 PNG = re.compile(
     rb"\x89PNG\r\n\x1a\n.{25}\x00\x00\x00\x13tEXtSoftware\x00" + MAKER.encode(), re.DOTALL
 )
-
+# What the ending of its file makes of a page.
+PAGES: dict[str, bytes | re.Pattern[bytes]] = {".html": PAGE, ".htm": PAGE, ".pdf": PDF}
 
 # More than the longest of them that is no pattern, and than any file that a pattern is to tell.
 _LONGEST, _WHOLE = 256, 2**26
 
 Beginning = bytes | tuple[bytes, ...] | re.Pattern[bytes]
 Output = tuple[Path, str | bytes, Beginning]
+
+
+def page_kind(path: Path) -> bytes | re.Pattern[bytes]:
+    """Return `PAGE` or `PDF`, as the name of a page ends.
+
+    Raises
+    ------
+    OutputError
+        If no page ends so.
+    """
+    kind = PAGES.get(path.suffix.lower())
+    if kind is None:
+        raise OutputError(
+            f"{path.suffix or 'no ending'} is not a type of report",
+            path=path,
+            remedy="end it in .html or .pdf",
+        )
+    return kind
+
+
+def check_html(path: Path) -> None:
+    """Refuse a name that is not one of a page in HTML.
+
+    Raises
+    ------
+    OutputError
+        If it is not.
+    """
+    if page_kind(path) is not PAGE:
+        raise OutputError("is not the name of a page in HTML", path=path, remedy="end it in .html")
 
 
 def write_output(path: Path, content: str | bytes, *, replaces: Beginning = b"") -> None:
@@ -164,6 +195,36 @@ def check_place(path: Path, replaces: Beginning = b"") -> None:
         folder = next(folder for folder in path.parents if folder.exists())
         if not folder.is_dir():
             raise NotADirectoryError(ENOTDIR, os.strerror(ENOTDIR))
+        # A file is written beside the one that it replaces, so it is the folder that counts.
+        if not os.access(folder, os.W_OK | os.X_OK):
+            raise PermissionError(EACCES, os.strerror(EACCES))
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Wait until no other process of ours is in a folder, and keep others out meanwhile.
+
+    What is read, changed and written again would lose what another one writes in between. The
+    system lets go when a process ends, however it ends. Where it has no such lock (Windows, some
+    network drives), nobody waits.
+
+    Parameters
+    ----------
+    folder : Path
+        Or one that is yet to be made: then the nearest that is there.
+    """
+    try:
+        from fcntl import LOCK_EX, flock
+    except ImportError:
+        yield
+        return
+    handle = os.open(next(f for f in (folder, *folder.parents) if f.is_dir()), os.O_RDONLY)
+    try:
+        with suppress(OSError):
+            flock(handle, LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 @contextmanager

@@ -20,6 +20,7 @@ def test_a_spec_and_its_certificate_agree():
     assert found.not_compared == (Part.SPEC, Part.MARGINS)
 
 
+@pytest.mark.slow
 def test_a_wider_range_changes_margins_and_rate(tmp_path):
     wider = tmp_path / "wider.nrs.yaml"
     wider.write_text(SOFT_TISSUE.read_text().replace(", 768.17 N/m]", ", 868.17 N/m]"))

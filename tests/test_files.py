@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from nrs_design.files import is_device_name, open_regular
+from nrs_design.files import is_device_name, open_regular, unique_keys
 
 
 @pytest.mark.parametrize("name", ["nul", "NUL", "aux.csv", "com1.a.b", "lpt9", "con", "prn "])
@@ -31,3 +31,9 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
 def test_a_device_is_refused():
     with pytest.raises(OSError, match="not a regular file"):
         open_regular(os.devnull)
+
+
+def test_a_key_that_would_hide_another_is_refused():
+    assert unique_keys([("a", 1), ("b", 2)]) == {"a": 1, "b": 2}
+    with pytest.raises(ValueError, match="a key occurs twice"):
+        unique_keys([("a", 1), ("a", 1)])

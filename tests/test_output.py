@@ -1,5 +1,6 @@
 import os
 import stat
+import threading
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,10 @@ from nrs_design.output import (
     SCHEMA,
     SVG,
     WORST_RUN,
+    alone_in,
+    check_html,
     check_place,
+    page_kind,
     write_output,
     write_outputs,
 )
@@ -223,6 +227,41 @@ def test_a_place_is_refused_before_the_work_as_it_would_be_after_it(tmp_path, na
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "link"]
 
 
+def test_a_folder_that_cannot_be_written_to_is_refused_before_the_work(tmp_path, monkeypatch):
+    """The tests may run as root, who can write anywhere."""
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(OutputError, match=r"Permission denied.*choose a writable folder"):
+        check_place(tmp_path / "a/page.html", PAGE)
+
+
+def test_two_who_change_one_file_take_turns(tmp_path):
+    file = tmp_path / "a" / "count"
+
+    def add() -> None:
+        for _ in range(20):
+            with alone_in(file.parent):
+                count = int(file.read_text()) if file.exists() else 0
+                write_output(file, str(count + 1))
+
+    threads = [threading.Thread(target=add) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert file.read_text() == "40"
+
+
 def test_a_place_that_is_free_stays_as_it_is(tmp_path):
     check_place(tmp_path / "a/b/page.html", PAGE)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_is_what_its_name_ends_in(tmp_path):
+    """One table for reports, identification, reproduction and the library."""
+    assert [page_kind(Path(name)) for name in ("a.html", "a.HTM", "a.pdf")] == [PAGE, PAGE, PDF]
+    for name in ("page.png", "page"):
+        with pytest.raises(OutputError, match="is not a type of report"):
+            page_kind(Path(name))
+    check_html(Path("a.htm"))
+    with pytest.raises(OutputError, match="not the name of a page in HTML"):
+        check_html(Path("a.pdf"))

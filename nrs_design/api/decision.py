@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from nrs_design import pipeline
 from nrs_design.certificates.certificate import dump
 from nrs_design.errors import DesignError, OutputError, SpecError
-from nrs_design.output import CERTIFICATE, PAGE, write_output
+from nrs_design.output import CERTIFICATE, PAGE, check_html, write_output
 from nrs_design.ownership import check_certificate, origin_of
 from nrs_design.search.certification import Attempt
 from nrs_design.spec import LoadedSpec, read_spec
@@ -110,12 +110,8 @@ class Decision:
         """
         from nrs_design.reporting import render_html
 
-        if file is not None and Path(file).suffix.lower() not in (".html", ".htm"):
-            raise OutputError(
-                "is not the name of a page",
-                path=Path(file),
-                remedy="end it in .html; nrs-design report SPEC --format pdf writes a PDF",
-            )
+        if file is not None:
+            check_html(Path(file))
         page = render_html(self._page())
         if file is not None:
             write_output(Path(file), page, replaces=PAGE)

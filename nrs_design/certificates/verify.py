@@ -26,7 +26,7 @@ from nrs_design.certificates.prove import (
     read_gains,
 )
 from nrs_design.errors import CertificateError
-from nrs_design.files import open_regular, read_json_text
+from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 
@@ -142,7 +142,7 @@ def read_document(path: Path) -> dict[str, Any]:
             read_json_text(_read_bytes(path)),
             parse_float=_no_float,
             parse_constant=_no_float,
-            object_pairs_hook=_unique,
+            object_pairs_hook=unique_keys,
         )
     except OSError as error:
         raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
@@ -188,10 +188,3 @@ def _find_foreign(
 
 def _no_float(text: str) -> NoReturn:
     raise ValueError(f"{quoted(text)} is a floating-point number; certificates hold integers only")
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    keys = [key for key, _ in pairs]
-    if len(set(keys)) != len(keys):
-        raise ValueError("a key occurs twice")
-    return dict(pairs)

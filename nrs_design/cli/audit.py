@@ -34,6 +34,10 @@ _EXIT = {
 UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
 
 
+# Letters of what a cell says, in a pipe, too.
+_WIDEST, _BELOW = 60, "see below"
+
+
 def audit(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="Log of the running robot.")],
     spec: Annotated[Path, typer.Argument(metavar="SPEC", help="The spec that it runs by.")],
@@ -156,15 +160,31 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
     first = found.first
     if first is not None and first.first is not None:
         say(f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}")
-    rows = [[c.name, c.status, c.measured, c.allowed, c.basis, _when(c)] for c in found.checks]
-    print_table("", ["check", "outcome", "measured", "allowed", "which is", "first at s"], rows)
+    rows = [[c.name, c.status, _measured(c), _cell(c.allowed), _when(c)] for c in found.checks]
+    print_table("", ["check", "outcome", "measured", "allowed", "first at s"], rows)
+    for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
+        of = ", ".join(c.name for c in found.checks if c.basis == basis)
+        say(f"bound of {of}: {basis}")
     for check in found.checks:
+        if check.status != "not judged" and _measured(check) != check.measured:
+            say(f"{check.name}: {check.measured}")
+        if _cell(check.allowed) != check.allowed:
+            say(f"{check.name}, allowed: {check.allowed}")
         if check.status == "not modelled":
             who = found.bounds.source
             comma = "," if "," in who else ""
             say(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
         if check.status == "not judged":
             say(f"not judged: {check.name}: {check.measured}")
+
+
+def _measured(check: Check) -> str:
+    return _BELOW if check.status == "not judged" else _cell(check.measured)
+
+
+def _cell(text: str) -> str:
+    """Return what fits into a cell; what is longer stands below the table."""
+    return text if len(text) <= _WIDEST else _BELOW
 
 
 def _when(check: Check) -> str:

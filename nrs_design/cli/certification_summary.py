@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
     """Return what ``--json`` prints."""
     from nrs_design.certificates.bounds import bounds_summary
+    from nrs_design.certificates.goals import certified_goals
 
     certification = result.certification
     evidence = certification.evidence
@@ -29,6 +30,10 @@ def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
             for statement in certification.statements
         ],
         "bounds": bounds_summary(certification.system, certification.statements),
+        "goals": [
+            {"goal": g.key, "wanted": g.wanted, "shown": g.said, "proved": g.met}
+            for g in certified_goals(result.loaded.spec, result.certificate)
+        ],
         "method": certification.method,
         **rate_summary(certification),
         "time": str(certification.system.time),

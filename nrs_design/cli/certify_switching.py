@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -35,12 +35,12 @@ from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from nrs_design.pipeline import Result
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
-    from nrs_design.spec import LoadedSpec
+    from nrs_design.search.certification import Limits
 
 
 LargestBox = Annotated[
@@ -99,8 +99,6 @@ def certify_switching(
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import Overrides, run_certification, search_limits
-    from nrs_design.pipeline.margins import check_margins, run_proof_margins
-    from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -125,29 +123,54 @@ def certify_switching(
         )
     # What is shown is kept, and told, before the margins: those take minutes.
     written = _write(result, path, quiet=quiet or as_json)
-    check_margins(result, margin=margin, shortest_dwell=shortest_dwell)
     if not quiet and not as_json:
         _print(result, verbose=verbose)
-    more = "margins" if margin or shortest_dwell else "what else is proved"
-    with progress(f"{more} of {loaded.spec.name}", quiet=quiet, lines=True) as step:
-        margins = run_proof_margins(
-            result, limits, step, margin=margin, shortest_dwell=shortest_dwell
-        )
-        look = run_subsets if subsets else find_subsets
-        parts = look(result, limits, step)
-    steps = _next_steps(result, margin, shortest_dwell)
+    asked = _Asked(margin, shortest_dwell, subsets)
+    more = _look_further(result, limits, asked, quiet=quiet)
     if as_json:
-        content = certification_summary(result, written) | margins_summary(margins)
+        content = certification_summary(result, written) | margins_summary(more.margins)
         content |= {"gradient_history": history} if history else {}
-        print_json("certify-switching", content | _help_summary(result, parts, steps))
+        print_json("certify-switching", content | _help_summary(result, more))
     elif not quiet:
-        _print_help(
-            result,
-            parts,
-            steps,
-            _margin_lines(margins, result.loaded, asked=margin or shortest_dwell),
-        )
+        _print_help(result, more)
     raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
+
+
+@dataclass(frozen=True, slots=True)
+class _Asked:
+    """What is to be looked for beside the proof."""
+
+    margin: bool
+    shortest_dwell: bool
+    subsets: bool
+
+    @property
+    def margins(self) -> bool:
+        return self.margin or self.shortest_dwell
+
+
+@dataclass(frozen=True, slots=True)
+class _More:
+    """What was found beside the proof, and what to do next."""
+
+    asked: _Asked
+    margins: ProofMargins
+    parts: tuple[Subset, ...] | None
+    steps: tuple[str, ...]
+
+
+def _look_further(result: Result, limits: Limits, asked: _Asked, *, quiet: bool) -> _More:
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.subsets import find_subsets, run_subsets
+
+    what = "margins" if asked.margins else "what else is proved"
+    with progress(f"{what} of {result.loaded.spec.name}", quiet=quiet, lines=True) as step:
+        margins = run_proof_margins(
+            result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
+        )
+        look = run_subsets if asked.subsets else find_subsets
+        parts = look(result, limits, step)
+    return _More(asked, margins, parts, _next_steps(result, asked))
 
 
 def _write(result: Result, path: Path, *, quiet: bool) -> Path | None:
@@ -164,58 +187,56 @@ def _write(result: Result, path: Path, *, quiet: bool) -> Path | None:
     return path
 
 
-def _help_summary(
-    result: Result, parts: tuple[Subset, ...] | None, steps: tuple[str, ...]
-) -> dict[str, Any]:
+def _help_summary(result: Result, more: _More) -> dict[str, Any]:
     """Return what ``--json`` prints about what would help."""
     from nrs_design.pipeline import find_relief
 
-    told: dict[str, Any] = {"relief": list(find_relief(result)), "next_steps": list(steps)}
-    if parts is not None:
+    told: dict[str, Any] = {"relief": list(find_relief(result)), "next_steps": list(more.steps)}
+    if more.parts is not None:
         told["subsets"] = [
-            {"left_out": p.left_out, "claim": p.claim, "needs": p.needs} for p in parts
+            {"left_out": p.left_out, "claim": p.claim or None, "needs": p.needs} for p in more.parts
         ]
         told["subsets_without"] = list(_unlooked(result))
     return told
 
 
-def _print_help(
-    result: Result,
-    parts: tuple[Subset, ...] | None,
-    steps: tuple[str, ...],
-    margins: Iterable[str],
-) -> None:
+def _print_help(result: Result, more: _More) -> None:
     from nrs_design.pipeline import find_relief
 
-    for line in (*find_relief(result), *margins):
+    for line in (*find_relief(result), *_margin_lines(result, more)):
         say(f"  {line}")
-    _print_subsets(result, parts)
-    for line in steps:
+    _print_subsets(result, more.parts)
+    for line in more.steps:
         say(f"next: {line}")
 
 
-def _margin_lines(margins: ProofMargins, loaded: LoadedSpec, *, asked: bool) -> Iterator[str]:
+def _margin_lines(result: Result, more: _More) -> Iterator[str]:
     # Reports are slow to load, and a bare proof says nothing that only they can.
-    if asked:
+    if more.asked.margins:
         from nrs_design.reporting.margins import margin_lines
 
-        yield from margin_lines(margins, loaded)
+        yield from margin_lines(more.margins, result.loaded)
 
 
-def _next_steps(result: Result, margin: bool, shortest_dwell: bool) -> tuple[str, ...]:
+def _next_steps(result: Result, asked: _Asked) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
     from nrs_design.reporting.next_steps import next_steps
 
-    return next_steps(result, margin=margin, shortest_dwell=shortest_dwell, spec=result.loaded.path)
+    return next_steps(
+        result,
+        margin=asked.margin,
+        shortest_dwell=asked.shortest_dwell,
+        spec=result.loaded.path,
+    )
 
 
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
     if parts is None or (not parts and str(result.certification.verdict) == "proved"):
         return
-    from nrs_design.pipeline.subsets import subset_lines
+    from nrs_design.pipeline.subsets import parts_title, subset_lines
 
-    say("  not proved together; with as little left out as possible:")
+    say(f"  {parts_title(result)}:")
     for line in subset_lines(parts):
         say(f"  {line}")
     if unlooked := " and ".join(_unlooked(result)):
@@ -229,6 +250,8 @@ def _unlooked(result: Result) -> tuple[str, ...]:
 
 
 def _print(result: Result, *, verbose: bool) -> None:
+    from nrs_design.certificates.goals import certified_goals
+
     certification = result.certification
     name = result.loaded.spec.name
     verdict = str(certification.verdict)
@@ -247,6 +270,9 @@ def _print(result: Result, *, verbose: bool) -> None:
             # What was not looked for took no time.
             took = f" ({attempt.seconds * 1e3:.1f} ms)" if attempt.seconds else ""
             say(f"  {attempt.step}: {attempt.outcome}{took}")
+    for goal in certified_goals(result.loaded.spec, result.certificate):
+        ends = "met" if goal.met else "NOT PROVED"
+        say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
     say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
     say("  taken for granted (nrs-design report says how to test each):")
     for assumption in certification.system.assumptions:

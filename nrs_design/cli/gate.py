@@ -191,10 +191,12 @@ def _certify(
     from nrs_design.gating.lock import read_lock_if_any
     from nrs_design.gating.renew import certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
+    from nrs_design.output import LOCK, check_place
     from nrs_design.pipeline import Overrides
 
     specs = find_specs(paths)
     check_folder(reports, lock)
+    check_place(lock, LOCK)
     locked = certificates_of(read_lock_if_any(lock), lock)
     with progress("gate", quiet=quiet) as step:
         files = Files(reports, html=html, locked=locked)

@@ -58,6 +58,15 @@ def print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
             say(line)
 
 
+def say_unjudged(spec: InteractionDesignSpec) -> None:
+    """Print which goals no number of a design decides; nothing without them."""
+    from nrs_design.spec.goals import OF_THE_CERTIFICATE
+
+    given = () if spec.goals is None else (key for key, _ in spec.goals.given())
+    if keys := [key for key in given if key in OF_THE_CERTIFICATE]:
+        say(f"Not judged here: {', '.join(keys)}. A proof decides: nrs-design certify-switching.")
+
+
 def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:
     """Print on stderr what is doubtful."""
     for text in warnings:

@@ -45,7 +45,7 @@ def loop_summary(margins: MarginBrackets) -> dict[str, Any]:
     Parameters
     ----------
     margins : MarginBrackets
-        As `nrs_design.pipeline.margins.run_loop_margins` finds them.
+        As `nrs_design.pipeline.margins.run_proof_margins` finds them.
     """
     from nrs_design.proof.bounds import lower_float, upper_float
 

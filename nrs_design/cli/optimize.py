@@ -13,6 +13,7 @@ from nrs_design.cli.goals import (
     print_goals,
     print_warnings,
     say_nominal,
+    say_unjudged,
     warnings_of,
 )
 from nrs_design.cli.options import Json, Quiet, SpecFile
@@ -66,6 +67,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
         print_goals(loaded.spec.name, analysis.impedance)
+        say_unjudged(designed.spec)
         print_warnings(warnings, quiet=quiet)
     raise typer.Exit(exit_code(analysis.impedance))
 
@@ -93,6 +95,7 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "Bt": item.Bt,
         "Kt": item.problem.loop.Kt,
         "cost": item.cost,
+        "given": [gain for gain in ("Mt", "Bt") if getattr(item.given, gain).fixed],
         "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
         "sensitivity_peak": finite(margins.sensitivity_peak),
         "gain_margin": finite(margins.gain_margin),

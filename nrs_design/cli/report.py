@@ -121,17 +121,15 @@ def report(
 
 def _format_of(file_format: ReportFormat | None, out: Path | None) -> ReportFormat:
     """Return the format that was asked for, or that of the file's ending; both must agree."""
+    from nrs_design.output import PAGE, PAGES, PDF, page_kind
+
     ending = "" if out is None else out.suffix.lower()
-    named = {".html": ReportFormat.HTML, ".pdf": ReportFormat.PDF}.get(ending)
-    if file_format is None and (named is not None or not ending):
-        return named or ReportFormat.HTML
+    if ending == ".png" and file_format in (None, ReportFormat.PNG):
+        raise OutputError("is no folder", path=out, remedy="--format png takes a folder")
+    pages = {PAGE: ReportFormat.HTML, PDF: ReportFormat.PDF}
     if file_format is None:
-        raise OutputError(
-            f"{ending} is not a type of report",
-            path=out,
-            remedy="end it in .html or .pdf; --format png takes a folder",
-        )
-    if named not in (None, file_format) or (file_format is ReportFormat.PNG and ending == ".png"):
+        return pages[PAGE if out is None else page_kind(out)]
+    if ending in PAGES and pages[PAGES[ending]] is not file_format:
         what = "takes a folder" if file_format is ReportFormat.PNG else "is about other files"
         raise OutputError(
             f"ends in {ending}, and --format {file_format} {what}",

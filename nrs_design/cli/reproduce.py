@@ -41,11 +41,13 @@ def reproduce(
 
     Example: nrs-design reproduce --html reports/reproduce.html --figures reports/figures
     """
-    from nrs_design.output import PAGE, check_place, write_output
+    from nrs_design.output import PAGE, check_html, check_place, write_output
     from nrs_design.reproduction.comparison import drifted
     from nrs_design.reproduction.page import render_page
     from nrs_design.reproduction.table import reproduce as recompute
 
+    if html is not None:
+        check_html(html)
     for page in (html, figures and figures / _GALLERY):
         if page is not None:
             check_place(page, PAGE)

@@ -13,6 +13,7 @@ from nrs_design.cli.goals import (
     print_goals,
     print_warnings,
     say_nominal,
+    say_unjudged,
     warnings_of,
 )
 from nrs_design.cli.optimize import motion_summary
@@ -76,6 +77,7 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     elif not quiet:
         _print(designed.spec, designed.design, analysis)
         print_goals(loaded.spec.name, analysis.tuned)
+        say_unjudged(designed.spec)
         print_warnings(warnings, quiet=quiet)
     raise typer.Exit(exit_code(analysis.tuned))
 

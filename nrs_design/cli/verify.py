@@ -11,6 +11,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.options import CoordinatesOption, Json, Quiet
 from nrs_design.cli.printing import print_json, progress, say
+from nrs_design.errors import CertificateError
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
@@ -127,9 +128,9 @@ def _check_arguments(
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
     if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
-        raise typer.BadParameter(
-            f"the certificate comes first, then the spec: nrs-design verify {spec} {certificate}",
-            param_hint="CERT",
+        raise CertificateError(
+            "the arguments are swapped",
+            remedy=f"the certificate comes first: nrs-design verify {spec} {certificate}",
         )
 
 

@@ -10,6 +10,7 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.c_names import harmless
 from nrs_design.exporters.fmu_variables import Variable, Variables
 from nrs_design.exporters.program import Program
+from nrs_design.exporters.start import start_lines
 
 # By base units of SI; those of motors that are none have a name only.
 _BASE = {
@@ -89,6 +90,7 @@ def page(program: Program, binary: str) -> str:
     sections = (
         ("What this is", (*program.about, binary)),
         ("Outside the proof, in this format", OUTSIDE),
+        ("How to start it", tuple(start_lines(program.law))),
         ("Taken for granted by the proof", assumed),
         ("Modes", tuple(f"{k}: {mode}" for k, mode in enumerate(program.law.modes))),
     )

@@ -8,8 +8,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.certificates.goals import certified_goals
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -25,7 +25,7 @@ from nrs_design.gating.rules import (
     SWITCHING_STABLE,
     Rule,
 )
-from nrs_design.proof.bounds import rounded_down, rounded_up, upper
+from nrs_design.proof.bounds import upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.unstable_mode import (
@@ -38,11 +38,13 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peaks import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
-from nrs_design.spec.quantity import Quantity
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline.scenarios import Simulated
+
+
+_NO_NUMBERS = frozenset({"settles", "largest"})
 
 
 @dataclass(frozen=True)
@@ -204,67 +206,13 @@ class Examiner:
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for torque, rate, delay, rest and start that the spec wants to be proved."""
-        spec = self.loaded.spec
-        if spec.kind != "interaction-design" or spec.goals is None:
-            return
-        goals = spec.goals
-        if goals.peak_torque is not None:
-            wanted = goals.peak_torque
-            level = None
-            if certificate is not None:
-                found = bound_on(certificate.system, certificate.statements, "force")
-                level = None if found is None else found.level
-            said = "no bound on the force was proved"
-            if level is not None:
-                said = f"the force is proved to stay below {rounded_up(level, 'N*m')}"
-            met = level is not None and level <= wanted.exact
-            yield self._certified("peak_torque", f"{said}; {wanted.text} is wanted", met=met)
-        if goals.decay_rate is not None:
-            wanted, rate = goals.decay_rate, _decay(certificate)
-            said = "no decay rate in 1/s was proved"
-            if rate is not None:
-                said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
-            met = rate is not None and rate >= wanted.exact
-            yield self._certified("decay_rate", f"{said}; {wanted.text} is wanted", met=met)
-        if goals.delay is not None and spec.sampling is not None:
-            oldest = spec.sampling.oldest
-            proved = certificate is not None and certificate.verdict == Verdict.PROVED
-            said = "nothing was proved"
-            if proved:
-                least = spec.sampling.delay[0] * spec.sampling.outer
-                ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
-                said = f"the loop is proved for force samples {ages}"
-            met = proved and oldest >= goals.delay.exact
-            yield self._certified("delay", f"{said}; {goals.delay.text} is wanted", met=met)
-        if goals.constant_force is not None:
-            statements = () if certificate is None else certificate.statements
-            met = any(item.shows is Shows.CONVERGENCE for item in statements)
-            said = "the force is proved to settle at" if met else "not proved: the force settles at"
-            message = f"{said} every constant Fd that pushes in, at every constant stiffness"
-            yield self._certified("constant_force", message, met=met)
-        if goals.initial_force is not None:
-            yield self._initial_force(goals.initial_force, certificate)
-
-    def _initial_force(self, wanted: Quantity | str, certificate: Certificate | None) -> Obligation:
-        statements = () if certificate is None else certificate.statements
-        level = next((size for s in statements if (size := s.start_size) is not None), None)
-        said = "no force was proved from which motions decay although signals saturate"
-        if level is not None:
-            said = (
-                "from rest with a contact force up to "
-                f"{rounded_down(level, 'N*m')} motions are proved to decay although signals "
-                "saturate"
-            )
-        if isinstance(wanted, str):
-            return self._certified("initial_force", said, met=level is not None)
-        met = level is not None and level >= wanted.exact
-        return self._certified("initial_force", f"{said}; {wanted.text} is wanted", met=met)
-
-    def _certified(self, key: str, message: str, *, met: bool) -> Obligation:
-        status = Status.PROVED if met else Status.INCONCLUSIVE
-        return self.obligation(
-            CERTIFIED_GOAL, f"system: {key}", status, message, self.places.at("goals", key)
-        )
+        for goal in certified_goals(self.loaded.spec, certificate):
+            # What wants no number is said whole already.
+            wanted = "" if goal.wanted in _NO_NUMBERS else f"; {goal.wanted} is wanted"
+            status = Status.PROVED if goal.met else Status.INCONCLUSIVE
+            place = self.places.at("goals", goal.key)
+            subject = f"system: {goal.key}"
+            yield self.obligation(CERTIFIED_GOAL, subject, status, goal.said + wanted, place)
 
     def scenario(self, name: str, simulated: Simulated) -> Iterator[Obligation]:
         """Yield NRS109 for every limit of a scenario, held against one of its runs."""
@@ -327,17 +275,6 @@ class Examiner:
         for doubt in (*doubt_spec(self.loaded.spec), *(analysis.warnings if analysis else ())):
             place = self.places.at(*doubt.at)
             yield Caution(self.loaded.path, str(doubt), place.line, place.column)
-
-
-def _decay(certificate: Certificate | None) -> Fraction | None:
-    """Return the proved rate in 1/s; of a contraction rho per step, ``1 - rho`` is not above it."""
-    evidence = None if certificate is None else certificate.evidence
-    if certificate is None or evidence is None:
-        return None
-    rate, system = evidence.proved_rate(certificate.system), certificate.system
-    if rate is None or system.time is Time.CONTINUOUS:
-        return rate
-    return None if system.sample_time is None else (1 - rate) / system.sample_time
 
 
 def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:

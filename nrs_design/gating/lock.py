@@ -20,7 +20,7 @@ from pydantic import (
 )
 
 from nrs_design.errors import CertificateError
-from nrs_design.files import open_regular, read_json_text
+from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
     CERTIFIED_GOAL,
@@ -165,7 +165,7 @@ def read_lock(file: Path) -> Lock:
     """
     remedy = "make it with nrs-design gate, without --locked"
     try:
-        document = json.loads(read_json_text(_read_bytes(file)), object_pairs_hook=_unique)
+        document = json.loads(read_json_text(_read_bytes(file)), object_pairs_hook=unique_keys)
         _check_format(document, file)
         return Lock.model_validate(document)
     except OSError as error:
@@ -221,10 +221,3 @@ def _read_bytes(file: Path) -> bytes:
 def relative_to_lock(path: Path, lock: Path) -> str:
     """Return a path as it stands in a lock file, with forward slashes."""
     return Path(os.path.relpath(path, lock.parent)).as_posix()
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    keys = [key for key, _ in pairs]
-    if len(set(keys)) != len(keys):
-        raise ValueError("a key occurs twice")
-    return dict(pairs)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from nrs_design import __version__
-from nrs_design.errors import OutputError
+from nrs_design.certificates.verify import read_document
+from nrs_design.errors import CertificateError, OutputError
 from nrs_design.gating.lock import (
     DECIDED_AGAIN,
     Lock,
@@ -19,7 +21,7 @@ from nrs_design.gating.lock import (
     relative_to_lock,
 )
 from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome
-from nrs_design.output import LOCK, write_output
+from nrs_design.output import LOCK, alone_in, write_output
 
 
 def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
@@ -50,13 +52,20 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
     Raises
     ------
     OutputError
-        If it cannot be written.
+        If it cannot be written, or another run has replaced a certificate meanwhile.
     CertificateError
         If the file that is there is not a lock file.
     """
     for spec in outcome.specs:
         if spec.certificate is not None:
             check_folder(spec.certificate.parent, file)
+    with alone_in(file.parent):
+        return _write_lock(outcome, file, prune=prune)
+
+
+def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome:
+    for spec in outcome.specs:
+        _check_kept(spec)
     fresh = make_lock(outcome.specs, file).specs
     present = filter(_is_there, outcome.specs)
     examined = {relative_to_lock(spec.path, file): spec for spec in present}
@@ -86,6 +95,21 @@ def write_lock(outcome: GateOutcome, file: Path, *, prune: bool = False) -> Gate
         if paths:
             outcome = outcome.with_note(f"{text}: {', '.join(sorted(paths))}")
     return outcome
+
+
+def _check_kept(spec: SpecOutcome) -> None:
+    """Refuse to lock a certificate that another run has replaced since it was written."""
+    if spec.certificate is None:
+        return
+    with suppress(CertificateError):
+        if read_document(spec.certificate).get("id") == spec.certificate_id:
+            return
+    raise OutputError(
+        "is no longer the certificate that this run has written, so nothing is locked: another run "
+        "works in this tree",
+        path=spec.certificate,
+        remedy="let it end, then run nrs-design gate again",
+    )
 
 
 def _is_there(spec: SpecOutcome) -> bool:

@@ -24,7 +24,7 @@ from nrs_design.gating.obligations import (
 from nrs_design.gating.paths import is_utf8
 from nrs_design.gating.places import Places
 from nrs_design.gating.recorded import hash_recorded
-from nrs_design.output import CERTIFICATE, PAGE, write_output
+from nrs_design.output import CERTIFICATE, PAGE, check_place, write_output
 from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
     Overrides,
@@ -173,6 +173,10 @@ def _examine(
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
     files.check_owner(loaded.path, loaded.spec.name)
+    # What cannot be written is said before minutes of search.
+    check_place(files.certificate(loaded.spec.name), CERTIFICATE)
+    if files.html:
+        check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
     result = run_certification(loaded, limits=limits, progress=progress)
     certification, certificate = result.certification, result.certificate

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from nrs_design.errors import DataError
-from nrs_design.files import open_regular, read_json_text
+from nrs_design.files import open_regular, read_json_text, unique_keys
+from nrs_design.given.matrices import refuse_times
 from nrs_design.given.unpacked import check_mat, check_npz
 from nrs_design.proof.text import quoted
 
@@ -144,7 +145,7 @@ def _read_json(raw: bytes) -> dict[str, Any]:
         parse_float=str,
         parse_int=str,
         parse_constant=_not_finite,
-        object_pairs_hook=_unique,
+        object_pairs_hook=unique_keys,
     )
     if not isinstance(content, dict):
         raise ValueError("expected a JSON object")
@@ -155,20 +156,14 @@ def _read_json(raw: bytes) -> dict[str, Any]:
     return content
 
 
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Refuse a mode that another of its name would hide."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise ValueError("a name occurs twice in one object")
-    return found
-
-
 def _read_npz(raw: bytes) -> dict[str, Any]:
     import numpy as np
 
     check_npz(raw)
     with np.load(BytesIO(raw), allow_pickle=False) as archive:
         arrays = {key: archive[key] for key in archive.files}
+    for key, array in arrays.items():
+        refuse_times(array, key)
     _check_entries(sum(array.size for array in arrays.values()))
     return {key: array.tolist() for key, array in arrays.items()}
 

@@ -12,11 +12,10 @@ from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.bounds import nearly
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certification import Certification, Limits
+from nrs_design.search.certification import Limits
 
 if TYPE_CHECKING:
     from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
@@ -77,76 +76,34 @@ def run_proof_margins(
     Raises
     ------
     DesignError
-        If the spec has nothing that such a margin is about.
+        If the spec has nothing that such a margin is about: for the box no range, for the dwell
+        time discrete time, something that may change between two switches, or longest dwell times,
+        which would bound the shortest one.
     """
-    check_margins(result, margin=margin, shortest_dwell=shortest_dwell)
-    loop = run_loop_margins(result, limits, progress) if margin else None
-    ranged = result.loaded.spec.has_ranges
-    return ProofMargins(
-        loop=loop,
-        box=run_margin(result, limits, progress) if margin and ranged else None,
-        dwell=run_shortest_dwell(result, limits, progress) if shortest_dwell else None,
-    )
-
-
-def check_margins(result: Result, *, margin: bool, shortest_dwell: bool) -> None:
-    """Check, before minutes of work, that a spec has what its margins would be about.
-
-    Parameters
-    ----------
-    result, margin, shortest_dwell
-        As for `run_proof_margins`.
-
-    Raises
-    ------
-    DesignError
-        As there.
-    """
+    # Before minutes of work.
     if margin and not _has_loop(result):
         _refuse_box(result)
     if shortest_dwell:
         _refuse_dwell(result)
+    quick, ranged = quick_limits(result, limits), result.loaded.spec.has_ranges
+    return ProofMargins(
+        loop=_run_loop(result, quick, progress) if margin else None,
+        box=_run_box(result, quick, progress) if margin and ranged else None,
+        dwell=_run_dwell(result, quick, progress) if shortest_dwell else None,
+    )
 
 
-def run_margin(
-    result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> BoxMargin:
-    """Find the largest box around the nominal values that still has a proof.
-
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands; its design is kept.
-    limits : Limits, optional
-        How far the searches go at each scale; the decay rate is not optimized.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    DesignError
-        If the spec declares no range.
-    """
+def _run_box(result: Result, limits: Limits, progress: Progress) -> BoxMargin:
+    """Find the largest box around the nominal values that still has a proof; the design is kept."""
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_margin
 
-    _refuse_box(result)
-    quick = quick_limits(result, limits)
-    verdicts = {Fraction(1): result.certification.verdict}
-    at = Fraction(1)
-
     def assemble_at(scale: Fraction) -> SwitchedSystem:
-        nonlocal at
-        at = scale
-        progress(f"box scaled by {nearly(scale)}{_so_far(verdicts)}")
         return assemble_spec(result.loaded, result.designed, result.coordinates, scale)
 
-    def decide(system: SwitchedSystem) -> Certification:
-        found = certify(system, limits=quick)
-        verdicts[at] = found.verdict
-        return found
-
-    return find_margin(assemble_at, decide, result.certification)
+    return find_margin(
+        assemble_at, lambda system: certify(system, limits=limits), result.certification, progress
+    )
 
 
 def _refuse_box(result: Result) -> None:
@@ -161,37 +118,15 @@ def _refuse_box(result: Result) -> None:
             )
 
 
-def _so_far(verdicts: Mapping[Fraction, Verdict], unit: str = "") -> str:
-    """Say what is known already, for those who wait."""
-    proved = [number for number, verdict in verdicts.items() if verdict is Verdict.PROVED]
-    refuted = [number for number, verdict in verdicts.items() if verdict is Verdict.REFUTED]
-    known = [f"proved: {nearly(max(proved), unit)}"] if proved else []
-    known += [f"refuted: {nearly(min(refuted), unit)}"] if refuted else []
-    return f" ({', '.join(known)})" if known else ""
-
-
-def run_loop_margins(
-    result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> MarginBrackets | None:
-    """Find how far delay, period and disturbances stretch; None where a spec has none of them.
-
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands; its design is kept.
-    limits : Limits, optional
-        How far the searches go each time; the decay rate is not optimized.
-    progress : callable
-        Told the name of each step.
-    """
+def _run_loop(result: Result, limits: Limits, progress: Progress) -> MarginBrackets | None:
+    """Find how far delay, period and disturbances stretch; None where a spec has none of them."""
     from nrs_design.search.loop_margin import MarginBrackets
 
     if result.designed is None or not _has_loop(result):
         return None
-    quick = quick_limits(result, limits)
     delay = period = None
     if (sampling := result.designed.spec.sampling) is not None:
-        delay, period = _sampling_margins(result.designed, sampling, result, quick, progress)
+        delay, period = _sampling_margins(result.designed, sampling, result, limits, progress)
     return MarginBrackets(delay, period, _command_margin(result))
 
 
@@ -213,48 +148,41 @@ def _sampling_margins(
     from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
     from nrs_design.spec.sampling import LONGEST_DELAY
 
-    known = result.certification.verdict
-    delays = {Fraction(sampling.delay[1]): known}
-    periods = {sampling.period.exact: known}
-
-    def assemble_at(changes: Mapping[str, object], what: str) -> SwitchedSystem:
-        progress(what)
+    def assemble_at(changes: Mapping[str, object]) -> SwitchedSystem:
         changed = sampling.model_copy(update=changes)
         spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
         return assemble_spec(result.loaded, replace(designed, spec=spec), result.coordinates)
 
-    def decide(changes: Mapping[str, object], what: str) -> Verdict:
-        return certify(assemble_at(changes, what), limits=limits).verdict
-
-    def is_unstable(delay: int) -> bool:
-        system = assemble_at({"delay": (delay, delay)}, f"delay {delay} alone")
-        return is_refuted_at_once(system, limits)
-
-    def at_delay(longest: int) -> Verdict:
-        if longest == sampling.delay[1]:
-            return known
-        what = f"delay {longest}{_so_far(delays)}"
-        delays[Fraction(longest)] = decide({"delay": (sampling.delay[0], longest)}, what)
-        return delays[Fraction(longest)]
-
-    def at_period(period: Fraction) -> Verdict | str:
-        if period == sampling.period.exact:
-            return known
-        changes = {
-            name: replace(given, value=period * given.value / sampling.period.exact)
-            for name in ("period", "outer_period")
-            if (given := getattr(sampling, name)) is not None
-        }
+    def decide(changes: Mapping[str, object]) -> Verdict | str:
         try:
-            periods[period] = decide(
-                changes, f"period {nearly(period, 's')}{_so_far(periods, 's')}"
-            )
+            return certify(assemble_at(changes), limits=limits).verdict
         except NrsDesignError as error:
             return error.message
-        return periods[period]
 
-    delay = find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, is_unstable)
-    return delay, find_longest_period(sampling.period.exact, at_period)
+    def is_unstable(delay: int) -> bool:
+        progress(f"delay {delay} alone")
+        try:
+            return is_refuted_at_once(assemble_at({"delay": (delay, delay)}), limits)
+        except NrsDesignError:
+            return False  # What makes no loop shows nothing.
+
+    def at_delay(longest: int) -> Verdict | str:
+        return decide({"delay": (sampling.delay[0], longest)})
+
+    def at_period(period: Fraction) -> Verdict | str:
+        return decide(
+            {
+                name: replace(given, value=period * given.value / sampling.period.exact)
+                for name in ("period", "outer_period")
+                if (given := getattr(sampling, name)) is not None
+            }
+        )
+
+    known = result.certification.verdict
+    return (
+        find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, is_unstable, known, progress),
+        find_longest_period(sampling.period.exact, at_period, known, progress),
+    )
 
 
 def _command_margin(result: Result) -> CommandMargin | None:
@@ -268,39 +196,15 @@ def _command_margin(result: Result) -> CommandMargin | None:
     return None if found is None else command_margin(found, worst_against(system, found).value)
 
 
-def run_shortest_dwell(
-    result: Result, limits: Limits | None = None, progress: Progress = silent
-) -> DwellMargin:
-    """Find the shortest dwell time with a proof, whatever dwell time the spec declares.
-
-    Parameters
-    ----------
-    result : Result
-        Of the spec as it stands.
-    limits : Limits, optional
-        How far the searches go at each dwell time; the decay rate is not optimized.
-    progress : callable
-        Told the name of each step.
-
-    Raises
-    ------
-    DesignError
-        In discrete time, or if something may change between two switches, or if the spec declares
-        longest dwell times, which would bound the shortest one.
-    """
+def _run_dwell(result: Result, limits: Limits, progress: Progress) -> DwellMargin:
+    """Find the shortest dwell time with a proof, whatever dwell time the spec declares."""
     from nrs_design.search.certify import certify
     from nrs_design.search.margin import find_shortest_dwell
 
-    _refuse_dwell(result)
     known = result.certification
-    system = known.system
-    quick = quick_limits(result, limits)
-
-    def decide(candidate: SwitchedSystem) -> Certification:
-        progress(f"dwell time {nearly(candidate.switching.dwell_time, 's')}")
-        return certify(candidate, limits=quick)
-
-    return find_shortest_dwell(system, decide, known)
+    return find_shortest_dwell(
+        known.system, lambda system: certify(system, limits=limits), known, progress
+    )
 
 
 def _refuse_dwell(result: Result) -> None:

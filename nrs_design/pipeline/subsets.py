@@ -13,6 +13,9 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 from nrs_design.search.certification import Limits
 
+# As `nrs_design.spec.aspects` names it.
+_OUTER = "the outer_period"
+
 
 @dataclass(frozen=True, slots=True)
 class Subset:
@@ -23,7 +26,7 @@ class Subset:
     left_out : tuple of str
         Parts of the spec that the proof is not about.
     claim : str
-        What is proved without them.
+        What is proved without them; empty where nothing is that was looked for.
     needs : tuple of str
         What that takes for granted, and the spec as it stands does not.
     """
@@ -90,15 +93,33 @@ def subset_lines(subsets: tuple[Subset, ...]) -> tuple[str, ...]:
     """
     if not subsets:
         return ("nothing is proved with parts of the spec left out either",)
-    return tuple(
-        " ".join(
-            (
-                f"proved without {' and '.join(item.left_out)}: {item.claim}",
-                *(("Then taken for granted besides:", *item.needs) if item.needs else ()),
-            )
+    return tuple(map(_line, subsets))
+
+
+def _line(item: Subset) -> str:
+    left_out = " and ".join(item.left_out)
+    if not item.claim:
+        return f"not proved without {left_out} either: no bound under the disturbances was found"
+    # Both loops run at other times then: what is left out changes what the robot does.
+    of = "of another loop, " if _OUTER in item.left_out else ""
+    needs = ("Then taken for granted besides:", *item.needs) if item.needs else ()
+    return " ".join((f"proved {of}without {left_out}: {item.claim}", *needs))
+
+
+def parts_title(result: Result) -> str:
+    """Say what is not proved, above the list of what is.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    """
+    if result.certification.verdict is Verdict.PROVED and has_unbounded_turns(result):
+        return (
+            "NOT proved: any bound under the disturbances of the spec, since the loop has two "
+            "periods; what is proved instead"
         )
-        for item in subsets
-    )
+    return "not proved together; with as little left out as possible"
 
 
 def run_subsets(
@@ -163,7 +184,7 @@ def _bounds_apart(
     decided = certify(system, limits=limits)
     bounds = [item for item in decided.statements if item.bound(system) is not None]
     if decided.verdict is not Verdict.PROVED or not bounds:
-        return (decay,)
+        return decay, Subset((_OUTER,), "")
     claims = " ".join(item.claim(system) for item in bounds)
     needs = tuple(text for text in system.assumptions if text not in whole.assumptions)
-    return decay, Subset(("the outer_period",), claims, needs)
+    return decay, Subset((_OUTER,), claims, needs)

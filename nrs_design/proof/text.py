@@ -10,6 +10,11 @@ def quoted(text: str) -> str:
     return repr(text if len(text) <= 40 else text[:37] + "...")
 
 
+def counted(number: int, noun: str) -> str:
+    """Write a number with a noun in its singular or plural."""
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
 def exact_text(number: Fraction) -> str:
     """Write a fraction as the shortest decimal if that is exact, as ``p/q`` otherwise."""
     try:

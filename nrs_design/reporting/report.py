@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.reporting.document import Report, Section
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
-from nrs_design.reporting.sections.goals import goal_facts
+from nrs_design.reporting.sections.goals import goal_facts, goals_section
 from nrs_design.reporting.sections.head import claim_of, facts, proved_rate, remarks_of
 from nrs_design.reporting.sections.methods import methods_section
 from nrs_design.reporting.sections.mode_logic import logic_section
@@ -84,7 +84,7 @@ def build_report(
         verdict=str(certification.verdict),
         claim=claim_of(certification),
         remarks=remarks_of(certification),
-        facts=(*facts(result), *goal_facts(spec, analysis)),
+        facts=(*facts(result), *goal_facts(result, analysis)),
         sections=(
             proof_section(result),
             *_present(remedies_section(result, margins, subsets)),
@@ -94,6 +94,7 @@ def build_report(
                 else (stability_map_section(result.loaded, stability_map),)
             ),
             *(() if designed is None else design_sections(designed, analysis)),
+            *_present(goals_section(result, analysis)),
             *_present(None if designed is None else logic_section(designed.spec)),
             modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
             *evidence_sections(certification),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.proof.bounds import lower, upper
-from nrs_design.reporting.figures.release import ReleasePanel, draw_release
+from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
@@ -161,11 +161,11 @@ def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figur
     if _COMMAND in names:
         command = _TURN * run.disturbances[:, names.index(_COMMAND)]
         held = np.append(command, command[-1:])[:, None]
-        panels.append(ReleasePanel("Command [deg/s]", held, None, None))
+        panels.append(BoundedSignal("Command [deg/s]", held, None, None))
     labels = [_controller(name) for name in _modes(case)]
     who = list(dict.fromkeys(labels))
     mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)
-    return draw_release(SwitchedRun(run.time, run.states, mode), panels, who)
+    return draw_bounded_run(SwitchedRun(run.time, run.states, mode), panels, who)
 
 
 def response_of(case: WorstCase, run: WorstRun) -> TimeResponse:
@@ -219,10 +219,12 @@ def _largest(values: Array) -> Array:
     return np.asarray(values[np.arange(len(values)), np.abs(values).argmax(axis=1)])
 
 
-def _panel(case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None) -> ReleasePanel:
+def _panel(
+    case: WorstCase, run: WorstRun, output: Output, lever_arm: float | None
+) -> BoundedSignal:
     factor, unit = scale_of(output.name, output.unit, lever_arm)
     limit, bound = case.limits.get(output.name), case.bounds.get(output.name)
-    return ReleasePanel(
+    return BoundedSignal(
         f"{output.name.capitalize()} [{unit}]",
         factor * output_values(case.system, output, run.states),
         None if limit is None else factor * limit,

@@ -203,8 +203,10 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         if rates := [*asked]:
             obligations += [_unreadable(path, node, fault) for fault in rates]
             continue
-        around = question.around(1 / _rate(law, manager, question.rate, path))
+        rate = _rate(law, manager, question.rate, path)
+        around = question.around(1 / rate)
         notes |= dict.fromkeys(assumptions(around))
+        notes[_rate_note(law, manager, question.rate, rate)] = None
         obligations.append(_readable(path, node))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
@@ -297,6 +299,22 @@ def _rate(
             remedy="write a rate that divides it, or give the rate at which it runs as --rate",
         )
     return min(found, own) if own else found
+
+
+def _rate_note(
+    law: AdmittanceLaw, manager: RosNode | None, given: Fraction | None, rate: Fraction
+) -> str:
+    """Say where the rate comes from: what is not in the file is not seen."""
+    said = f"{law.node.name} runs {nearly(rate)} times per second, as "
+    if given is None:
+        assert manager is not None  # _rate
+        said += f"{manager.name} (line {manager.place('update_rate').line}) says"
+    else:
+        said += "--rate says"
+    if law.values["update_rate"][0]:
+        own = law.node.place("update_rate").line
+        said += f" together with its own update_rate (line {own})"
+    return f"{said}; what a launch file, a command line or another file sets is not seen here"
 
 
 def _written_rate(manager: RosNode, path: Path) -> Fraction:

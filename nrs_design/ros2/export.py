@@ -8,7 +8,7 @@ numbers as they are written, and nothing is written without that proof. With sti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
@@ -51,12 +51,15 @@ class RosExport:
         The file; empty without a proof.
     certificate : Certificate or None
         Its modes, and what is shown of them.
+    ranged : tuple of str
+        Gains of which the spec declares a range: only their designed values are written and proved.
     """
 
     controller: str
     verdict: str
     text: str
     certificate: Certificate | None
+    ranged: tuple[str, ...] = ()
 
 
 def export_controllers(
@@ -103,7 +106,28 @@ def export_controllers(
         text = ""
         if str(found.verdict) == "proved" and certificate is not None:
             text = _header(designed, controller, sampling, met, certificate) + body
-        yield RosExport(controller.name, str(found.verdict), text, certificate)
+        ranged = _ranged(designed, controller)
+        yield RosExport(controller.name, str(found.verdict), text, certificate, ranged)
+
+
+def _ranged(designed: Designed, controller: Controller) -> tuple[str, ...]:
+    """Return the gains that the spec lets be retuned while the robot runs."""
+    gains = designed.spec.controllers[controller.name].gains()
+    return tuple(name for name, given in gains.items() if given.ranged)
+
+
+def not_for_ranges(ranged: Sequence[str]) -> str:
+    """Say that a proof is not for the declared ranges of gains.
+
+    Parameters
+    ----------
+    ranged : sequence of str
+        Their names, at least one.
+    """
+    return (
+        f"the declared ranges of {' and '.join(ranged)}: only the designed values are written and "
+        "proved; whoever retunes them needs another export"
+    )
 
 
 def _sampling(designed: Designed) -> SamplingSpec:
@@ -243,6 +267,11 @@ def _header(
         "units: kg*m^2, N*m/rad, joint_damping in 1/s",
         *(f"taken for granted: {text}" for text in (*system.assumptions, *_kept(certificate))),
         *(f"outside the proof: {text}" for text in OUTSIDE),
+        *(
+            (f"outside the proof: {not_for_ranges(ranged)}",)
+            if (ranged := _ranged(designed, controller))
+            else ()
+        ),
         "outside the proof: switching to another controller; the same joint_damping acts on all "
         "axes, and no force on those that are not selected",
         f"to be given beside this file: {BESIDE}",

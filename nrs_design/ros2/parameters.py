@@ -34,7 +34,7 @@ class RosNode:
     values : mapping of str to Node
         By dotted name.
     places : mapping of str to Position
-        Where each name stands.
+        Where each name stands, and each level above one.
     """
 
     name: str
@@ -145,7 +145,7 @@ def _nodes(tree: Node, above: tuple[str, ...]) -> Iterator[RosNode]:
     for key, value in tree.entries.items():
         if key == KEY and isinstance(value, Tree):
             flat = list(_flat(value, ""))
-            values = {name: node for name, node, _ in flat}
+            values = {name: node for name, node, _ in flat if not isinstance(node, Tree)}
             places = {name: place for name, _, place in flat}
             yield RosNode("/".join(above) or "/", tree.keys[key], values, places)
         else:
@@ -153,13 +153,12 @@ def _nodes(tree: Node, above: tuple[str, ...]) -> Iterator[RosNode]:
 
 
 def _flat(tree: Tree, before: str) -> Iterator[tuple[str, Node, Position]]:
-    """Yield name, value and place; a dot in a key is the same as a level."""
+    """Yield name, value and place, of levels, too; a dot in a key is the same as a level."""
     for key, value in tree.entries.items():
         name = f"{before}{key}"
+        yield name, value, tree.keys[key]
         if isinstance(value, Tree):
             yield from _flat(value, f"{name}.")
-        else:
-            yield name, value, tree.keys[key]
 
 
 def read_double(text: str) -> Fraction:

@@ -151,14 +151,13 @@ def _bounds(
     found: list[AbstractEvidence] = []
     attempts: list[Attempt] = []
     for count, (channels, output) in enumerate(pairs):
-        name, start = _bound_name(channels, output), perf_counter()
+        name = _bound_name(channels, output)
         progress(name)
         own = allowance.part(1 / (len(pairs) - count))
         search = partial(search_ellipsoid, system, channels, output, own)
-        evidence, outcome = _take(search, system)
-        attempts.append(Attempt(name, outcome, perf_counter() - start))
-        if evidence is not None:
-            found.append(evidence)
+        evidence, attempt = _attempted(name, search, system)
+        found += evidence
+        attempts += attempt
     return tuple(found), tuple(attempts)
 
 
@@ -175,10 +174,7 @@ def _settling(
     from nrs_design.search.constant_force import search_constant_force
 
     progress(CONSTANT_FORCE)
-    start = perf_counter()
-    evidence, outcome = _take(partial(search_constant_force, system, allowance), system)
-    attempt = Attempt(CONSTANT_FORCE, outcome, perf_counter() - start)
-    return () if evidence is None else (evidence,), (attempt,)
+    return _attempted(CONSTANT_FORCE, partial(search_constant_force, system, allowance), system)
 
 
 def _saturated(
@@ -190,9 +186,16 @@ def _saturated(
     from nrs_design.search.saturated_ellipsoid import search_saturated
 
     progress(SATURATION)
+    return _attempted(SATURATION, partial(search_saturated, system, allowance), system)
+
+
+def _attempted(
+    name: str, search: Callable[[], Candidates[AbstractEvidence]], system: SwitchedSystem
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Take the first candidate that holds, and say how it went."""
     start = perf_counter()
-    evidence, outcome = _take(partial(search_saturated, system, allowance), system)
-    attempt = Attempt(SATURATION, outcome, perf_counter() - start)
+    evidence, outcome = _take(search, system)
+    attempt = Attempt(name, outcome, perf_counter() - start)
     return () if evidence is None else (evidence,), (attempt,)
 
 

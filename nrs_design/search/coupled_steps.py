@@ -25,7 +25,7 @@ from nrs_design.search.disturbed import (
 )
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import claims, rate_at
-from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.search.sdp import solve_blocks, symmetric_basis
 
 Array = NDArray[np.float64]
 
@@ -88,14 +88,7 @@ def _solve(own: DisturbedProblem, rate: float, allowance: Allowance) -> Disturbe
         images = np.zeros((unknowns, 1, 1))
         images[i] = 1.0
         blocks.append((np.zeros((1, 1)), images))
-    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
-    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
-    x = maximize_margin(
-        np.concatenate([-pack(images).T for _, images in blocks]),
-        np.concatenate([pack(constant) for constant, _ in blocks]),
-        [len(constant) for constant, _ in blocks],
-        time_limit=allowance.left,
-    )
+    x = solve_blocks(blocks, allowance)
     if x is None or x[-1] <= 0:
         return None
     Q = np.asarray(np.tensordot(x[:k], basis, axes=1))

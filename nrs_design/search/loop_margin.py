@@ -8,7 +8,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.bounds import nearly
+from nrs_design.progress import Progress, silent
+from nrs_design.search.tried import Tried, sharpen
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.abstract import Bound
@@ -76,8 +77,10 @@ def find_longest_delay(
     shortest: int,
     declared: int,
     longest: int,
-    decide: Callable[[int], Verdict],
+    decide: Callable[[int], Verdict | str],
     is_unstable: Callable[[int], bool],
+    known: Verdict | None = None,
+    progress: Progress = silent,
 ) -> Bracket:
     """Find the longest delay with a proof, and the shortest that is refuted, in samples.
 
@@ -95,39 +98,42 @@ def find_longest_delay(
     longest : int
         That is decided.
     decide : callable
-        Gives the verdict on a largest age.
+        Gives the verdict on a largest age, or says why it makes no loop.
     is_unstable : callable
         Tells whether the loop is refuted where all samples have one age, by a test that is quick.
+    known : Verdict, optional
+        On the declared delay, perhaps by a longer search.
+    progress : callable
+        Told each delay, and what is known by then.
     """
-    tried: dict[int, Verdict] = {}
-
-    def is_found(delay: int, verdict: Verdict) -> bool:
-        if delay not in tried:
-            tried[delay] = decide(delay)
-        return tried[delay] is verdict
-
+    tried: Tried[int] = Tried(decide, progress, "delay")
+    if known is not None:
+        tried.remember(declared, known)
     for delay in range(declared, shortest - 1, -1):
-        if is_found(delay, Verdict.PROVED):
+        if tried.is_proved(delay):
             break
-    if tried[declared] is not Verdict.REFUTED and longest > declared:
-        if not is_found(longest, Verdict.PROVED):
-            _halve(declared, longest, lambda delay: is_found(delay, Verdict.PROVED))
-        if Verdict.REFUTED in tried.values():
-            beyond = min(delay for delay in tried if tried[delay] is Verdict.REFUTED)
-            below = max((delay for delay in tried if delay < beyond), default=beyond)
-            _halve(below, beyond, lambda delay: not is_found(delay, Verdict.REFUTED))
-    proved = max((d for d in tried if tried[d] is Verdict.PROVED), default=None)
-    refuted = min((d for d in tried if tried[d] is Verdict.REFUTED), default=None)
+    if not tried.is_refuted(declared) and longest > declared:
+        if not tried.is_proved(longest):
+            _halve(declared, longest, tried.is_proved)
+        if tried.that_are(Verdict.REFUTED):
+            beyond = min(tried.that_are(Verdict.REFUTED))
+            below = max((delay for delay in tried.all() if delay < beyond), default=beyond)
+            _halve(below, beyond, lambda delay: not tried.is_refuted(delay))
+    proved = max(tried.that_are(Verdict.PROVED), default=None)
+    refuted = min(tried.that_are(Verdict.REFUTED), default=None)
     if refuted is None:
         refuted = _first_unstable(longest, is_unstable)
-    end = (
-        ""
-        if refuted is not None
-        else f"none is refuted: no delay of up to {FARTHEST_DELAY} samples is shown to be unstable "
+    ends = [None if delay is None else Fraction(delay) for delay in (proved, refuted)]
+    return Bracket(ends[0], ends[1], "" if refuted is not None else _end_of_delays(tried))
+
+
+def _end_of_delays(tried: Tried[int]) -> str:
+    """Say why no delay is refuted."""
+    why = f"a longer one makes no loop ({fault}), " if (fault := tried.fault()) else ""
+    return (
+        f"none is refuted: {why}no delay of up to {FARTHEST_DELAY} samples is shown to be unstable "
         "by itself, and an exact test of longer ones would take too long"
     )
-    ends = [None if delay is None else Fraction(delay) for delay in (proved, refuted)]
-    return Bracket(ends[0], ends[1], end)
 
 
 def _halve(inside: int, outside: int, accepts: Callable[[int], bool]) -> int:
@@ -151,7 +157,12 @@ def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | No
     return _halve(stable, unstable, lambda delay: not is_unstable(delay))
 
 
-def find_longest_period(period: Fraction, decide: Callable[[Fraction], Verdict | str]) -> Bracket:
+def find_longest_period(
+    period: Fraction,
+    decide: Callable[[Fraction], Verdict | str],
+    known: Verdict | None = None,
+    progress: Progress = silent,
+) -> Bracket:
     """Find a long period with a proof and a short one that is refuted, each for itself.
 
     Other periods make other systems: nothing follows from one for the ones in between.
@@ -162,60 +173,44 @@ def find_longest_period(period: Fraction, decide: Callable[[Fraction], Verdict |
         Of the spec, in s.
     decide : callable
         Gives the verdict on a period, or says why it makes no system.
+    known : Verdict, optional
+        On the period of the spec, perhaps by a longer search.
+    progress : callable
+        Told each period, and what is known by then.
     """
-    tried: dict[Fraction, Verdict | str] = {period: decide(period)}
-
-    def attempt(value: Fraction) -> Verdict | str:
-        if value not in tried:
-            tried[value] = decide(value)
-        return tried[value]
+    tried = Tried(decide, progress, "period", "s")
+    if known is not None:
+        tried.remember(period, known)
 
     def double(factor: Fraction, end: Verdict) -> None:
         value = period
         for _ in range(DOUBLINGS):
             value *= factor
-            if attempt(value) is end or not isinstance(tried[value], Verdict):
+            if tried(value) is end or tried.makes_no_system(value):
                 break
 
-    if tried[period] is not Verdict.PROVED:
+    if not tried.is_proved(period):
         double(Fraction(1, 2), Verdict.PROVED)
-    if Verdict.REFUTED not in tried.values():
+    if not tried.that_are(Verdict.REFUTED):
         double(Fraction(2), Verdict.REFUTED)
-    proved = _bisect(attempt, tried, Verdict.PROVED)
-    refuted = _bisect(attempt, tried, Verdict.REFUTED)
-    return Bracket(proved, refuted, "" if refuted is not None else _end_of_periods(tried))
+    proved = _bisect(tried, Verdict.PROVED)
+    refuted = _bisect(tried, Verdict.REFUTED)
+    end = "" if refuted is not None else tried.end("of up to", "a longer one makes no loop")
+    return Bracket(proved, refuted, end)
 
 
-def _end_of_periods(tried: Mapping[Fraction, Verdict | str]) -> str:
-    """Say where periods that are not refuted end, and why there."""
-    longest = max(value for value, found in tried.items() if isinstance(found, Verdict))
-    faults = [found for value, found in sorted(tried.items()) if value > longest]
-    why = f"a longer one makes no loop ({faults[0]})" if faults else "the search ends there"
-    return f"none of up to {nearly(longest, 's')} is refuted: {why}"
-
-
-def _bisect(
-    attempt: Callable[[Fraction], Verdict | str],
-    tried: Mapping[Fraction, Verdict | str],
-    verdict: Verdict,
-) -> Fraction | None:
+def _bisect(tried: Tried[Fraction], verdict: Verdict) -> Fraction | None:
     """Sharpen the largest period that is proved, or the smallest that is refuted."""
-    mine = [value for value, found in tried.items() if found is verdict]
+    mine = tried.that_are(verdict)
     if not mine:
         return None
     up = verdict is Verdict.PROVED
     best = max(mine) if up else min(mine)
-    beyond = [v for v in tried if (v > best if up else v < best)]
+    beyond = [v for v in tried.all() if (v > best if up else v < best)]
     if not beyond:
         return best
     other = min(beyond) if up else max(beyond)
-    for _ in range(STEPS):
-        middle = (best + other) / 2
-        if attempt(middle) is verdict:
-            best = middle
-        else:
-            other = middle
-    return best
+    return sharpen(best, other, STEPS, lambda value: tried(value) is verdict)
 
 
 def command_margin(found: Bound, reached: float) -> CommandMargin | None:

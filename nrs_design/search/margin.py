@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.bounds import nearly
+from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.tried import Tried, sharpen
 from nrs_design.spec.switching import LONGEST_DWELL
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ HALVINGS = 64
 
 Assemble = Callable[[Fraction], SwitchedSystem]
 Certify = Callable[[SwitchedSystem], "Certification"]
-Outcome = tuple[Verdict | None, "Certification | None"]
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,10 @@ class BoxMargin:
 
 
 def find_margin(
-    assemble: Assemble, certify: Certify, known: Certification | None = None
+    assemble: Assemble,
+    certify: Certify,
+    known: Certification | None = None,
+    progress: Progress = silent,
 ) -> BoxMargin:
     """Bracket the largest provable scale and the smallest refutable one, then bisect both.
 
@@ -71,135 +74,76 @@ def find_margin(
         Decides a system.
     known : Certification, optional
         What was found at scale 1, perhaps by a longer search: no worse is reported.
+    progress : callable
+        Told each scale, and what is known by then.
 
     Raises
     ------
     AssemblyError
         If not even the nominal values make a system, so that no box does.
     """
-    faults: dict[Fraction, AssemblyError] = {}
-    tried = _Tried(lambda scale: _try(scale, assemble, certify, faults))
+    proofs = {} if known is None else {Fraction(1): known}
+
+    def decide(scale: Fraction) -> Verdict | str:
+        system = _assembled(scale, assemble)
+        if isinstance(system, AssemblyError):
+            return system.message
+        proofs[scale] = certify(system)
+        return proofs[scale].verdict
+
+    tried = Tried(decide, progress, "box scaled by")
     if known is not None:
-        tried.remember(Fraction(1), known)
+        tried.remember(Fraction(1), known.verdict)
     elif tried.makes_no_system(Fraction(0)):
-        raise faults[Fraction(0)]
+        assemble(Fraction(0))  # Raises what is wrong, and where.
     if not tried.that_are(Verdict.PROVED) and not tried.is_proved(Fraction(0)):
-        refuted = _smallest_refuted(tried, assemble, faults)
-        return BoxMargin(None, refuted, None, _end(tried, faults, refuted))
+        refuted = _smallest_refuted(tried, assemble)
+        return BoxMargin(None, refuted, None, _end(tried, refuted))
     high = Fraction(1)
     while high <= LARGEST_SCALE and tried.is_proved(high):
         high *= 2
     if high <= LARGEST_SCALE:
-        _sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
-    refuted = _smallest_refuted(tried, assemble, faults)
+        sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
+    refuted = _smallest_refuted(tried, assemble)
     low = max(tried.that_are(Verdict.PROVED))
-    return BoxMargin(low, refuted, tried.certification(low), _end(tried, faults, refuted))
+    return BoxMargin(low, refuted, proofs[low], _end(tried, refuted))
 
 
-def _end(tried: _Tried, faults: Mapping[Fraction, AssemblyError], refuted: Fraction | None) -> str:
+def _assembled(scale: Fraction, assemble: Assemble) -> SwitchedSystem | AssemblyError:
+    """Return the system at a scale, or what keeps the scale from making one."""
+    try:
+        return assemble(scale)
+    except AssemblyError as error:
+        return error
+
+
+def _end(tried: Tried[Fraction], refuted: Fraction | None) -> str:
     """Say where scales that are not refuted end, and why there; nothing if one is refuted."""
-    if refuted is not None:
-        return ""
-    longest = max(scale for scale in tried.all() if not tried.makes_no_system(scale))
-    beyond = [faults[scale].message for scale in sorted(faults) if scale > longest]
-    why = f"wider ones make no system ({beyond[0]})" if beyond else "the search ends there"
-    return f"none scaled by up to {nearly(longest)} is refuted: {why}"
+    return "" if refuted is not None else tried.end("scaled by up to", "wider ones make no system")
 
 
-def _smallest_refuted(
-    tried: _Tried, assemble: Assemble, faults: dict[Fraction, AssemblyError]
-) -> Fraction | None:
+def _smallest_refuted(tried: Tried[Fraction], assemble: Assemble) -> Fraction | None:
     """Return the smallest scale found to be refuted: from what was tried, or beyond it."""
-    high = max(tried.largest(), Fraction(1))
+    high = max(*tried.all(), Fraction(1))
     for _ in range(DOUBLINGS):
         if tried.that_are(Verdict.REFUTED) or tried.makes_no_system(high):
             break
         high *= 2
         tried.is_refuted(high)
     if not tried.that_are(Verdict.REFUTED) and tried.makes_no_system(high):
-        widest = max(scale for scale in tried.all() if not tried.makes_no_system(scale))
 
         def makes_system(scale: Fraction) -> bool:
-            return _assembled(scale, assemble, faults) is not None
+            system = _assembled(scale, assemble)
+            if isinstance(system, AssemblyError):
+                tried.remember(scale, system.message)
+            return not isinstance(system, AssemblyError)
 
-        tried.is_refuted(_sharpen(widest, high, STEPS, makes_system))
+        tried.is_refuted(sharpen(tried.longest(), high, STEPS, makes_system))
     refuted = min(tried.that_are(Verdict.REFUTED), default=None)
     below = [scale for scale in tried.all() if refuted is not None and scale < refuted]
     if refuted is None or not below:
         return refuted
-    return _sharpen(refuted, max(below), REFUTED_STEPS, tried.is_refuted)
-
-
-def _sharpen(
-    accepted: Fraction, other: Fraction, steps: int, accepts: Callable[[Fraction], bool]
-) -> Fraction:
-    """Bisect between a number that is accepted and one that is not; return the last accepted."""
-    for _ in range(steps):
-        middle = (accepted + other) / 2
-        if accepts(middle):
-            accepted = middle
-        else:
-            other = middle
-    return accepted
-
-
-class _Tried:
-    """What has been tried so far: nothing is tried twice."""
-
-    def __init__(self, decide: Callable[[Fraction], Outcome]) -> None:
-        self._decide = decide
-        self._outcomes: dict[Fraction, Outcome] = {}
-
-    def __call__(self, number: Fraction) -> Outcome:
-        if number not in self._outcomes:
-            self._outcomes[number] = self._decide(number)
-        return self._outcomes[number]
-
-    def remember(self, number: Fraction, found: Certification) -> None:
-        self._outcomes[number] = found.verdict, found
-
-    def is_proved(self, number: Fraction) -> bool:
-        return self(number)[0] is Verdict.PROVED
-
-    def is_refuted(self, number: Fraction) -> bool:
-        return self(number)[0] is Verdict.REFUTED
-
-    def makes_no_system(self, number: Fraction) -> bool:
-        return self(number)[0] is None
-
-    def certification(self, number: Fraction) -> Certification | None:
-        return self(number)[1]
-
-    def all(self) -> list[Fraction]:
-        return list(self._outcomes)
-
-    def largest(self) -> Fraction:
-        return max(self._outcomes)
-
-    def that_are(self, verdict: Verdict) -> list[Fraction]:
-        return [number for number, found in self._outcomes.items() if found[0] is verdict]
-
-
-def _assembled(
-    scale: Fraction, assemble: Assemble, faults: dict[Fraction, AssemblyError]
-) -> SwitchedSystem | None:
-    """Return the system at a scale, or note why the scale makes none."""
-    try:
-        return assemble(scale)
-    except AssemblyError as error:
-        faults[scale] = error
-        return None
-
-
-def _try(
-    scale: Fraction, assemble: Assemble, certify: Certify, faults: dict[Fraction, AssemblyError]
-) -> Outcome:
-    """Return the verdict at a scale; None if the scale makes no system."""
-    system = _assembled(scale, assemble, faults)
-    if system is None:
-        return None, None
-    certification = certify(system)
-    return certification.verdict, certification
+    return sharpen(refuted, max(below), REFUTED_STEPS, tried.is_refuted)
 
 
 @dataclass(frozen=True)
@@ -226,7 +170,10 @@ class DwellMargin:
 
 
 def find_shortest_dwell(
-    system: SwitchedSystem, certify: Certify, known: Certification | None = None
+    system: SwitchedSystem,
+    certify: Certify,
+    known: Certification | None = None,
+    progress: Progress = silent,
 ) -> DwellMargin:
     """Find the largest switching rate that has a proof: the shortest provable dwell time.
 
@@ -239,6 +186,8 @@ def find_shortest_dwell(
     known : Certification, optional
         What was found for the system as it stands, perhaps by a longer search: no worse is
         reported.
+    progress : callable
+        Told each dwell time, and what is known by then.
 
     Notes
     -----
@@ -246,19 +195,21 @@ def find_shortest_dwell(
     one. The bracket begins at what is known; it is widened by doubling up to the longest dwell
     time that a spec can declare, or narrowed by halving, and then bisected.
     """
+    proofs: dict[Fraction, Certification] = {}
 
-    def decide(dwell: Fraction) -> Outcome:
+    def decide(dwell: Fraction) -> Verdict:
         switching = replace(system.switching, dwell_time=dwell, stays=())
         # From where motions decay under saturation is no matter of a margin.
-        found = certify(replace(system, switching=switching, saturation=None))
-        return found.verdict, found
+        proofs[dwell] = certify(replace(system, switching=switching, saturation=None))
+        return proofs[dwell].verdict
 
-    tried, longest = _Tried(decide), Fraction(LONGEST_DWELL)
+    tried, longest = Tried(decide, progress, "dwell time", "s"), Fraction(LONGEST_DWELL)
     if known is not None and (dwell := _common_dwell(system, known)) is not None:
-        tried.remember(dwell, known)
+        tried.remember(dwell, known.verdict)
+        proofs[dwell] = known
     if tried.is_proved(Fraction(0)):
-        return DwellMargin(Fraction(0), None, tried.certification(Fraction(0)), tried.largest())
-    if _has_unstable_mode(tried.certification(Fraction(0))):
+        return DwellMargin(Fraction(0), None, proofs[Fraction(0)], tried.longest())
+    if _has_unstable_mode(proofs[Fraction(0)]):
         return DwellMargin(None, longest, None, longest)
     proved = min(tried.that_are(Verdict.PROVED), default=None) or _widen(tried, system)
     if proved is None:
@@ -268,10 +219,8 @@ def find_shortest_dwell(
             break
         proved /= 2
     low = max(dwell for dwell in tried.all() if dwell < proved)
-    proved = _sharpen(proved, low, DWELL_STEPS, tried.is_proved)
-    return DwellMargin(
-        proved, _longest_refuted(tried), tried.certification(proved), tried.largest()
-    )
+    proved = sharpen(proved, low, DWELL_STEPS, tried.is_proved)
+    return DwellMargin(proved, _longest_refuted(tried), proofs[proved], tried.longest())
 
 
 def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | None:
@@ -288,13 +237,12 @@ def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | No
     return None
 
 
-def _has_unstable_mode(found: Certification | None) -> bool:
+def _has_unstable_mode(found: Certification) -> bool:
     """Tell whether a refutation holds for every dwell time."""
-    evidence = None if found is None else found.evidence
-    return evidence is not None and evidence.names_unstable_mode
+    return found.evidence is not None and found.evidence.names_unstable_mode
 
 
-def _widen(tried: _Tried, system: SwitchedSystem) -> Fraction | None:
+def _widen(tried: Tried[Fraction], system: SwitchedSystem) -> Fraction | None:
     """Double the dwell time until it is proved, from the modes' own time or what is refuted."""
     dwell = max((*tried.that_are(Verdict.REFUTED), _fastest_time(system)))
     while dwell < LONGEST_DWELL:
@@ -313,9 +261,9 @@ def _fastest_time(system: SwitchedSystem) -> Fraction:
     return Fraction(2) ** size
 
 
-def _longest_refuted(tried: _Tried) -> Fraction | None:
+def _longest_refuted(tried: Tried[Fraction]) -> Fraction | None:
     refuted = max(tried.that_are(Verdict.REFUTED), default=None)
     above = [dwell for dwell in tried.all() if refuted is not None and dwell > refuted]
     if refuted is None or not above:
         return refuted
-    return _sharpen(refuted, min(above), REFUTED_STEPS, tried.is_refuted)
+    return sharpen(refuted, min(above), REFUTED_STEPS, tried.is_refuted)

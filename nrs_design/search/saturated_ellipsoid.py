@@ -27,7 +27,7 @@ from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import round_rate, unscale
-from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.search.sdp import solve_blocks, symmetric_basis
 
 Array = NDArray[np.float64]
 
@@ -378,22 +378,6 @@ def _decrease(A: Array, Q: Array, t: Array, rate: float) -> tuple[Array, Array]:
 
 
 def _solved(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
-    """Make the last unknown large where all blocks are positive; None where it is not positive.
-
-    Parameters
-    ----------
-    blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
-        A constant, and what every unknown adds to it.
-    allowance : Allowance
-        Time and memory.
-    """
-    unknowns = len(blocks[0][1])
-    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
-    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
-    x = maximize_margin(
-        np.concatenate([-pack(images).T for _, images in blocks]),
-        np.concatenate([pack(constant) for constant, _ in blocks]),
-        [len(constant) for constant, _ in blocks],
-        time_limit=allowance.left,
-    )
+    """Make the last unknown large where all blocks are positive; None where it is not positive."""
+    x = solve_blocks(blocks, allowance)
     return x if x is not None and x[-1] > 0 else None

@@ -7,13 +7,14 @@ takes to solve it; off the hot path, `nrs_design.search.raw` leaves that to CVXP
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 from math import inf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.allowance import Cost
+from nrs_design.search.allowance import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -38,23 +39,38 @@ def symmetric_basis(n: int) -> Array:
 def pack(matrices: Array) -> Array:
     """Return the coordinates of symmetric matrices, shape (..., n, n) to (..., n(n+1)/2)."""
     i, j = triangle(matrices.shape[-1])
-    return np.asarray(matrices[..., i, j] * np.where(i == j, 1.0, np.sqrt(2.0)), dtype=float)
+    return np.asarray(matrices[..., i, j] * _weights(matrices.shape[-1]), dtype=float)
 
 
 def unpack(coordinates: Array, n: int) -> Array:
     """Return symmetric matrices from their coordinates; the inverse of `pack`."""
     i, j = triangle(n)
     matrices = np.zeros((*coordinates.shape[:-1], n, n))
-    scaled = coordinates / np.where(i == j, 1.0, np.sqrt(2.0))
+    scaled = coordinates / _weights(n)
     matrices[..., i, j] = scaled
     matrices[..., j, i] = scaled
     return matrices
 
 
+@cache
 def triangle(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the row and column indices of the upper triangle, column by column."""
+    """Return the row and column indices of the upper triangle, column by column.
+
+    Kept, and not to be written to: to find them takes longer than to use them.
+    """
     column, row = np.tril_indices(n)
+    for indices in (row, column):
+        indices.setflags(write=False)
     return row, column
+
+
+@cache
+def _weights(n: int) -> Array:
+    """Return the factors that make coordinates of `triangle` orthonormal."""
+    i, j = triangle(n)
+    factors = np.where(i == j, 1.0, np.sqrt(2.0))
+    factors.setflags(write=False)
+    return factors
 
 
 def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) -> Cost:
@@ -77,6 +93,32 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
         factor += size * (size / 2 + touched)
     memory = PER_ENTRY * rows * variables + PER_FACTOR_ENTRY * factor
     return Cost(PER_PROGRAM + PER_PRODUCT * products, memory)
+
+
+def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
+    """Make the last unknown as large as all blocks stay positive semidefinite with.
+
+    Parameters
+    ----------
+    blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
+        A constant, and what every unknown adds to it.
+    allowance : Allowance
+        Time and memory.
+
+    Returns
+    -------
+    ndarray, shape (N,), or None
+        As `maximize_margin` returns it.
+    """
+    unknowns = len(blocks[0][1])
+    cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
+    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
+    return maximize_margin(
+        np.concatenate([-pack(images).T for _, images in blocks]),
+        np.concatenate([pack(constant) for constant, _ in blocks]),
+        [len(constant) for constant, _ in blocks],
+        time_limit=allowance.left,
+    )
 
 
 def maximize_margin(

@@ -15,7 +15,7 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
-from nrs_design.progress import Progress
+from nrs_design.progress import Progress, silent
 from nrs_design.simulation.flow import CHUNK, Flow
 from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.run import (
@@ -47,10 +47,6 @@ OUTPUTS = (
 INPUTS = (Signal("hand", "rad/s"),)
 
 
-def _silent(step: str) -> None:
-    """Report no progress."""
-
-
 def simulate_exactly(
     spec: InteractionDesignSpec,
     plant: Plant,
@@ -58,7 +54,7 @@ def simulate_exactly(
     scenario: Scenario,
     *,
     max_steps: int = MAX_STEPS,
-    tell: Progress = _silent,
+    tell: Progress = silent,
 ) -> Run:
     """Simulate a scenario in continuous time, without what acts on the sampled loop alone.
 

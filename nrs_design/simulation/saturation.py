@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, Norm
 from nrs_design.simulation.switched import SwitchedRun, sampling_instants
@@ -23,26 +24,58 @@ def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
     assert saturation is not None  # who asks has looked
     free = () if system.contact is None else system.contact.free
     A = np.array([mode.A.floats() for mode in (*system.modes, *free)])
-    n, signals = system.order, saturation.signals
-    columns = [np.array([c.floats() for c in s.columns])[:, :, 0] for s in signals]
-    rows = [np.array([q.floats() for q in s.rows])[:, 0] for s in signals]
+    columns = [np.array([c.floats() for c in s.columns])[:, :, 0] for s in saturation.signals]
+    rows = _rows(saturation)
 
     def rates(states: Array) -> Array:
         moved = np.einsum("kij,kj->ki", A, states)
-        cut, whole = list[Array](), list[Array]()
-        for signal, column, row in zip(signals, columns, rows, strict=True):
-            own = np.einsum("kj,kj->k", row[:, :n], states)
-            argument, linear = own.copy(), own.copy()
-            for i in range(len(cut)):
-                argument += row[:, n + i] * cut[i]
-                linear += row[:, n + i] * whole[i]
-            limit = float(signal.limit)
-            cut.append(np.clip(argument, -limit, limit))
-            whole.append(linear)
-            moved = moved + column * (cut[-1] - linear)[:, None]
+        signals = _signals(saturation, rows, states)
+        for column, (_, cut, linear) in zip(columns, signals, strict=True):
+            moved = moved + column * (cut - linear)[:, None]
         return np.asarray(moved)
 
     return rates
+
+
+def share_cut_off(system: SwitchedSystem, run: SwitchedRun) -> dict[str, float]:
+    """Return in which share of the steps of a run each signal is cut off, by its name.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        In continuous time, with what saturates.
+    run : SwitchedRun
+        As `worst_saturated` gives it.
+    """
+    saturation = system.saturation
+    assert saturation is not None  # who asks has looked
+    rows = [row[run.mode] for row in _rows(saturation)]
+    signals = _signals(saturation, rows, run.state[:-1])
+    return {
+        signal.name: float(np.mean(cut != argument))
+        for signal, (argument, cut, _) in zip(saturation.signals, signals, strict=True)
+    }
+
+
+def _rows(saturation: Saturation) -> list[Array]:
+    """Return the q of every signal, one below the other for all modes."""
+    return [np.array([q.floats() for q in s.rows])[:, 0] for s in saturation.signals]
+
+
+def _signals(
+    saturation: Saturation, rows: Sequence[Array], states: Array
+) -> list[tuple[Array, Array, Array]]:
+    """Return each signal at some states: its argument, that cut off, and as it were if none was."""
+    n, found = states.shape[1], list[tuple[Array, Array, Array]]()
+    for signal, row in zip(saturation.signals, rows, strict=True):
+        argument = np.einsum("kj,kj->k", row[:, :n], states)
+        linear = argument.copy()
+        for i, (_, cut, whole) in enumerate(found):
+            argument += row[:, n + i] * cut
+            linear += row[:, n + i] * whole
+        limit = float(signal.limit)
+        found.append((argument, np.clip(argument, -limit, limit), linear))
+    return found
 
 
 def worst_saturated(

@@ -42,6 +42,8 @@ MAX_SCALAR = 1000
 
 # Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
+# How pages begin, which are met beside specs of the same name.
+_PAGE = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!doctype html|<html\b|%PDF-)", re.IGNORECASE)
 _WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
 # What YAML 1.2 reads as a truth value or a number, when it is not quoted.
@@ -96,10 +98,14 @@ def read_source(path: Path) -> tuple[bytes, str]:
     Raises
     ------
     SpecError
-        If the file is missing, unreadable, not a regular file, empty, larger than 1 MiB or not
-        UTF-8.
+        If the file is missing, unreadable, not a regular file, empty, a page, larger than 1 MiB or
+        not UTF-8.
     """
     content = _read_bytes(path)
+    if _PAGE.match(content):
+        raise SpecError(
+            "this is a page, not a spec", path=path, remedy="name the *.nrs.yaml file it is about"
+        )
     if len(content) > MAX_BYTES:
         raise SpecError(
             f"the file is larger than {MAX_BYTES} bytes",

@@ -13,6 +13,7 @@ from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity, QuantityKind, is_less
 from nrs_design.spec.quantity_fields import (
     AnyQuantity,
+    check_order,
     quantity_schema,
     read_entries,
     read_quantity,
@@ -47,12 +48,7 @@ class GainSpec(SpecModel):
 
     @model_validator(mode="after")
     def _check(self) -> GainSpec:
-        if is_less(self.max, self.min):
-            raise fault(
-                f"max {quoted(self.max.text)} is below min {quoted(self.min.text)}",
-                "swap them",
-                "max",
-            )
+        check_order(self.min, self.max)
         if self.range is not None:
             _check_range(self, *self.range)
         return self

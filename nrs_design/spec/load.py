@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import field
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -178,12 +179,11 @@ def valid_parts(model: type[SpecModel], said: Data) -> SpecModel:
     """
     valid: dict[str, Any] = {}
     missing: list[str] = []
-    for name, declared in model.model_fields.items():
+    for name in model.model_fields:
         if not isinstance(said, dict) or name not in said:
             continue
         try:
-            part: TypeAdapter[object] = TypeAdapter(declared.rebuild_annotation())
-            valid[name] = part.validate_python(said[name])
+            valid[name] = _part_of(model, name).validate_python(said[name])
         except ValidationError:
             missing.append(name)
     spec = model.model_construct(**valid)
@@ -191,6 +191,12 @@ def valid_parts(model: type[SpecModel], said: Data) -> SpecModel:
         # Where a part is not valid, its default says nothing.
         spec.__dict__.pop(name, None)
     return spec
+
+
+@cache
+def _part_of(model: type[SpecModel], name: str) -> TypeAdapter[object]:
+    """Return what judges one field of a spec; to build it takes longer than to ask it."""
+    return TypeAdapter(model.model_fields[name].rebuild_annotation())
 
 
 def _refusal(syntax: tuple[Fault, ...], found: tuple[Fault, ...], path: Path | None) -> SpecError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -12,7 +13,7 @@ from nrs_design.errors import SpecError
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
-from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit
+from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit, respelt
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
 SMALLEST = 1e-30
@@ -185,8 +186,30 @@ def parse_quantity(text: str, kind: QuantityKind) -> Quantity:
         raise _without_unit(text, kind)
     if len(unit) > MAX_UNIT_LENGTH:
         raise SpecError(f"{quoted(text)} has a long unit", remedy=f"such as {kind.example!r}")
-    quantity = Quantity(text, parse_exact(number), unit.lstrip(" "))
+    value, unit = parse_exact(number), unit.lstrip(" ")
+    try:
+        quantity = Quantity(text, value, unit)
+    except SpecError as error:
+        if (written := respelt(unit)) is None:
+            raise
+        raise SpecError(error.message, remedy=_meant(written, kind)) from None
     return checked_kind(quantity, kind)
+
+
+def _meant(written: str, kind: QuantityKind) -> str:
+    """Advise the unit that is most like the one written, of those that measure this kind."""
+    try:
+        unit = parse_unit(written)
+    except SpecError:
+        pass
+    else:
+        if kind.accepts(unit.dimension) and not (kind.rational and unit.pi_power):
+            return f"did you mean {written}?"
+    longer = [unit for unit in kind.units if unit.startswith(f"{written}/")]
+    near = longer or difflib.get_close_matches(written, kind.units, n=1)
+    such = "" if kind.is_about_commands else f", such as {kind.example!r}"
+    meant = f"did you mean {near[0]}? " if near else ""
+    return f"{meant}{kind.name} is written in {' or '.join(kind.units)}{such}"
 
 
 def checked_kind(quantity: Quantity, kind: QuantityKind) -> Quantity:

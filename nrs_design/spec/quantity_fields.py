@@ -112,6 +112,14 @@ AnyQuantity = Annotated[
 ]
 
 
+def check_order(least: Quantity, largest: Quantity) -> None:
+    """Refuse a ``max`` below its ``min``."""
+    if is_less(largest, least):
+        raise fault(
+            f"max {quoted(largest.text)} is below min {quoted(least.text)}", "swap them", "max"
+        )
+
+
 class Bounds(SpecModel):
     """Closed interval."""
 
@@ -120,12 +128,7 @@ class Bounds(SpecModel):
 
     @model_validator(mode="after")
     def _check_order(self) -> Bounds:
-        if is_less(self.max, self.min):
-            raise fault(
-                f"max {quoted(self.max.text)} is below min {quoted(self.min.text)}",
-                "swap them",
-                "max",
-            )
+        check_order(self.min, self.max)
         return self
 
     @property

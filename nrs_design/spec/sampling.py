@@ -175,13 +175,24 @@ def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) 
 
 
 def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -> None:
-    """Refuse a goal for the torque where nothing is said to cause one."""
-    if goals is not None and goals.peak_torque is not None and disturbances is None:
+    """Refuse a goal for the torque where nothing is said to cause one, or not of what moves it.
+
+    The bound holds for what is declared alone: under friction, of a robot that nobody moves.
+    """
+    if goals is None or goals.peak_torque is None:
+        return
+    if disturbances is None:
         raise fault(
             "peak_torque is wanted, but nothing is said to disturb the loop",
             "add `disturbances: {command: 8 deg/s}`",
             "goals",
             "peak_torque",
+        )
+    if disturbances.command is None:
+        raise fault(
+            "peak_torque is wanted, but the bound would be that of a loop without a command",
+            "add `command: 8 deg/s`",
+            "disturbances",
         )
 
 

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.noun import dataclass
-from nrs_design.proof.text import quoted
+from nrs_design.proof.text import counted, quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
@@ -193,8 +193,7 @@ class SwitchingSpec(SpecModel):
             for at, dwell in self.dwell_times()
         ]
         if self.transitions is not None:
-            count = len(self.transitions)
-            rules.append(f"{count} allowed transition{'s' * (count != 1)}")
+            rules.append(counted(len(self.transitions), "allowed transition"))
         return ", ".join(rules) or ARBITRARY
 
 

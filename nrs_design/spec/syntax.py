@@ -5,7 +5,7 @@ from __future__ import annotations
 from ruamel.yaml.error import MarkedYAMLError, StringMark, YAMLError
 from ruamel.yaml.reader import ReaderError
 
-from nrs_design.proof.text import quoted
+from nrs_design.proof.text import counted, quoted
 
 # The first fragment that occurs in the parser's report decides.
 _EXPLANATIONS: tuple[tuple[str, str, str], ...] = (
@@ -45,7 +45,7 @@ def explain_syntax(error: YAMLError, text: str, index: int) -> tuple[str, str, i
     if "mapping values are not allowed" in report:
         return _second_colon(text, index)
     if "expected <block end>" in report:
-        indent = _spaces(index - _line_start(text, index))
+        indent = counted(index - _line_start(text, index), "space")
         return (
             f"indented by {indent}, which fits nothing above",
             "align it with the keys that it belongs to",
@@ -66,7 +66,8 @@ def _second_colon(text: str, index: int) -> tuple[str, str, int]:
         return "a second ': ' stands on this line", "quote the text", index
     indent = len(before) - len(before.lstrip(" "))
     return (
-        f"{quoted(key)} is indented by {_spaces(indent)}, so that it goes on the value above",
+        f"{quoted(key)} is indented by {counted(indent, 'space')}, so that it goes on the value "
+        "above",
         "give it the indentation of the keys that it belongs to",
         start + indent,
     )
@@ -74,10 +75,6 @@ def _second_colon(text: str, index: int) -> tuple[str, str, int]:
 
 def _line_start(text: str, index: int) -> int:
     return max(text.rfind(end, 0, index) for end in "\n\r") + 1
-
-
-def _spaces(count: int) -> str:
-    return f"{count} space{'s' * (count != 1)}"
 
 
 def fault_mark(error: MarkedYAMLError) -> StringMark | None:

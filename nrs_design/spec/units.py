@@ -207,11 +207,27 @@ def _atom(tokens: list[str], text: str) -> Unit:
     raise _malformed(text)
 
 
-def _unknown(symbol: str, text: str) -> SpecError:
+def respelt(text: str) -> str | None:
+    """Return a unit with known symbols for those that are not; None if it has only known ones.
+
+    A symbol that resembles none stays as it is.
+    """
+    tokens = _TOKEN.findall(text)
+    unknown = [token for token in tokens if token.isalpha() and token not in UNITS]
+    if "".join(tokens) != text or not unknown:
+        return None
+    return "".join(_guess(token) or token if token in unknown else token for token in tokens)
+
+
+def _guess(symbol: str) -> str | None:
+    """Return what is probably meant by a symbol that is no unit."""
     alike = [unit for unit in UNITS if unit.lower() == symbol.lower()]
     near = alike or difflib.get_close_matches(symbol, UNITS, n=1)
-    guess = _LIKELY.get(symbol) or (near[0] if near else None)
-    known = "known units are " + " ".join(UNITS)
+    return _LIKELY.get(symbol) or (near[0] if near else None)
+
+
+def _unknown(symbol: str, text: str) -> SpecError:
+    guess, known = _guess(symbol), "known units are " + " ".join(UNITS)
     remedy = f"did you mean {guess}? {known}" if guess else known
     within = "" if symbol == text else f" in {quoted(text)}"
     return SpecError(f"unknown unit {quoted(symbol)}{within}", remedy=remedy)

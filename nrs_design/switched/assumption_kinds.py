@@ -179,6 +179,12 @@ NOT_SAMPLED = AssumptionKind(
     "The loop has dynamics that no mode holds; delay can destabilize it.",
     "declare sampling in the spec; log the command: it must stay below the driver's limit",
 )
+NOT_SAMPLED_BUT_LIMITED = AssumptionKind(
+    "no sampling or friction, and saturation only as stated",
+    "delays far below the delay margin",
+    "The loop has dynamics that no mode holds; delay can destabilize it.",
+    "declare sampling in the spec; log the command: cut off at the limits of the spec or beyond",
+)
 NOT_QUANTIZED = AssumptionKind(
     "no quantization, friction or saturation",
     "steps of the sensors far below the signals; commands below the limit of the driver",

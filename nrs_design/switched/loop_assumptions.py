@@ -92,7 +92,7 @@ _SAME_STIFFNESS = (
 NOT_MODELLED = kinds.NOT_SAMPLED.says(
     "Continuous time: sampling, delay, quantization, friction and saturation are not modelled."
 )
-NOT_MODELLED_BUT_LIMITS = kinds.NOT_SAMPLED.says(
+NOT_MODELLED_BUT_LIMITS = kinds.NOT_SAMPLED_BUT_LIMITED.says(
     "Continuous time: sampling, delay, quantization and friction are not modelled, saturation only "
     "where a statement says so."
 )

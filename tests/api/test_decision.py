@@ -29,8 +29,10 @@ def test_a_decision_is_told_in_a_line():
 
 
 def test_a_page_is_no_pdf(tmp_path):
-    with pytest.raises(OutputError, match="not the name of a page"):
+    with pytest.raises(OutputError, match="not the name of a page in HTML"):
         nrs.certify([[[-1]]]).report(tmp_path / "page.pdf")
+    with pytest.raises(OutputError, match=r"\.txt is not a type of report"):
+        nrs.certify([[[-1]]]).report(tmp_path / "page.txt")
     assert not list(tmp_path.iterdir())
 
 

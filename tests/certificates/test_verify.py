@@ -71,7 +71,7 @@ SPECS = {
     "saturating": ROOT / "docs" / "examples" / "saturating.nrs.yaml",
 }
 # Every change to the others, which are larger, is left to the slow tests.
-SMALL = ("given", "force", "unstable", "discrete")
+SMALL = ("given", "unstable", "discrete")
 ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for name in SPECS]
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {
@@ -432,6 +432,7 @@ class TestForgery:
                     forged = {**document, "statements": [statement]}
                     assert verify_document(resign(forged), spec).fault is not None
 
+    @pytest.mark.slow
     def test_a_bound_with_other_names_or_numbers(self, tmp_path):
         text = SOFT_TISSUE.read_text().replace("[720.56 N/m, 768.17 N/m]", "[747 N/m, 748 N/m]")
         path = tmp_path / "bounded.nrs.yaml"

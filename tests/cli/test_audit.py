@@ -82,6 +82,10 @@ def test_an_unproved_spec_is_said_loudly(tmp_path):
     done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path)
     assert done.returncode == 3
     assert "UNPROVED SPEC: no certificate is named" in done.stdout
+    # What is long stands below the table, once.
+    table = done.stdout[: done.stdout.index("bound of ")].splitlines()
+    assert max(map(len, table)) < 150
+    assert done.stdout.count("where the driver saturates is not known") == 1
     assert "not judged: saturation" in done.stdout
 
 
@@ -133,3 +137,17 @@ def test_report(tmp_path, ending, stiffness, code):
 def test_the_limit_of_the_driver_has_a_unit(tmp_path, limit, said):
     done = run("audit", write(tmp_path), SOFT_TISSUE, "--command-limit", limit, cwd=tmp_path)
     assert said in done.stdout + done.stderr
+
+
+def test_many_rules_do_not_widen_the_table(tmp_path):
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    text = text.replace("switching: arbitrary", "switching: {dwell_time: 1.25 s}")
+    text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
+    spec = tmp_path / "long.nrs.yaml"
+    spec.write_text(text.replace("insertion", "insertion-of-the-endoscope"), encoding="utf-8")
+    log = write(tmp_path)
+    log.write_text(log.read_text().replace("insertion", "insertion-of-the-endoscope"))
+    done = run("audit", log, spec, *LIMIT, cwd=tmp_path)
+    allowed = "insertion-of-the-endoscope at least 1.25 s, withdrawal at least 1.25 s"
+    assert f"dwell times, allowed: {allowed}\n" in done.stdout
+    assert max(map(len, done.stdout.partition("bound of ")[0].splitlines())) < 150

@@ -254,6 +254,7 @@ def sampled(export, sampled_certificate):
     return sampled_spec(), "mine.json"
 
 
+@pytest.mark.slow
 def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
     spec = sampled_spec()
     assert export(spec, "--out", "out", "--format", "c") == 0
@@ -297,6 +298,7 @@ def test_the_export_of_another_spec_is_not_overwritten(export, capsys, sampled, 
     assert {file: Path(file).read_bytes() for file in files()} == before
 
 
+@pytest.mark.slow
 def test_two_laws_make_one_program(export, sampled):
     """Tests of both are beside them, and neither brings a `main` that nobody asked for."""
     cc = program_named("cc")

@@ -236,6 +236,13 @@ def test_places_that_cannot_be_written(gate, capsys):
     assert file.read_text() == STABLE
 
 
+def test_a_lock_that_cannot_be_written_is_said_before_the_proofs(gate, capsys):
+    Path("nrs.lock").mkdir()
+    assert gate("specs", "--no-reports") == 2
+    assert "error[NRS005]: nrs.lock" in capsys.readouterr().err
+    assert not Path("reports").exists()
+
+
 def test_locked_without_a_lock(gate, capsys):
     assert gate("specs", "--locked") == 2
     assert "error[NRS004]: nrs.lock" in capsys.readouterr().err

@@ -73,6 +73,7 @@ def test_a_file_that_is_no_report_is_not_overwritten(tmp_path, monkeypatch, form
     assert Path("notes").read_text() == "precious"
 
 
+@pytest.mark.slow
 def test_pdf_and_its_default_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert run(COMMUTING, "--format", "pdf").exit_code == 0
@@ -85,6 +86,9 @@ def test_pdf_and_its_default_name(tmp_path, monkeypatch):
         (("--out", "page.txt"), ".txt is not a type of report"),
         (("--out", "page.png"), "--format png takes a folder"),
         (("--format", "png", "--out", "page.png"), "takes a folder"),
+        (("--format", "png", "--out", "page.html"), "takes a folder"),
+        (("--format", "pdf", "--out", "page.htm"), "ends in .htm, and --format pdf"),
+        (("--out", "page"), "no ending is not a type of report"),
         (("--format", "pdf", "--out", "page.html"), "ends in .html, and --format pdf"),
         (("--format", "html", "--out", "page.PDF"), "ends in .pdf, and --format html"),
     ],
@@ -165,6 +169,7 @@ def test_missing_spec_writes_nothing(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_certificate_at_hand_is_shown(tmp_path):
     certificate, page = ROOT / "reports/commuting.cert.json", tmp_path / "a.html"
     given = ("--certificate", str(certificate), "--out", str(page))

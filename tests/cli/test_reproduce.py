@@ -92,6 +92,13 @@ def test_json_of_a_drift():
     assert json.loads(result.stdout)["drift"] == ["mean of the fits, soft specimen"]
 
 
+def test_a_page_is_named_as_one(tmp_path):
+    """Before the seconds of work."""
+    done = run("--html", str(tmp_path / "table.txt"))
+    assert ".txt is not a type of report" in str(done.exception)
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.usefixtures("short")
 def test_html_is_written_whole(tmp_path):
     page = tmp_path / "new" / "page.html"

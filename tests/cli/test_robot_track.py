@@ -30,6 +30,7 @@ def quick(tmp_path_factory):
     return folder, json.loads(result.stdout)
 
 
+@pytest.mark.slow
 def test_every_controller_in_one_document(quick):
     _, found = quick
     assert found["schema"] == "nrs-design/robot-track/1"

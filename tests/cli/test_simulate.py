@@ -291,6 +291,7 @@ def test_a_chattering_logic_is_counted(spec, tmp_path):
     assert document["runs"][0]["metrics"]["chatter"] > 20
 
 
+@pytest.mark.slow
 def test_mujoco_says_how_far_it_is_from_the_sampled_engine(spec, tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     path = spec(more=SAMPLED)

@@ -47,6 +47,7 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
     assert "No bound is certified" in told
 
 
+@pytest.mark.slow
 def test_shares_are_printed_with_their_intervals(spec, tmp_path):
     result = run("simulate", spec, "--monte-carlo", "8", "--no-bound", "--json", "--out", ".",
                  cwd=tmp_path)  # fmt: skip

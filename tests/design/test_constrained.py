@@ -122,6 +122,7 @@ def test_no_point_of_a_dense_scan_is_better(name):
     assert impedance_cost(problem(), Mt[allowed], Bt[allowed]).min() >= optimum.cost - 1e-6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", EACH)
 def test_the_optimum_meets_its_goals_in_every_corner_by_python_control(name):
     optimum = optimum_of(name)

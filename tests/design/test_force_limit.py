@@ -38,6 +38,7 @@ def test_the_measured_position_leaves_nothing(speed, peak):
     assert peak_force(*at("measured", speed)) == pytest.approx(peak, abs=2e-4)
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(
     speed=st.floats(0.1, 20),

@@ -58,6 +58,7 @@ def test_literals_are_exact(value):
     assert to_float32(Fraction(value)) == Fraction(value)
 
 
+@pytest.mark.slow
 @example("???/ */*/ /*")
 @given(st.text())
 def test_no_text_ends_a_comment(text):

@@ -311,6 +311,7 @@ int main(void)
 """
 
 
+@pytest.mark.slow
 def test_on_an_emulated_processor_it_tells_the_same(tmp_path, monitor):
     gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     for name, text in (monitor(spec_with()).sources | {"main.c": PRESS}).items():
@@ -326,6 +327,7 @@ def test_on_an_emulated_processor_it_tells_the_same(tmp_path, monitor):
     assert here == there.stderr == f"{stiffness} at 1249\n"
 
 
+@pytest.mark.slow
 def test_cppcheck_with_misra_is_content(tmp_path, monitor):
     """But for macros that the caller uses, as with the law."""
     cppcheck = compiler("cppcheck")

@@ -57,6 +57,7 @@ def test_commands_and_options_exist():
         assert {word for word in words if word.startswith("-")} <= options
 
 
+@pytest.mark.slow
 def test_commands_work_in_a_project(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("specs").mkdir()

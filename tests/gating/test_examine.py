@@ -174,6 +174,8 @@ def test_goals_that_a_certificate_must_show(tmp_path, goals, level, ends):
     found = list(wanting(tmp_path, goals).certified_goals(certificate))
     assert [item.status for item in found] == ends
     assert all(item.rule.id == "NRS108" and item.line for item in found)
+    if level is not None:
+        assert "while |push| <= 0.25 N and nothing else disturbs, the force" in found[0].message
     none = wanting(tmp_path, goals).certified_goals(None)
     assert {item.status for item in none} <= {Status.INCONCLUSIVE}
 

@@ -6,6 +6,7 @@ from nrs_design.errors import CertificateError
 from nrs_design.gating.lock import MAX_BYTES, MAX_SPECS, Lock, dump_lock, read_lock
 
 
+@pytest.mark.slow
 def test_lock_names_specs_and_certificates_relative_to_itself(project):
     lock = read_lock(project / "nrs.lock")
     assert [spec.path for spec in lock.specs] == [

@@ -1,5 +1,6 @@
 import json
 import shutil
+import threading
 
 import pytest
 
@@ -9,6 +10,7 @@ from nrs_design.gating.lock import read_lock
 from nrs_design.gating.locked import run_locked
 from nrs_design.gating.renew import certificates_of, check_folder, make_lock, write_lock
 from nrs_design.gating.run import Files, run_gate
+from nrs_design.output import alone_in
 
 from .conftest import BROKEN, STABLE
 
@@ -139,6 +141,42 @@ def test_unwritable_lock(project):
         write_lock(outcome, project / "reports/nrs.lock")
     with pytest.raises(CertificateError, match="not a regular file"):
         write_lock(outcome, project)
+
+
+def test_what_another_run_has_replaced_is_not_locked(project):
+    """Two runs in one tree: the certificate on the disk must be the one that is locked."""
+    outcome = run_gate([project / "specs/stable.nrs.yaml"], Files(project / "reports", html=False))
+    lock, file = project / "nrs.lock", project / "reports/stable.cert.json"
+    before, ours = lock.read_bytes(), file.read_text()
+    file.write_text(ours.replace(outcome.specs[0].certificate_id, 64 * "0"))
+    for _ in range(2):
+        with pytest.raises(OutputError, match=r"nothing is locked: another run works in this tree"):
+            write_lock(outcome, lock)
+        assert lock.read_bytes() == before
+        file.unlink(missing_ok=True)
+    file.write_text(ours)
+    write_lock(outcome, lock)
+    assert lock.read_bytes() == before
+
+
+def test_nobody_reads_a_lock_that_another_run_is_about_to_write(project):
+    """What was locked in between would be lost."""
+    lock = project / "nrs.lock"
+    whole = lock.read_bytes()
+    lock.unlink()
+    names = ("specs/stable.nrs.yaml", "specs/soft-tissue.nrs.yaml")
+    one, other = (
+        run_gate([project / name], Files(project / "reports", html=False)) for name in names
+    )
+    with alone_in(project):
+        waiting = threading.Thread(target=write_lock, args=(one, lock))
+        waiting.start()
+        waiting.join(0.1)
+        assert waiting.is_alive()
+        assert not lock.exists()
+    waiting.join()
+    write_lock(other, lock)
+    assert lock.read_bytes() == whole
 
 
 @pytest.mark.parametrize(

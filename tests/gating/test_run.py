@@ -153,6 +153,7 @@ def test_unwritable_folder_is_an_error_of_every_spec(tmp_path):
     assert outcome.severity == 3
 
 
+@pytest.mark.slow
 def test_reports_are_written_where_asked_for(tmp_path):
     spec = tmp_path / "s.nrs.yaml"
     spec.write_text(STABLE)
@@ -265,10 +266,12 @@ class TestGoals:
         line = text.split("\n")[missed.line - 1]
         assert line.startswith("max_sensitivity_peak", missed.column - 1)
 
+    @pytest.mark.slow
     def test_gains_that_are_designed_meet_their_goals(self, examine):
         text = SOFT_TISSUE.read_text().replace("switching: arbitrary", GOALS)
         assert examine(text).severity == 0
 
+    @pytest.mark.slow
     def test_a_goal_out_of_reach_is_an_error_of_the_design(self, examine):
         goals = "goals: {max_sensitivity_peak: 1.01}\nswitching: arbitrary"
         (spec,) = examine(SOFT_TISSUE.read_text().replace("switching: arbitrary", goals)).specs
@@ -380,6 +383,7 @@ def test_a_scenario_without_limits_is_not_simulated(examine):
     assert "NRS109" not in {item.rule.id for item in examine(text).specs[0].obligations}
 
 
+@pytest.mark.slow
 def test_what_is_proved_of_axes_in_part_is_said_and_fails(examine):
     (spec,) = examine(HEAVY).specs
     (stable,) = (o for o in spec.obligations if o.rule.id == "NRS102")

@@ -21,6 +21,12 @@ def check(proposal, names=("A1", "A2")):
     assert np.array(proposal.P).tolist() == P.tolist()
 
 
+def test_times_are_no_numbers(tmp_path):
+    np.savez(tmp_path / "a.npz", A=A.astype("timedelta64[s]"), P=P)
+    with pytest.raises(DataError, match="A holds times or dates"):
+        read_proposal(tmp_path / "a.npz")
+
+
 def test_npz_stack_and_numbered(tmp_path):
     np.savez(tmp_path / "a.npz", A=A, P=P)
     check(read_proposal(tmp_path / "a.npz"))
@@ -100,6 +106,7 @@ def test_an_empty_row_is_a_matrix_of_none(tmp_path):
     assert read_proposal(tmp_path / "a.json").modes == {"A1": [[]]}
 
 
+@pytest.mark.slow
 def test_packed_files_are_not_unfolded_beyond_measure(tmp_path):
     large = np.zeros(34 * 2**20, dtype=np.int8)
     np.savez_compressed(tmp_path / "a.npz", P=large)

@@ -45,6 +45,7 @@ def shares_of(law, motion, noise, q, seeds=SEEDS):
     return np.mean(hits, axis=0)
 
 
+@pytest.mark.slow
 def test_some_records():
     """That 33 or fewer of 40 are held, happens less than once in a hundred times."""
     assert shares_of(*ELASTIC, seeds=40)[0] > 33 / 40

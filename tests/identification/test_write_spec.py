@@ -89,6 +89,7 @@ def test_the_range_is_rounded_outwards(silicone):
     ]
 
 
+@pytest.mark.slow
 def test_again_is_the_same(tmp_path, silicone, motor):
     once = merge_tissue(read_spec(SOFT_TISSUE), silicone, None, None)
     twice = merge_tissue(merged(tmp_path, once), silicone, None, None)
@@ -108,6 +109,7 @@ def test_one_of_several_environments(silicone):
         merge_tissue(loaded, silicone, "hard", None)
 
 
+@pytest.mark.slow
 def test_to_kelvin_voigt_and_back(tmp_path, silicone, voigt):
     text = merge_tissue(read_spec(SOFT_TISSUE), voigt, None, None)
     soft = merged(tmp_path, text).spec.environments["soft"]
@@ -203,6 +205,7 @@ def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec, late):
     assert written.sampling == loaded.spec.sampling
 
 
+@pytest.mark.slow
 def test_doubts_about_the_actuator_are_noted():
     made = motors.record("multisine", 1, limit=1800.0)
     found = identify_actuator([made], MOTOR)
@@ -212,6 +215,7 @@ def test_doubts_about_the_actuator_are_noted():
     assert any("saturation" in doubt for doubt in spec.actuator.doubts)
 
 
+@pytest.mark.slow
 def test_delay_in_periods_of_the_processor():
     """1.84 to 3.06 samples of 2 ms are 3.69 to 6.13 periods of 1 ms."""
     found = delayed(signals.DELAY)
@@ -223,6 +227,7 @@ def test_delay_in_periods_of_the_processor():
     assert [source.file for source in written.provenance] == ["pair.csv"]
 
 
+@pytest.mark.slow
 def test_a_varying_delay_is_noted_as_a_doubt():
     late = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
     found = identify_delay(signals.copy(2, delay=late))
@@ -301,6 +306,7 @@ def test_given_matrices_have_no_place(silicone, motor):
             merge(read_spec(COMMUTING))
 
 
+@pytest.mark.slow
 def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     loaded = read_spec(SOFT_TISSUE)
     doubtful = identify_tissue([record(KelvinVoigt(400.0, 60.0), quick(1), 0.02, 1)], "elastic")
@@ -316,6 +322,7 @@ def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     assert (soft.doubts, soft.accept_doubt) == ((), None)
 
 
+@pytest.mark.slow
 def test_what_the_range_holds_is_noted():
     data = [record(Elastic(k), quick(i), 0.1, i) for i, (k, _) in enumerate(synthetic.SOFT)]
     found = identify_tissue(data, "elastic", coverage="tolerance")
@@ -325,6 +332,7 @@ def test_what_the_range_holds_is_noted():
     assert "95 % of all such specimens" in found.covers
 
 
+@pytest.mark.slow
 def test_a_motor_of_second_order_has_no_place():
     found = identify_actuator([motors.record("PRBS", 1, second=0.02)], MOTOR)
     with pytest.raises(DataError, match="has no place for a motor of second order"):

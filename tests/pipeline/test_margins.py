@@ -5,11 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.errors import DesignError
-from nrs_design.pipeline import run_certification
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.errors import AssemblyError, DesignError
+from nrs_design.pipeline import margins, run_certification
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design
-from nrs_design.pipeline.margins import check_margins, run_margin
+from nrs_design.pipeline.margins import run_proof_margins
+from nrs_design.search.certification import Limits
 from nrs_design.search.certify import is_refuted_at_once
 from nrs_design.spec import read_spec
 from tests.support import COMMUTING, SOFT_TISSUE
@@ -23,6 +25,13 @@ parameters:
 modes:
   - {name: line, A: [[-3 + p]]}
 switching: arbitrary
+"""
+SAMPLED = """\
+environments: {soft: {model: elastic, stiffness: 43.0356 N*m/rad}}
+controllers:
+  insertion: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2 N*m*s/rad}
+switching: arbitrary
+sampling: {period: 1 ms, delay: [0, 1]}
 """
 EXAMPLE = Path("docs/examples/everything-at-once.nrs.yaml")
 
@@ -57,7 +66,8 @@ def test_what_is_known_is_said_while_the_search_goes_on(tmp_path):
     path = tmp_path / "line.nrs.yaml"
     path.write_text(LINE, encoding="utf-8")
     told: list[str] = []
-    found = run_margin(run_certification(read_spec(path)), progress=told.append)
+    result = run_certification(read_spec(path))
+    found = run_proof_margins(result, Limits(), told.append, margin=True, shortest_dwell=False).box
     assert told[0] == "box scaled by 2 (proved: 1)"
     assert told[1] == "box scaled by 1.5 (proved: 1, refuted: 2)"
     assert found.proved is not None
@@ -66,7 +76,29 @@ def test_what_is_known_is_said_while_the_search_goes_on(tmp_path):
 
 
 def test_what_a_margin_would_be_about_is_missing():
-    result = run_certification(read_spec(COMMUTING))
-    with pytest.raises(DesignError, match="declares no range"):
-        check_margins(result, margin=True, shortest_dwell=False)
-    check_margins(result, margin=False, shortest_dwell=True)
+    """It is refused before anything is searched for."""
+    result, told = run_certification(read_spec(COMMUTING)), []
+    with pytest.raises(DesignError, match="declares no range") as caught:
+        run_proof_margins(result, Limits(), told.append, margin=True, shortest_dwell=True)
+    assert (caught.value.path, told) == (COMMUTING, [])
+    assert caught.value.remedy
+    found = run_proof_margins(result, Limits(), told.append, margin=False, shortest_dwell=True)
+    assert (found.loop, found.box, found.dwell.proved) == (None, None, 0)
+
+
+def test_a_delay_that_makes_no_loop_ends_the_search_and_says_why(tmp_path, monkeypatch):
+    """As a period does: what is proved below it is told."""
+    path = tmp_path / "late.nrs.yaml"
+    text = SOFT_TISSUE.read_text(encoding="utf-8")
+    path.write_text(text[: text.index("environments:")] + SAMPLED, encoding="utf-8")
+    result = run_certification(read_spec(path), limits=Limits(max_degree=2, optimize_rate=False))
+    assert result.certification.verdict is Verdict.PROVED
+
+    def refuse(*given):
+        raise AssemblyError("the loop is too large")
+
+    monkeypatch.setattr(margins, "assemble_spec", refuse)
+    loop = run_proof_margins(result, Limits(), margin=True, shortest_dwell=False).loop
+    assert (loop.delay.proved, loop.delay.refuted) == (1, None)
+    assert "a longer one makes no loop (the loop is too large)" in loop.delay.end
+    assert "a longer one makes no loop (the loop is too large)" in loop.period.end

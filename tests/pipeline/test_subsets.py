@@ -1,10 +1,19 @@
 """What is proved of a spec where not all of it is."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.pipeline import run_certification, run_verification
-from nrs_design.pipeline.subsets import are_wanted, find_subsets, run_subsets, subset_lines
+from nrs_design.pipeline.subsets import (
+    Subset,
+    are_wanted,
+    find_subsets,
+    parts_title,
+    run_subsets,
+    subset_lines,
+)
 from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.certify import Limits, Verdict
 from nrs_design.spec import read_spec
@@ -111,6 +120,23 @@ def test_two_periods_beside_axes_are_proved_without_one_or_the_other(tmp_path):
     left_out = [subset.left_out for subset in find_subsets(result)]
     assert ("the outer_period",) in left_out
     assert ("what the axes do to each other",) in left_out
+
+
+def test_what_two_periods_leave_unproved_is_said_in_plain_words():
+    """A list of parts alone reads as if all of them together were proved."""
+    decay = Subset(("the disturbances",), "Every solution decays.")
+    _, none = subset_lines((decay, Subset(("the outer_period",), "")))
+    said = "not proved without the outer_period either: no bound under the disturbances was found"
+    assert none == said
+    _, other = subset_lines((decay, Subset(("the outer_period",), "The force stays below 1 N*m.")))
+    assert other.startswith("proved of another loop, without the outer_period: The force")
+    certification = SimpleNamespace(
+        verdict=Verdict.PROVED, system=SimpleNamespace(clock=object(), channels=(object(),))
+    )
+    result = SimpleNamespace(certification=certification)
+    assert parts_title(result).startswith("NOT proved: any bound under the disturbances")
+    certification.verdict = Verdict.INCONCLUSIVE
+    assert parts_title(result).startswith("not proved together")
 
 
 def test_no_list_is_made_where_nobody_asked():

@@ -202,6 +202,11 @@ def test_asymmetric_p_is_refused():
         check_quadratic(PAIR, matrix([[1, 1], [0, 5]]), Time.CONTINUOUS)
 
 
+def test_a_definite_matrix_has_no_such_vector():
+    with pytest.raises(ValueError, match="positive definite"):
+        indefinite_vector([[2, 1], [1, 2]])
+
+
 @given(symmetric)
 def test_a_vector_is_found_exactly_where_a_matrix_is_not_definite(M):
     if is_definite_by_ldl(M):

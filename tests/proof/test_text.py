@@ -4,7 +4,11 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.text import exact_text, quoted
+from nrs_design.proof.text import counted, exact_text, quoted
+
+
+def test_one_is_singular():
+    assert [counted(number, "reset") for number in (0, 1, 2)] == ["0 resets", "1 reset", "2 resets"]
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from nrs_design.reporting import render_png
 from nrs_design.reporting.images import to_svg_file
 
 
+@pytest.mark.slow
 def test_every_figure_is_a_png_of_full_size(report):
     images = render_png(report("inconclusive"))
     assert list(images) == [item.name for item in report("inconclusive").illustrations]

@@ -55,6 +55,7 @@ def test_published_balance(robot_page):
     assert float(left["B_a [mm]"]) == pytest.approx(133.5, abs=0.1)
 
 
+@pytest.mark.slow
 def test_the_same_robot_gives_the_same_bytes(robot_page):
     text = render_html(robot_page)
     assert text == render_html(robot_page)

@@ -34,6 +34,7 @@ def find(rows):
     return one
 
 
+@pytest.mark.slow
 def test_nothing_has_drifted(rows):
     assert [row for row in rows if row.verdict is PrintVerdict.DRIFT] == []
 

@@ -62,6 +62,21 @@ def test_rates(tmp_path):
     assert statuses(own, Question((0, 2), SOFT, None))[0].verdict == "refuted"
 
 
+def test_where_the_rate_comes_from_is_said(tmp_path):
+    """A launch file may set another: only this file is read."""
+    unseen = "what a launch file, a command line or another file sets is not seen here"
+
+    def said(file, rate=None):
+        (note,) = (n for n in statuses(file, Question((0, 0), SOFT, None, rate))[2] if unseen in n)
+        return note
+
+    assert "runs 500 times per second, as controller_manager (line 4) says;" in said(EXAMPLE)
+    assert "runs 1000 times per second, as --rate says;" in said(EXAMPLE, Fraction(1000))
+    own = changed(tmp_path, ("    joints:", "    update_rate: 250\n    joints:"))
+    wanted = "runs 250 times per second, as controller_manager (line 4) says together with its own"
+    assert f"{wanted} update_rate (line 9);" in said(own)
+
+
 def test_a_rate_of_its_own_that_does_not_divide_the_rate_of_the_loop(tmp_path):
     """ros2_control then triggers it at uneven periods, or at 500 1/s (controller_manager.cpp)."""
     file = changed(tmp_path, ("    joints:", "    update_rate: 300\n    joints:"))

@@ -311,6 +311,7 @@ class TestMethods:
         for method in (Method.GRADIENT, Method.LMI, Method.AUTO):
             assert settle(system, method).verdict is Verdict.PROVED
 
+    @pytest.mark.slow
     def test_gradient_proves_the_robot(self):
         loaded = read_spec(ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml")
         result = run_certification(loaded, method=Method.GRADIENT)

@@ -85,6 +85,7 @@ def test_a_program_that_does_not_fit_is_not_built(monkeypatch):
         program.solve(1.0, Allowance(1e-4))
 
 
+@pytest.mark.slow
 def test_runs_through_contact_and_flight_never_leave_the_bound():
     """1,000 runs of 300 samples; the stiffness is anywhere in its range at every sample."""
     system = thesis_robot(("20", "42.5"), BOTH, "0.01", sampling="{period: 2 ms, delay: 2}")

@@ -31,6 +31,7 @@ BOTH = ("2.15", "1.04")
 STIFF = thesis_robot(("43", "62"), BOTH, "0.01")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("k", "Mt", "degree", "rate"),
     [(("43", "62"), "0.01", 4, 0.84), (("25", "90.432"), "0", 6, 0.81)],
@@ -46,6 +47,7 @@ def test_rates_while_contact_is_lost(k, Mt, degree, rate):
         assert lower is None
 
 
+@pytest.mark.slow
 def test_it_is_tried_before_contact_is_taken_for_granted():
     result = certify(STIFF)
     assert result.verdict is Verdict.PROVED

@@ -63,6 +63,7 @@ def test_it_is_a_statement_beside_the_one_that_decides():
     assert result.attempts[-1].outcome == "found"
 
 
+@pytest.mark.slow
 def test_a_statement_that_is_missing_is_listed_among_the_attempts():
     result = certify(robot(("43", "62"), BOTH, "0.01"))
     assert [item.shows for item in result.statements if item.shows is Shows.CONVERGENCE] == []

@@ -23,6 +23,7 @@ def rate(system):
     return float(evidence.rate)
 
 
+@pytest.mark.slow
 def test_two_equal_axes_that_are_pushed_by_their_acceleration():
     """``x' = A x + b w``, ``|w| <= c |a x|``: an H-infinity norm, which Q attains for one mode.
 

@@ -88,6 +88,7 @@ def test_every_family_in_discrete_time_is_decided(seed):
     decide(in_discrete_time(seed), Time.DISCRETE)
 
 
+@pytest.mark.slow
 def test_both_answers_are_common():
     """What stands above says something only if the families are of both sorts."""
     for modes, time in ((draw, Time.CONTINUOUS), (in_discrete_time, Time.DISCRETE)):

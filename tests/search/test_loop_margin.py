@@ -80,6 +80,33 @@ def test_a_shortest_delay_that_is_refuted_below_one_that_is_open():
     assert found.refuted == 0
 
 
+def test_a_delay_that_makes_no_loop_is_told():
+    """Neither a proof nor a refutation: what is decided below it stands, and the search goes on."""
+    found = find_longest_delay(
+        0, 1, 10, lambda delay: P if delay <= 4 else "too large", lambda delay: delay >= 12
+    )
+    assert found == Bracket(Fraction(4), Fraction(12))
+    found = find_longest_delay(
+        0, 1, 10, lambda delay: P if delay <= 4 else "too large", lambda delay: False
+    )
+    assert (found.proved, found.refuted) == (4, None)
+    assert "a longer one makes no loop (too large), no delay of up to 32 samples" in found.end
+
+
+def test_what_is_known_is_not_decided_again_and_is_told_meanwhile():
+    told = []
+
+    def decide(delay: int) -> Verdict:
+        assert delay != 1
+        return P if delay <= 4 else R
+
+    find_longest_delay(0, 1, 10, decide, lambda delay: False, P, told.append)
+    assert told[:2] == ["delay 10 (proved: 1)", "delay 5 (proved: 1, refuted: 10)"]
+    told.clear()
+    find_longest_period(Fraction(1), lambda period: R, P, told.append)
+    assert told[:2] == ["period 2 s (proved: 1 s)", "period 1.5 s (proved: 1 s, refuted: 2 s)"]
+
+
 def test_the_longest_period():
     """Proved up to 3, refuted from 5 on; in between nobody knows."""
 

@@ -90,6 +90,7 @@ def test_within_the_limits_an_ellipsoid_holds_less(dampings, force):
     assert np.floor(1e3 * np.sqrt(size.value / (x @ x))) / 1e3 == force
 
 
+@pytest.mark.slow
 def test_a_wanted_force_decays_as_fast_as_is_found():
     evidence, _ = found(thesis("2.15", "1.04", lost=True, wanted=Fraction(1, 2)))
     assert evidence.level == Fraction(1, 2)

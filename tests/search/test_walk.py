@@ -186,6 +186,7 @@ def check_against_all_short_cycles(seeds):
     return refuted, proved, missed
 
 
+@pytest.mark.slow
 def test_random_rules():
     refuted, proved, missed = check_against_all_short_cycles(range(15))
     assert refuted > 3

@@ -37,6 +37,7 @@ def drawn_from(designed, scenarios, seed, index):
     return draw(designed.spec, designed.plant, designed.design, scenarios, seed, index)
 
 
+@pytest.mark.slow
 def test_the_share_is_that_of_a_dense_grid():
     """The peak falls with the stiffness, so the share above is where it crosses the limit."""
     asked = study(60)

@@ -155,6 +155,9 @@ def test_reads_bytes_and_text(tmp_path: Path) -> None:
         (b"a: \xff\n", "byte 0xff is not UTF-8"),
         ("a: 1\n".encode("utf-16"), "not UTF-8"),
         (b"#" * (MAX_BYTES + 1), "larger than"),
+        (b"<!DOCTYPE html>\n<html lang='en'>\n<p>a: b: c\n", "a page, not a spec"),
+        (b"\xef\xbb\xbf\n<HTML>" + b" " * MAX_BYTES, "a page, not a spec"),
+        (b"%PDF-1.7\n\xff", "a page, not a spec"),
     ],
 )
 def test_refuses_files_that_are_no_text(tmp_path: Path, content: bytes, said: str) -> None:
@@ -239,6 +242,7 @@ GROWING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", GROWING.values(), ids=GROWING)
 def test_time_grows_no_faster_than_the_text(make: Callable[[int], str]) -> None:
     # Eight times the text: eight times the time, or sixty-four if it grew with the square.

@@ -93,6 +93,10 @@ def test_a_goal_for_all_controllers_together_is_none_of_one(goal):
 def test_a_torque_is_wanted_only_where_something_causes_one():
     error = refusal(with_goals("goals: {peak_torque: 0.3 N*m}\n"))
     assert "nothing is said to disturb" in error.message
+    friction = "sampling: {period: 2 ms, delay: 1}\ndisturbances: {friction: 5 rpm}\n"
+    error = refusal(with_goals("goals: {peak_torque: 0.3 N*m}\n" + friction))
+    assert "of a loop without a command" in error.message
+    assert interaction(with_goals(friction)).disturbances.friction
     spec = interaction(
         with_goals("goals: {peak_torque: 0.3 N*m}\ndisturbances: {command: 8 deg/s}\n")
     )

@@ -143,6 +143,7 @@ def _mutated(sample: str, seed: int) -> str:
     return text
 
 
+@pytest.mark.slow
 @given(st.sampled_from([IMPEDANCE, FORCE, SWITCHED]), st.integers(0, 2**32))
 @settings(max_examples=120, deadline=None)
 def test_spoiled_specs_load_or_are_refused_inside_the_file(sample: str, seed: int) -> None:
@@ -157,6 +158,7 @@ def test_spoiled_specs_load_or_are_refused_inside_the_file(sample: str, seed: in
     assert refused_line.isprintable()
 
 
+@pytest.mark.slow
 def test_many_faults_are_counted_quickly() -> None:
     modes = "".join("  - {nam: a, A: [[1 1]]}\n" for _ in range(2000))
     error = refusal(f"kind: switched-system\nname: a\ntime: discrete\nmodes:\n{modes}")

@@ -148,3 +148,30 @@ def test_order_across_powers_of_pi() -> None:
 @given(st.text(max_size=60), st.sampled_from(ALL_KINDS))
 def test_garbage_is_a_quantity_or_refused(text: str, kind: QuantityKind) -> None:
     assert message_of(lambda: parse_quantity(text, kind)).isprintable()
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "meant", "never"),
+    [
+        ("8 degs", kinds.ANGULAR_VELOCITY, "did you mean deg/s?", "mean deg?"),
+        ("8 deg/sec", kinds.ANGULAR_VELOCITY, "did you mean deg/s?", "mean s?"),
+        (
+            "8 degs",
+            kinds.BANDWIDTH,
+            "a bandwidth is written in rad/s or Hz, such as '2 Hz'",
+            "mean",
+        ),
+        ("0.3 Nm", kinds.TORQUE, "did you mean N*m?", "rad"),
+        ("3 Nm/rad", kinds.STIFFNESS, "did you mean N*m/rad?", "known"),
+        ("0.02 rad/Nm", kinds.FORCE_GAIN, "did you mean rad/(N*m)?", "mean rad/N*m"),
+        ("8 furlongs", kinds.LEVER_ARM, "a length is written in m, such as '0.24 m'", "mean"),
+        ("24 mmm", kinds.LEVER_ARM, "did you mean mm?", "known"),
+        ("24 volts", kinds.COMMAND, "a command of the motor is written in", "such as"),
+        ("8 °/s", kinds.ANGULAR_VELOCITY, "write deg for degrees", "mean"),
+    ],
+)
+def test_a_unit_that_is_no_unit_is_told_by_what_is_measured(text, kind, meant, never) -> None:
+    with pytest.raises(SpecError) as caught:
+        parse_quantity(text, kind)
+    assert meant in caught.value.remedy
+    assert never not in caught.value.remedy

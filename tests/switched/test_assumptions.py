@@ -93,6 +93,7 @@ def test_power_law_decays_about_any_rest_however_far_and_fast(proved):
     assert worst <= 1e-9
 
 
+@pytest.mark.slow
 def test_run_with_an_adversary(proved):
     """Greedy switching between the controllers, as long as the deflection is in the preload."""
     Q, rate = lyapunov(proved)

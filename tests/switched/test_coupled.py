@@ -57,7 +57,7 @@ def test_rates_of_the_reference(Bt, coupling, contact, rate):
     ("Bt", "share", "verdict"),
     [
         (BOTH, "0.36", Verdict.PROVED),
-        (BOTH, "0.42", Verdict.INCONCLUSIVE),
+        pytest.param(BOTH, "0.42", Verdict.INCONCLUSIVE, marks=pytest.mark.slow),
         (INSERTION, "1.44", Verdict.PROVED),
         (INSERTION, "1.7", Verdict.INCONCLUSIVE),
     ],

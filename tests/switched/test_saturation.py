@@ -10,7 +10,7 @@ from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.spec import read_spec
-from nrs_design.switched.assumption_kinds import LIMITED, NOT_SAMPLED
+from nrs_design.switched.assumption_kinds import LIMITED, NOT_SAMPLED_BUT_LIMITED
 from tests.support import ROOT
 
 TEXT = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
@@ -122,8 +122,10 @@ def test_what_is_taken_for_granted(tmp_path):
     (said,) = [text for text in system.assumptions if text.kind is LIMITED]
     assert "cut off at 0.139627 rad/s (rounded up)" in said
     assert "likewise at 2000 rpm" in said
-    (left,) = [text for text in system.assumptions if text.kind is NOT_SAMPLED]
+    (left,) = [text for text in system.assumptions if text.kind is NOT_SAMPLED_BUT_LIMITED]
     assert "friction are not modelled, saturation only where a statement says so" in left
+    # Its name must not contradict what is proved of saturation.
+    assert left.kind.name == "no sampling or friction, and saturation only as stated"
     assert system.saturation.start.wanted == Fraction(1, 2)
     plain = system_of(tmp_path, TEXT.replace("goals:\n  initial_force: 0.5 N*m\n", ""))
     assert plain.saturation is None

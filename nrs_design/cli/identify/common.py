@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 import typer
 
 from nrs_design.cli.printing import note, print_json, progress
-from nrs_design.errors import OutputError
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
 
     from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
-    from nrs_design.output import Beginning
     from nrs_design.reporting import Report
     from nrs_design.spec import LoadedSpec
 
@@ -147,17 +145,11 @@ class Destinations:
         SpecError
             If there is something wrong with the spec.
         """
-        from nrs_design.output import check_place
+        from nrs_design.output import check_place, page_kind
         from nrs_design.spec import read_spec
 
-        if report is not None and report.suffix.lower() not in (".html", ".pdf"):
-            raise OutputError(
-                f"{report.suffix or 'no ending'} is not a type of report",
-                path=report,
-                remedy="name a file that ends in .html or .pdf",
-            )
         if report is not None:
-            check_place(report, _kind_of(report))
+            check_place(report, page_kind(report))
         return cls(None if write is None else read_spec(write), report, date, as_json, quiet)
 
     def deliver(
@@ -203,18 +195,12 @@ class Destinations:
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:
-    from nrs_design.output import write_output
+    from nrs_design.output import PDF, page_kind, write_output
     from nrs_design.reporting import render_html, render_pdf
 
-    report = replace(report, date=date.date() if date else None)
-    content = render_pdf(report) if path.suffix.lower() == ".pdf" else render_html(report)
-    write_output(path, content, replaces=_kind_of(path))
-
-
-def _kind_of(path: Path) -> Beginning:
-    from nrs_design.output import PAGE, PDF
-
-    return PDF if path.suffix.lower() == ".pdf" else PAGE
+    report, kind = replace(report, date=date.date() if date else None), page_kind(path)
+    content = render_pdf(report) if kind is PDF else render_html(report)
+    write_output(path, content, replaces=kind)
 
 
 def _write_spec(path: Path, text: str, *, quiet: bool) -> None:

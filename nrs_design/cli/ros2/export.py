@@ -46,7 +46,7 @@ def export(
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
     from nrs_design.pipeline import placed, run_design, search_limits, wrong_kind
-    from nrs_design.ros2.export import export_controllers
+    from nrs_design.ros2.export import export_controllers, not_for_ranges
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -76,6 +76,9 @@ def export(
         note(f"{name}: not exported")
     elif not quiet:
         say(f"{name}: PROVED, exported to {', '.join(written)}", verdict="proved")
+        for item in found:
+            if item.ranged:
+                say(f"  {item.controller}: outside the proof: {not_for_ranges(item.ranged)}")
     raise typer.Exit(exit_codes.OF_VERDICT[worst])
 
 
@@ -115,5 +118,6 @@ def _summary(name: str, worst: str, found: list[RosExport], written: list[str]) 
         "spec": name,
         "verdict": worst,
         "controllers": {item.controller: item.verdict for item in found},
+        "ranges_not_proved": {i.controller: list(i.ranged) for i in found if i.ranged},
         "files": written,
     }

@@ -21,7 +21,6 @@ from nrs_design.design.laws.law import (
 from nrs_design.design.measures import FORCE_MEASURES
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.spec import ForceControllerSpec
-from nrs_design.spec.controllers import contact_names
 
 
 @dataclass(frozen=True)
@@ -76,10 +75,10 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
     DesignError
         If the nominal loop is unstable.
     """
-    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
-    contacts = tuple(map(task.plant.environment, names))
     goals = goals_of(task.spec, given, FORCE_MEASURES)
-    requirement = Requirement(task.motion, corners_of(contacts, given.environment, {}), goals)
+    requirement = Requirement(
+        task.motion, corners_of(task.contacts(given), given.environment, {}), goals
+    )
     stiffness = task.plant.environment(given.environment).nominal.stiffness
     gain = float(controller.law.gains["Kp"])
     limits = task.spec.limits

@@ -41,7 +41,6 @@ from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
-from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
@@ -230,7 +229,7 @@ def too_stiff(
     """
     Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
     loop = impedance_problem(task, given).loop
-    yield from doubt_stiffness(controller.name, loop, _measured_in(task, given), Mt, Bt)
+    yield from doubt_stiffness(controller.name, loop, task.contacts(given), Mt, Bt)
 
 
 DESIGN = LawDesign(choose, analyze, too_stiff)
@@ -273,7 +272,7 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
 
 
 def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
-    contacts = _measured_in(task, given)
+    contacts = task.contacts(given)
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
         motion=task.motion,
@@ -284,12 +283,6 @@ def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
         lags=_lags(task),
         force_error=upper_float(task.sensor.lasting),
     )
-
-
-def _measured_in(task: Task, given: ImpedanceControllerSpec) -> tuple[Environment, ...]:
-    """Return all contacts, and what the gains are designed for if that is not one by itself."""
-    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
-    return tuple(map(task.plant.environment, names))
 
 
 def _highest_stiffness(task: Task, given: ImpedanceControllerSpec) -> Fraction:

@@ -19,7 +19,7 @@ from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
 from nrs_design.design.measures import MARGINS
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
-from nrs_design.spec.controllers import IntegralControllerSpec, contact_names
+from nrs_design.spec.controllers import IntegralControllerSpec
 
 # Time constants until 2 % are left, as in thesis 4.14.
 _SETTLED = 4.0
@@ -115,10 +115,10 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     """
     Kp, Ki = (float(controller.law.gains[name]) for name in ("Kp", "Ki"))
     motion = with_integral(task.motion, Ki / Kp)
-    names = dict.fromkeys((*contact_names(given.contacts), given.environment))
-    contacts = tuple(map(task.plant.environment, names))
     goals = goals_of(task.spec, given, MARGINS)
-    requirement = Requirement(motion, corners_of(contacts, given.environment, {}), goals)
+    requirement = Requirement(
+        motion, corners_of(task.contacts(given), given.environment, {}), goals
+    )
     stiffness = task.plant.environment(given.environment).nominal.stiffness
     limits = task.spec.limits
     # The position command waits, and the integral is what it was: the command does not step.

@@ -17,9 +17,11 @@ from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import Measure
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
+from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec import ControllerSpec, Doubt, InteractionDesignSpec, Quantity
+from nrs_design.spec.controllers import contact_names
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,12 @@ class Task:
     def sensor(self) -> Sensor:
         """The sensor of the force that the controllers act on."""
         return build_sensor(self.spec.sensor)
+
+    def contacts(self, given: ControllerSpec) -> tuple[Environment, ...]:
+        """Return all contacts of a controller, and what its gains are designed for beside them."""
+        assert given.environment is not None  # Of a controller with contact.
+        names = dict.fromkeys((*contact_names(given.contacts), given.environment))
+        return tuple(map(self.plant.environment, names))
 
     @property
     def digits(self) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.table import Array, MeasurementTable
 
@@ -24,6 +25,22 @@ def doubt_step(step: float) -> Iterator[str]:
         yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
 
 
+def gaps_in(time: Array) -> NDArray[np.bool_]:
+    """Tell between which rows others are missing.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        In s.
+
+    Returns
+    -------
+    ndarray of bool, shape (n - 1,)
+    """
+    steps = np.diff(time)
+    return np.asarray(steps > GAP * np.median(steps))
+
+
 def check_time(table: MeasurementTable, time: Array) -> None:
     """Check that time advances without gaps.
 
@@ -39,13 +56,11 @@ def check_time(table: MeasurementTable, time: Array) -> None:
             "record longer",
         )
     check_advance(table, time)
-    steps = np.diff(time)
-    usual = float(np.median(steps))
-    gaps = np.flatnonzero(steps > GAP * usual)
+    gaps = np.flatnonzero(gaps_in(time))
     if len(gaps):
-        row = int(gaps[0]) + 1
+        row, steps = int(gaps[0]) + 1, np.diff(time)
         table.fail(
-            f"a gap of {steps[row - 1]:.4g} s, where steps are {usual:.4g} s",
+            f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s",
             row,
             "cut the record there and give its parts as records of their own",
         )

@@ -223,8 +223,12 @@ def _values(array: NDArray[np.generic], column: Column, path: Path, labels: list
         labels += dict.fromkeys(words)
         return np.array([labels.index(word) for word in words], float)
     if flat.dtype.kind not in "iuf":
+        # Times and dates of NumPy are counts of a unit that their type alone knows.
+        is_time = flat.dtype.kind in "mM"
         raise DataError(
-            f"{column.name} does not hold real numbers", path=path, remedy="save it as numbers"
+            f"{column.name} does not hold real numbers" + is_time * ", but times or dates",
+            path=path,
+            remedy="save it in seconds" if is_time else "save it as numbers",
         )
     if len(flat) > MAX_ROWS:
         raise _too_long(path)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance
+from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance, gaps_in
 from nrs_design.identification.datasets.table import Progress, Source, read_table
 
 Array = NDArray[np.float64]
@@ -49,6 +49,11 @@ class RunLog:
     def step(self) -> float:
         """Usual time between rows in s."""
         return float(np.median(np.diff(self.time)))
+
+    @property
+    def gaps(self) -> NDArray[np.bool_]:
+        """Between which rows others are missing, shape (n - 1,)."""
+        return gaps_in(self.time)
 
     @property
     def modes(self) -> NDArray[np.int64] | None:

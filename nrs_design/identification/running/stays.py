@@ -12,18 +12,40 @@ import numpy as np
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
+from nrs_design.proof.text import counted
 
 _NAME = "dwell times"
+# A step of a log is a period if it is no longer than so many.
+_SAME = 1.5
 
 
 @dataclass(frozen=True, slots=True)
 class _Stay:
-    """A time in one mode; a log tells switches to a row, and not what was before and after it."""
+    """A time in one mode; a log tells switches to a row, and not what was before and after it.
+
+    Parameters
+    ----------
+    mode : str
+        The controller.
+    begin : float
+        Time of its first row, in s.
+    shortest, longest : float
+        Between which it lasted in s, whatever was before the log.
+    logged : float
+        How long it may have been within the log, in s.
+    ended : bool
+        Whether a switch ended it within the log.
+    gap : bool
+        Whether rows are missing within or beside it.
+    """
 
     mode: str
     begin: float
     shortest: float
     longest: float
+    logged: float
+    ended: bool
+    gap: bool
 
 
 def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
@@ -49,10 +71,18 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
         return Check(_NAME, BoundStatus.NOT_JUDGED, reason, allowed, basis)
-    measured = f"{len(stays) - 1} switches"
-    first = next(_violations(stays, bounds), None)
-    status = BoundStatus.INSIDE if first is None else BoundStatus.OUTSIDE
-    return Check(_NAME, status, measured, allowed or "arbitrary", basis, first)
+    measured = "1 switch" if len(stays) == 2 else f"{len(stays) - 1} switches"
+    if not allowed:
+        return Check(_NAME, BoundStatus.INSIDE, measured, "arbitrary", basis)
+    step = float(np.diff(log.time).max())
+    # Where every sample of the loop has its row, there is nothing in between.
+    if bounds.period is None or step > _SAME * bounds.period:
+        measured += f"; a stay between two rows (up to {step:.3g} s) is not seen"
+    if (first := next(_violations(stays, bounds), None)) is not None:
+        return Check(_NAME, BoundStatus.OUTSIDE, measured, allowed, basis, first)
+    if (doubt := next(_doubts(stays, bounds), None)) is not None:
+        return Check(_NAME, BoundStatus.UNDECIDED, f"{measured}; {doubt}", allowed, basis)
+    return Check(_NAME, BoundStatus.INSIDE, measured, allowed, basis)
 
 
 def _allowed(bounds: RunBounds) -> str:
@@ -63,7 +93,7 @@ def _allowed(bounds: RunBounds) -> str:
         if longest < inf:
             rules.append(f"{name} at most {longest:g} s")
     if bounds.transitions is not None:
-        rules.append(f"{len(bounds.transitions)} transitions")
+        rules.append(counted(len(bounds.transitions), "transition"))
     return ", ".join(rules)
 
 
@@ -72,14 +102,21 @@ def _stays(log: RunLog) -> Iterator[_Stay]:
     if modes is None:
         return
     time = log.begin + log.time
+    # No switch is before the first row, and none after the last.
+    before, after = np.append(time[0], time), np.append(time, time[-1])
     edges = [0, *(np.flatnonzero(np.diff(modes)) + 1).tolist(), len(modes)]
     for first, last in itertools.pairwise(edges):
-        begin, end = float(time[first]), float(time[last - 1])
-        # The switches before and after lie somewhere between two rows.
-        earliest = float(time[first - 1]) if first else begin
-        latest = float(time[last]) if last < len(time) else inf
-        longest = latest - earliest if first and last < len(time) else inf
-        yield _Stay(log.labels[modes[first]], begin, end - begin, longest)
+        ended = last < len(time)
+        begin, logged = float(time[first]), float(after[last] - before[first])
+        yield _Stay(
+            log.labels[modes[first]],
+            begin,
+            float(time[last - 1]) - begin,
+            logged if first and ended else inf,
+            logged,
+            ended,
+            bool(log.gaps[max(first - 1, 0) : last].any()),
+        )
 
 
 def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[Violation]:
@@ -88,13 +125,28 @@ def _violations(stays: list[_Stay], bounds: RunBounds) -> Iterator[Violation]:
     for stay in stays:
         shortest, longest = bounds.stays[stay.mode]
         allowed = bounds.transitions
-        if before and allowed is not None and (before, stay.mode) not in allowed:
+        ordered = allowed is None or not before or (before, stay.mode) in allowed
+        if not ordered and not stay.gap:
             yield Violation(stay.begin, f"{before} was followed by {stay.mode}")
         if stay.longest < shortest:
             yield Violation(
                 stay.begin, f"{stay.mode} lasted {stay.longest:.4g} s at most, not {shortest:g} s"
             )
-        if stay.shortest > longest:
+        if stay.shortest > longest and not stay.gap:
             words = f"{stay.mode} lasted {stay.shortest:.4g} s at least, not {longest:g} s"
             yield Violation(stay.begin, words)
         before = stay.mode
+
+
+def _doubts(stays: list[_Stay], bounds: RunBounds) -> Iterator[str]:
+    """Yield what some reading of the log does not allow."""
+    for place, stay in enumerate(stays):
+        shortest, longest = bounds.stays[stay.mode]
+        if stay.gap:
+            yield f"rows are missing about {stay.begin:.6g} s, where switches may have been"
+        if stay.ended and stay.shortest < shortest:
+            end = f" to {stay.longest:.4g} s" if place else " s at least: the log begins with it"
+            yield f"from {stay.begin:.6g} s on {stay.mode} lasted {stay.shortest:.4g}{end}"
+        if stay.logged > longest:
+            lasted = f"{stay.shortest:.4g} to {stay.logged:.4g} s"
+            yield f"from {stay.begin:.6g} s on {stay.mode} lasted {lasted}"

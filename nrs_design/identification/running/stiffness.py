@@ -10,14 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.datasets.checks import gaps_in
 from nrs_design.identification.rounding import resolution
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 
 Array = NDArray[np.float64]
 
 FEWEST_ROWS = 20
-# A gap of more than so many usual steps ends a window.
-_GAP = 3.0
 # For how many times its estimate the noise of the deflection is taken.
 _NOISIER = 2.0
 
@@ -57,8 +56,7 @@ def cut_windows(
     length : float
         In s.
     """
-    steps = np.diff(time)
-    breaks = steps > _GAP * float(np.median(steps))
+    breaks = gaps_in(time)
     if modes is not None:
         breaks |= np.diff(modes) != 0
     edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(time)]

@@ -140,6 +140,11 @@ class AbstractEvidence(ABC):
         """Size of the start of a saturating system that motions decay from, if it shows one."""
         return None
 
+    @property
+    def start_rate(self) -> Fraction | None:
+        """Rate in 1/s at which they decay, if it shows one; of others nothing is said."""
+        return None
+
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
         return None

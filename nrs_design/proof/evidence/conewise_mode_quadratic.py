@@ -29,6 +29,7 @@ from nrs_design.proof.matrix import leading, with_crossing
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 
 Functions = tuple[tuple[str, Matrix], ...]
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -144,8 +145,8 @@ class ConewiseModeQuadratic(AbstractFunction):
         """State the bound on every solution, with contact or without."""
         return (
             "Every solution of x+ = A x, with contact lost and made again at any time and "
-            f"switching arbitrarily among {_count(len(self.touching), 'mode')} in contact and "
-            f"{_count(len(self.flying), 'mode')} of free motion, satisfies "
+            f"switching arbitrarily among {counted(len(self.touching), 'mode')} in contact and "
+            f"{counted(len(self.flying), 'mode')} of free motion, satisfies "
             f"|w(t)| <= rho^t |w(0)| with {rate_words(self.rate, system.time)}, where w holds the "
             "states other than the deflection, and the deflection where it is positive, and |w| is "
             "the largest of all sqrt(w' Q w), in free motion of all sqrt(y' R y). Where free "
@@ -188,7 +189,3 @@ class ConewiseModeQuadratic(AbstractFunction):
         multipliers = tuple(read_integer(entry) for entry in fields["multipliers"])
         rate = read_ratio(fields["rate"])
         return cls(found["touching"], found["flying"], exponents.pop(), rate, multipliers)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' * (number != 1)}"

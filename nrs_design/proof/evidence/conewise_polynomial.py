@@ -18,6 +18,7 @@ from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +87,8 @@ class ConewisePolynomial(AbstractEvidence):
         rate = rate_words(self.in_contact.rate, system.time)
         return (
             "Every solution, with contact lost and made again at any time and switching "
-            f"arbitrarily among {_count(modes, 'mode')} in contact and "
-            f"{_count(len(system.contact.free), 'mode')} of free motion, satisfies "
+            f"arbitrarily among {counted(modes, 'mode')} in contact and "
+            f"{counted(len(system.contact.free), 'mode')} of free motion, satisfies "
             f"|w(t)| <= exp(-alpha t) |w(0)| with {rate}, where w holds the states other than "
             "the deflection, and the deflection where it is positive, "
             f"and |w|^{degree} is a positive definite form of degree {degree} in w. Where free "
@@ -140,7 +141,3 @@ def flight(system: SwitchedSystem, contact: Contact) -> SwitchedSystem:
         for mode in contact.free
     )
     return system.with_modes(modes, system.states[:-1], system.switching)
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' * (number != 1)}"

@@ -30,6 +30,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 NO_CONTACT = "the system does not say how contact is lost"
@@ -164,7 +165,7 @@ class ConewiseQuadratic(AbstractFunction):
         modes, free = len(system.modes), len(system.contact.free)
         return (
             "Every solution, with contact lost and made again at any time and switching "
-            f"arbitrarily among {_count(modes, 'mode')} in contact and {_count(free, 'mode')} of "
+            f"arbitrarily among {counted(modes, 'mode')} in contact and {counted(free, 'mode')} of "
             f"free motion, satisfies |w(t)| <= {bound} with {rate_words(self.rate, system.time)}, "
             "where w holds the states other than the deflection, and the deflection where it is "
             "positive, in the norm |w| = sqrt(w' Q w). Where free motion ends is not claimed."
@@ -216,10 +217,6 @@ def in_threes(multipliers: Sequence[int]) -> tuple[tuple[int, int, int], ...]:
 
 def _failure(where: str) -> str:
     return f"V does not decrease at the claimed rate {where}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def _block(A: RationalMatrix) -> RationalMatrix:

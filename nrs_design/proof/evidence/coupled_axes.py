@@ -32,6 +32,7 @@ from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 NO_COUPLING = "the system does not say what axes do to each other"
@@ -199,11 +200,11 @@ class CoupledAxes(AbstractFunction):
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution of all axes."""
         names = ", ".join(item.name for item in system.couplings)
-        modes = _count(len(system.modes), "mode")
+        modes = counted(len(system.modes), "mode")
         if system.contact is None:
             moves, w = f"{modes}, switching arbitrarily", "where w_i is the state of an axis,"
         else:
-            free = _count(len(system.contact.free), "mode")
+            free = counted(len(system.contact.free), "mode")
             moves = (
                 f"{modes} in contact and {free} of free motion, switching arbitrarily, with "
                 "contact lost and made again at any time"
@@ -245,10 +246,6 @@ class CoupledAxes(AbstractFunction):
 
 def _failure(where: str) -> str:
     return f"V does not decrease at the claimed rate {where}"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def _row(q: RationalMatrix) -> tuple[int, ...]:

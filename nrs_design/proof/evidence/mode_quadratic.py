@@ -37,6 +37,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Edge, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
 
 MAX_DWELL_STEPS = 4096
 MAX_PIECES = 4096
@@ -283,9 +284,9 @@ def signals_of(system: SwitchedSystem) -> str:
     if len(switching.stays) > MAX_NAMED:
         parts.append(f"{len(switching.stays)} modes with dwell times of their own")
     if switching.transitions is not None:
-        parts.append(f"{len(switching.transitions)} allowed transitions")
+        parts.append(counted(len(switching.transitions), "allowed transition"))
     if switching.resets:
-        parts.append(f"{len(switching.resets)} resets")
+        parts.append(counted(len(switching.resets), "reset"))
     return ", ".join(parts) or "arbitrary"
 
 

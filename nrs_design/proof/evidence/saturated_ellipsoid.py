@@ -82,6 +82,11 @@ class SaturatedEllipsoid(AbstractEvidence):
         """The level."""
         return self.level
 
+    @property
+    def start_rate(self) -> Fraction:
+        """The alpha in 1/s."""
+        return self.rate
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that something saturates, shapes, and the signs of rate and level."""
         if system.saturation is None:
@@ -141,7 +146,10 @@ class SaturatedEllipsoid(AbstractEvidence):
         limits = [f"the {s.name} at {rounded_up(s.limit, s.unit)}" for s in signals]
         states, lost = "the state,", ""
         if system.contact is not None:
-            states = "the states other than the deflection, and it where it is positive,"
+            states = (
+                "the states other than the deflection, and the deflection where it is positive "
+                "(zero elsewhere),"
+            )
             lost = ", contact lost and made again at any time"
         return (
             f"Although signals saturate, each at the stated limit or beyond it ({', '.join(limits)}"

@@ -54,10 +54,11 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
     labels = _draw_levels(axes, found)
     _draw_border(axes, found)
     _draw_bounds(axes, item, found)
-    points = (
-        (item.optimum.Mt, item.optimum.Bt, "*", 15.0, GREEN, "optimum within bounds and goals"),
-        (item.Mt, item.Bt, "D", 4.5, INK, "as shipped"),
-    )
+    points = [(item.Mt, item.Bt, "D", 4.5, INK, "as shipped")]
+    # Gains that the spec gives are no optimum.
+    if not (item.given.Mt.fixed and item.given.Bt.fixed):
+        best = "optimum within bounds and goals"
+        points.insert(0, (item.optimum.Mt, item.optimum.Bt, "*", 15.0, GREEN, best))
     for Mt, Bt, shape, size, tint, label in points:
         # No mass at all is drawn at the left edge.
         place = max(Mt, float(found.Mt[0]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from nrs_design.proof.bounds import lower, nearly, rounded_down, rounded_up
@@ -14,9 +16,10 @@ from nrs_design.reporting.kinds.abstract import AbstractKindPage
 from nrs_design.reporting.kinds.shared import words
 from nrs_design.reporting.kinds.shared.matrix import matrix_table
 from nrs_design.reporting.kinds.shared.run import simulated
+from nrs_design.reporting.sections.titles import SATURATION
 from nrs_design.simulation.contact import clipped, with_free_modes
 from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
-from nrs_design.simulation.saturation import worst_saturated
+from nrs_design.simulation.saturation import share_cut_off, worst_saturated
 from nrs_design.simulation.switched import norms
 
 _DECIDED = (
@@ -26,7 +29,7 @@ _DECIDED = (
 )
 _RUN = (
     "Simulated run from rest with the stated {start}, at the softest: at every step the adversary "
-    "takes the possible mode after which V is largest, and signals are cut off at their limits. "
+    "takes the possible mode after which V is largest. Signals are cut off at their limits: {cut}. "
     "It is a bad run, not the worst one; the root of V stays below the dashed bound. The run is no "
     "part of the proof."
 )
@@ -112,7 +115,7 @@ class SaturatedEllipsoidPage(AbstractKindPage[SaturatedEllipsoid]):
             ),
             self._illustration(),
         )
-        return (Section("Saturation", blocks),)
+        return (Section(SATURATION, blocks),)
 
     def run(self) -> Section:
         """Draw V along the run."""
@@ -128,12 +131,12 @@ class SaturatedEllipsoidPage(AbstractKindPage[SaturatedEllipsoid]):
         initial = float(evidence.level) * max(states, key=lambda x: float(x @ Q @ x))
         fastest = max(np.abs(np.linalg.eigvals(mode.A.floats())).max() for mode in system.modes)
         response = worst_saturated(system, norm, initial, _SHARE / float(fastest), _STEPS)
-        values = norms(response, norm)
+        values, shares = norms(response, norm), share_cut_off(system, response)
         bound = np.exp(-float(evidence.rate) * response.time)
         return Illustration(
             "saturated-run",
             "Run with signals that saturate",
-            _RUN.format(start=self._saturation.start.name),
+            _RUN.format(start=self._saturation.start.name, cut=_words(shares)),
             draw_run(
                 response,
                 values,
@@ -142,3 +145,11 @@ class SaturatedEllipsoidPage(AbstractKindPage[SaturatedEllipsoid]):
                 "root of V over its first value [1]",
             ),
         )
+
+
+def _words(shares: Mapping[str, float]) -> str:
+    """Say for how much of a run each signal is cut off."""
+    return ", ".join(
+        f"the {name} for {number(100 * share, 2)} % of this run" if share else f"the {name} never"
+        for name, share in shares.items()
+    )

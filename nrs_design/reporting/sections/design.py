@@ -11,7 +11,6 @@ from nrs_design.reporting.document import Block, Illustration, Linked, Paragraph
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
 from nrs_design.reporting.formatting import number, polynomial_text, root, roots
 from nrs_design.reporting.sections.creep import creep_section
-from nrs_design.reporting.sections.goals import goals_section
 from nrs_design.reporting.sections.impedance import (
     CURVES,
     by_controller,
@@ -74,8 +73,6 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         parts.append(_force_section(designed, analysis))
     if analysis.parallel:
         parts.append(parallel_section(designed.loaded, analysis))
-    if any(item.achieved for item in analysis.measured):
-        parts.append(goals_section(designed, analysis))
     return tuple(parts)
 
 

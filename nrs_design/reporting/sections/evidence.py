@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Section
+from nrs_design.reporting.document import Paragraph, Section
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.kinds.shared.run import unbounded_run
 
 if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
+
+_LINEAR = "Nothing is cut off at a limit in this run, as if no signal ever saturated."
 
 
 def evidence_sections(certification: Certification) -> Iterator[Section]:
@@ -20,4 +23,7 @@ def evidence_sections(certification: Certification) -> Iterator[Section]:
     for statement in certification.statements:
         yield from page_of(system, statement).sections(first=statement.kind not in seen)
         seen.add(statement.kind)
-    yield page_of(system, evidence).run() if evidence else unbounded_run(system)
+    run = page_of(system, evidence).run() if evidence else unbounded_run(system)
+    if system.saturation is not None:
+        run = replace(run, blocks=(Paragraph(_LINEAR), *run.blocks))
+    yield run

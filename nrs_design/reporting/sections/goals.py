@@ -2,60 +2,149 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING
-from nrs_design.reporting.document import Block, Bullets, Derived, Linked, Paragraph, Section, Table
+from nrs_design.reporting.document import (
+    Block,
+    Bullets,
+    Derived,
+    Linked,
+    Paragraph,
+    Section,
+    State,
+    Table,
+)
 from nrs_design.reporting.sections.places import contact_at, linked, with_line
 from nrs_design.reporting.sections.titles import GOALS
-from nrs_design.spec import doubt_spec
+from nrs_design.spec import InteractionDesignSpec, doubt_spec
 from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
-    from nrs_design.pipeline import Designed
+    from nrs_design.pipeline import Designed, Result
     from nrs_design.spec import Spec
+
+_CERTIFIED = ("Goal", "Wanted", "What the certificate shows", "Result")
+_PROOFS = (
+    "These goals are for all controllers together, and what is proved decides them, in exact "
+    "arithmetic, as in nrs-design gate (NRS108). One that is not proved is not refuted: more may "
+    "be true than the certificate shows. The gate fails on it all the same."
+)
+_UNCOMPUTED = (
+    "Goals for margins and errors are not computed: they exist only where the nominal loops are "
+    "stable."
+)
 
 _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 
 
-def goals_section(designed: Designed, analysis: DesignAnalysis) -> Section:
-    """Set what is reached beside the goals, and list the warnings."""
-    spec = designed.spec
+def goals_section(result: Result, analysis: DesignAnalysis | None) -> Section | None:
+    """Set what is reached and what is proved beside the goals, and list the warnings.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    analysis : DesignAnalysis or None
+        What the design achieves; None where a nominal loop is unstable.
+
+    Returns
+    -------
+    Section or None
+        None where nothing is measured and no goal asks for a proof.
+    """
+    blocks = [*_measured(result, analysis), *_certified(result)]
+    return Section(GOALS, tuple(blocks)) if blocks else None
+
+
+def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State, str]:
+    """Return how all goals of a spec stand together, and the same in words.
+
+    Parameters
+    ----------
+    result, analysis
+        As for `goals_section`.
+    """
+    proofs = tuple(certified_goals(result.loaded.spec, result.certificate))
+    measured = () if analysis is None else analysis.measured
+    goals = [f for item in measured for f in item.achieved if f.goal is not None]
+    missed = sum(not found.met for found in goals)
+    open_ = [goal.key for goal in proofs if not goal.met]
+    uncomputed = analysis is None and _are_measured(result.loaded.spec)
+    said = []
+    if uncomputed:
+        said.append("not computed: a nominal loop is unstable")
+    elif missed:
+        said.append(f"{missed} of {len(goals)} missed (floating point)")
+    elif goals:
+        said.append(f"all {len(goals)} met (floating point)")
+    if proofs:
+        said.append(f"NOT proved: {', '.join(open_)}" if open_ else "")
+        shown = [goal.key for goal in proofs if goal.met]
+        said.append(f"proved: {', '.join(shown)}" if shown else "")
+    if not said:
+        return State.UNKNOWN, "no goals set"
+    state = State.DOUBTFUL if open_ or uncomputed else State.GOOD
+    return State.BAD if missed else state, "; ".join(filter(None, said))
+
+
+def goal_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
+    """Return for the head of the report how the goals stand."""
+    state, said = judged_goals(result, analysis)
+    if analysis is None and state is State.UNKNOWN:
+        return ()
+    return ((GOALS, said if state is State.UNKNOWN else Derived(said, GOALS)),)
+
+
+def _are_measured(spec: Spec) -> bool:
+    """Tell whether a spec has goals that the margins of its controllers decide."""
+    if not isinstance(spec, InteractionDesignSpec):
+        return False
+    given = {key for key, _ in spec.goals.given()} if spec.goals is not None else set()
+    return bool(given - OF_THE_CERTIFICATE) or any(
+        controller.goals is not None for controller in spec.controllers.values()
+    )
+
+
+def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block]:
+    designed = result.designed
+    if analysis is None and _are_measured(result.loaded.spec):
+        yield Paragraph(_UNCOMPUTED)
+    if designed is None or analysis is None:
+        return
     rows = tuple(
         _row(designed, item.name, found) for item in analysis.measured for found in item.achieved
     )
-    table = Table("Goals and worst values", _COLUMNS, rows)
-    blocks: list[Block] = [Paragraph(" ".join(MEANING)), table]
+    if not rows:
+        return
+    yield Paragraph(" ".join(MEANING))
+    yield Table("Goals and worst values", _COLUMNS, rows)
     doubts = tuple(
         with_line(designed.loaded, str(doubt), *doubt.at)
-        for doubt in (*doubt_spec(spec), *analysis.warnings)
+        for doubt in (*doubt_spec(designed.spec), *analysis.warnings)
     )
     if doubts:
-        blocks.append(Bullets("Warnings", doubts))
-    return Section(GOALS, tuple(blocks))
+        yield Bullets("Warnings", doubts)
 
 
-def goal_facts(spec: Spec, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
-    """Return for the head of the report how many goals are missed, and what it does not judge."""
-    if analysis is None or not analysis.measured:
-        return ()
-    goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
-    missed = sum(not found.met for found in goals)
-    unjudged = unjudged_goals(spec)
-    if not goals:
-        return ((GOALS, unjudged or "no goals set"),)
-    judged = f"{missed} of {len(goals)} MISSED" if missed else f"all {len(goals)} met"
-    said = "; ".join(filter(None, (judged if missed or unjudged else "all met", unjudged)))
-    return ((GOALS, Derived(said, GOALS)),)
-
-
-def unjudged_goals(spec: Spec) -> str:
-    """Say which goals are about what is proved, which the gate judges; empty without them."""
-    goals = getattr(spec, "goals", None)
-    named = [key for key in sorted(OF_THE_CERTIFICATE) if getattr(goals, key, None) is not None]
-    return f"{', '.join(named)}: nrs-design gate decides" if named else ""
+def _certified(result: Result) -> Iterator[Block]:
+    loaded = result.loaded
+    rows = tuple(
+        (
+            goal.key,
+            linked(loaded, goal.wanted, "goals", goal.key),
+            goal.said,
+            "proved" if goal.met else "NOT PROVED",
+        )
+        for goal in certified_goals(loaded.spec, result.certificate)
+    )
+    if rows:
+        yield Paragraph(_PROOFS)
+        yield Table("Goals that the certificate must show", _CERTIFIED, rows)
 
 
 def _row(designed: Designed, name: str, found: Achieved) -> tuple[str, ...]:

@@ -7,14 +7,14 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.proof.bounds import at_least, at_most, lower, upper
+from nrs_design.proof.bounds import at_least, at_most, lower, rounded_down, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Derived
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.sections.titles import EVIDENCE, MODES, RECHECK, RUNGS, SPEC
+from nrs_design.reporting.sections.titles import EVIDENCE, MODES, RECHECK, RUNGS, SATURATION, SPEC
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
@@ -61,6 +61,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
             Derived(certification.method if certification.evidence else "nothing", RUNGS),
         ),
         *_rate(system, certification.evidence),
+        *_saturated(certification),
         *_limit(certification),
     ]
     if result.coordinates is not None:
@@ -95,6 +96,26 @@ def proved_rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> Fr
     if evidence is None or evidence.shows is not Shows.STABILITY:
         return None
     return evidence.proved_rate(system)
+
+
+def saturated(certification: Certification) -> tuple[Fraction, str] | None:
+    """Return the proved rate where signals saturate, and from where; None where none is shown."""
+    system = certification.system
+    for item in certification.statements:
+        rate, size = item.start_rate, item.start_size
+        if rate is not None and size is not None and system.saturation is not None:
+            start = system.saturation.start
+            return rate, f"at rest with a {start.name} up to {rounded_down(size, start.unit)}"
+    return None
+
+
+def _saturated(certification: Certification) -> list[tuple[str, str]]:
+    found = saturated(certification)
+    if found is None:
+        return []
+    rate, start = found
+    text = f"{lower(rate)} 1/s, for motions that begin {start}"
+    return [("Proved where signals saturate", Derived(text, SATURATION))]
 
 
 def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tuple[str, str]]:

@@ -48,6 +48,12 @@ def _at_arm(item: ImpedanceAnalysis) -> str:
     return "" if item.limit_at_arm is None else number(item.limit_at_arm)
 
 
+def _optimal(item: ImpedanceAnalysis, gain: str) -> str:
+    """Write a gain at the optimum; one that the spec gives was not chosen."""
+    given = getattr(item.given, gain).fixed
+    return "given" if given else number(getattr(item.optimum, gain), 6)
+
+
 def _spring(item: ImpedanceAnalysis) -> str:
     return number(item.problem.loop.Kt, 6) if item.problem.loop.Kt else ""
 
@@ -57,8 +63,8 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Nominal stiffness [N·m/rad]", lambda item: number(item.problem.loop.contact.stiffness, 6)),
     ("Stiffness beside the damper [N·m/rad]", lambda item: _given(item, "parallel_stiffness")),
     ("Nominal damping [N·m·s/rad]", lambda item: _given(item, "damping", "0")),
-    ("Mt at the optimum [kg·m²]", lambda item: number(item.optimum.Mt, 6)),
-    ("Bt at the optimum [N·m·s/rad]", lambda item: number(item.optimum.Bt, 6)),
+    ("Mt at the optimum [kg·m²]", lambda item: _optimal(item, "Mt")),
+    ("Bt at the optimum [N·m·s/rad]", lambda item: _optimal(item, "Bt")),
     ("Mt as shipped [kg·m²]", lambda item: number(item.Mt, 6)),
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
     ("Kt as given [N·m/rad]", _spring),

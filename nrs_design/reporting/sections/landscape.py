@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 
 # More maps than these fill a page with what is nearly alike.
 _DRAWN = 4
+_GAINS = ("Mt", "Bt")
 _TEXT = (
     "The cost weighs how far the displayed impedance is from the desired one against the mean "
-    "sensitivity, up to the bandwidth. Each row of a table is the best for something else: what it "
-    "gains there, it gives up in the other columns. Nominal contact, floating point, goals left "
-    "out; no part of the proof."
+    "sensitivity, up to the bandwidth. Where gains may be chosen, each row of a table is the best "
+    "for something else: what it gains there, it gives up in the other columns. Nominal contact, "
+    "floating point, goals left out; no part of the proof."
 )
 _MAP = "Lines of equal cost, with the values of some. Shaded: the nominal loop is unstable."
 _BOX = (
@@ -47,7 +48,10 @@ def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     """
     blocks: list[Block] = [Paragraph(_TEXT)]
     for item in items[:_DRAWN]:
-        blocks += [_map(item), _table(designed.loaded, item)]
+        blocks.append(_map(item))
+        # Where nothing may be chosen, nothing else is the best for anything.
+        if len(_given(item)) < len(_GAINS):
+            blocks.append(_table(designed.loaded, item))
     sampling = designed.spec.sampling
     sampled = None if sampling is None else float(sampling.oldest)
     blocks.append(
@@ -63,13 +67,21 @@ def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
 
 def _map(item: ImpedanceAnalysis) -> Illustration:
     found = map_cost(item.problem, item.Mt, item.Bt)
-    held = " ".join(f"{gain} is on its {side} bound." for gain, side in _on_bounds(item))
+    remarks = [f"{gain} is on its {side} bound." for gain, side in _on_bounds(item)]
+    if given := _given(item):
+        verb = "is" if len(given) == 1 else "are"
+        remarks.append(f"{' and '.join(given)} {verb} given by the spec, not optimized.")
+    held = " ".join(remarks)
     return Illustration(
         f"cost-{item.name}",
         f"Cost over Mt and Bt: {item.name}",
         f"{_MAP}{'' if item.given.Mt.fixed or item.given.Bt.fixed else _BOX} {held}".rstrip(),
         draw_cost(item, found),
     )
+
+
+def _given(item: ImpedanceAnalysis) -> list[str]:
+    return [gain for gain in _GAINS if getattr(item.given, gain).fixed]
 
 
 def _on_bounds(item: ImpedanceAnalysis) -> list[tuple[str, str]]:

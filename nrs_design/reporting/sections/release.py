@@ -12,7 +12,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.release import physical_outputs
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
-from nrs_design.reporting.figures.release import ReleasePanel, draw_release
+from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.modes import hardest_modes
@@ -54,6 +54,7 @@ _NO_DEFLECTION = (
 )
 _ONE_MODE = "Rules forbid to switch at any time, so one mode holds throughout."
 _ONE_AXIS = "It is that of one axis on which the others do not act."
+_LINEAR = "Nothing is cut off at a limit in it, whatever saturates on the robot."
 _UNPROVED = "Stability is not proved: that this run comes to rest is no sign of it."
 _BOUND = (
     "The dashed lines follow from the certificate, from this start, for every switching signal; "
@@ -89,7 +90,7 @@ def release_section(result: Result) -> Section | None:
                 "release",
                 "After being pressed in and let go",
                 _bound_text(result.certification, Q),
-                draw_release(run, drawn, names),
+                draw_bounded_run(run, drawn, names),
             ),
         ),
     )
@@ -111,6 +112,7 @@ def _said(result: Result, system: SwitchedSystem, outputs: Outputs) -> str:
         (_ANYWHERE, bool(outputs.free)),
         (_ONE_AXIS, bool(system.couplings)),
         (_NO_DEFLECTION, outputs.deflection is None),
+        (_LINEAR, True),
         (_UNPROVED, result.certification.verdict is not Verdict.PROVED),
     )
     return " ".join(text for text, applies in texts if applies)
@@ -129,7 +131,7 @@ def _panels(
     run: SwitchedRun,
     Q: Array | None,
     rate: float,
-) -> list[tuple[ReleasePanel, str]]:
+) -> list[tuple[BoundedSignal, str]]:
     """Return what is drawn, each with its limit as the table writes it."""
     losable = system.contact is not None
     force, velocity = outputs.shares(run, losable=losable)
@@ -144,7 +146,7 @@ def _panels(
     fastest = turn * outputs.largest_velocity
     panels = [
         (
-            ReleasePanel("Torque [N·m]", force * torque, torque, bound(outputs.force)),
+            BoundedSignal("Torque [N·m]", force * torque, torque, bound(outputs.force)),
             limit(torque, "torque"),
         )
     ]
@@ -152,9 +154,9 @@ def _panels(
         values = turn * (run.state @ outputs.deflection)[:, None]
         edge = _turned(bound(outputs.deflection[None, :]))
         panels.append(
-            (ReleasePanel("Deflection [deg]", values, None, edge, one_sided=losable), "–")
+            (BoundedSignal("Deflection [deg]", values, None, edge, one_sided=losable), "–")
         )
-    speed = ReleasePanel(
+    speed = BoundedSignal(
         "Velocity [deg/s]", fastest * velocity[:, None], fastest, _turned(bound(outputs.velocity))
     )
     return [*panels, (speed, limit(fastest, "velocity"))]
@@ -177,7 +179,7 @@ def _turned(values: Array | None) -> Array | None:
     return None if values is None else np.asarray(180 / math.pi * values)
 
 
-def _table(panels: Sequence[tuple[ReleasePanel, str]]) -> Table:
+def _table(panels: Sequence[tuple[BoundedSignal, str]]) -> Table:
     rows = tuple(
         (
             panel.label,

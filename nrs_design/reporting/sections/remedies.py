@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline import find_relief
-from nrs_design.pipeline.subsets import subset_lines
+from nrs_design.pipeline.subsets import parts_title, subset_lines
 from nrs_design.reporting.document import Block, Bullets, Section, Sentence
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
@@ -39,7 +39,8 @@ def remedies_section(
         blocks.append(Bullets("Gains that would hold", relief))
     if subsets or (subsets is not None and result.certification.verdict is not Verdict.PROVED):
         parts = tuple(f"{line[0].upper()}{line[1:]}" for line in subset_lines(subsets))
-        blocks.append(Bullets("Not proved together; the strongest parts that are", parts))
+        title = parts_title(result)
+        blocks.append(Bullets(f"{title[0].upper()}{title[1:]}", parts))
     if margins is not None and (lines := tuple(margin_lines(margins, result.loaded))):
         said = tuple(map(_begun, lines))
         blocks.append(Bullets("How far a proof reaches", said))

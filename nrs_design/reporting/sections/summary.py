@@ -16,9 +16,16 @@ from nrs_design.reporting.document import Derived, Light, Sentence, State
 from nrs_design.reporting.formatting import plural
 from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.register import register_of
-from nrs_design.reporting.sections.goals import unjudged_goals
-from nrs_design.reporting.sections.head import proved_rate
-from nrs_design.reporting.sections.titles import ASSUMPTIONS, EVIDENCE, GOALS, MEANT, MODES
+from nrs_design.reporting.sections.goals import judged_goals
+from nrs_design.reporting.sections.head import proved_rate, saturated
+from nrs_design.reporting.sections.titles import (
+    ASSUMPTIONS,
+    EVIDENCE,
+    GOALS,
+    MEANT,
+    MODES,
+    SATURATION,
+)
 from nrs_design.spec import InteractionDesignSpec, doubt_spec
 
 if TYPE_CHECKING:
@@ -61,8 +68,9 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
     among = plural(len(system.modes), "mode")
     if system.contact is not None and evidence.covers_lost_contact:
         among += f" in contact and {len(system.contact.free)} of free motion"
+    unsaturated = "while no signal saturates, " if system.saturation is not None else ""
     parts = [
-        Sentence(f"Proved: under {_signals(system)}, among ", Derived(among, MODES)),
+        Sentence(f"Proved: {unsaturated}under {_signals(system)}, among ", Derived(among, MODES)),
         *_contact(system, evidence),
         "every motion dies out" + (", for all values in the declared ranges" if ranged else ""),
         _rate(system, evidence),
@@ -75,7 +83,28 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
             if evidence.covers_rounding
             else "for a law computed without rounding"
         )
-    return Sentence(parts[0], *(piece for part in parts[1:] for piece in (", ", part)), ".")
+    bounds = (item.bound(system) for item in result.certification.statements)
+    unbounded = system.channels and not any(bound is not None for bound in bounds)
+    more = ("; no bound under the disturbances of the spec is proved",) if unbounded else ()
+    joined = (piece for part in parts[1:] for piece in (", ", part))
+    return Sentence(parts[0], *joined, *_saturated(result), *more, ".")
+
+
+def _saturated(result: Result) -> tuple[str, ...]:
+    """Say what is proved where signals saturate, which the rate before is not about."""
+    saturation = result.certification.system.saturation
+    if saturation is None:
+        return ()
+    found = saturated(result.certification)
+    if found is None:
+        return ("; where signals saturate, nothing is proved",)
+    rate, start = found
+    names = " and ".join(s.name for s in saturation.signals)
+    return (
+        f"; where {names} saturate, motions that begin {start} die out at a rate of at least ",
+        Derived(f"{lower(rate)} 1/s", SATURATION),
+        ", and of others nothing is said",
+    )
 
 
 def _signals(system: SwitchedSystem) -> str:
@@ -124,24 +153,8 @@ def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, .
     spec = result.loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         return (proof, _open(result))
-    return (proof, _goals(spec, analysis), _margins(spec, analysis), _data(spec), _open(result))
-
-
-def _goals(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
-    name = "Goals"
-    unjudged = unjudged_goals(spec)
-    more = f"; {unjudged}" if unjudged else ""
-    if analysis is None:
-        return Light(name, State.UNKNOWN, f"not computed{more}")
-    goals = [f for item in analysis.measured for f in item.achieved if f.goal is not None]
-    missed = sum(not found.met for found in goals)
-    if not goals:
-        return Light(name, State.UNKNOWN, unjudged or "no goals set", GOALS)
-    if missed:
-        return Light(name, State.BAD, f"{missed} of {len(goals)} missed{more}", GOALS)
-    # A green light would be taken for all goals.
-    state = State.UNKNOWN if unjudged else State.GOOD
-    return Light(name, state, f"all {len(goals)} met (floating point){more}", GOALS)
+    goals = Light("Goals", *judged_goals(result, analysis), GOALS)
+    return (proof, goals, _margins(spec, analysis), _data(spec), _open(result))
 
 
 def _margins(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.experiments import GAINS, TIMES
 from nrs_design.reproduction.gallery.counterpart import (
@@ -162,13 +162,13 @@ def _profile_figures(without: Run, switched: Run) -> tuple[Illustration, Illustr
             "figure-6-16-record",
             "Counterpart of figure 6.16: torque with one impedance and with two",
             f"{_LITTLE} {ENGINE}",
-            draw_records([whole]),
+            draw_panels([whole]),
         ),
         Illustration(
             "figure-6-16-close",
             "The same, where contact ends",
             "The solid line is still on its way to zero when the dashed one is there.",
-            draw_records([close]),
+            draw_panels([close]),
         ),
     )
 
@@ -197,7 +197,7 @@ def _scheme(run: Run) -> Counterpart:
                 "less what the admittance makes of the torque. Met at 8 deg/s, the tissue "
                 f"pushes with up to {four_digits_up(_largest(run))} N m at first, more than T_max. "
                 f"{ENGINE}",
-                draw_records([_signals(run)]),
+                draw_panels([_signals(run)]),
             ),
         ),
     )
@@ -279,7 +279,7 @@ def _withdrawal(
 
 def _draw_pair(one: Withdrawal, runs: tuple[Run, Run]) -> Figure:
     titles = ("without switching", "with switching")
-    return draw_records(
+    return draw_panels(
         [
             PanelColumn(
                 title,

@@ -11,7 +11,7 @@ from nrs_design.design.force_loop import force_loop_response
 from nrs_design.design.transfer import TransferFunction, poles
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.figures.complex_plane import draw_root_locus
-from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.gallery.counterpart import (
@@ -163,7 +163,7 @@ def _profile() -> Counterpart:
                 "The command waits while force is controlled. From t4 on position control takes up "
                 "where it waits, which is deeper: the torque first rises to "
                 f"{four_digits_up(float(response['torque'].max()))} N m. {ENGINE}",
-                draw_records([PanelColumn("", panels, (1.0, 5.0), stays(run))]),
+                draw_panels([PanelColumn("", panels, (1.0, 5.0), stays(run))]),
             ),
         ),
         runs={"figure-6-22": response},
@@ -216,7 +216,7 @@ def _schemes(run: Run) -> Counterpart:
                 "figure-6-24-record",
                 "Counterpart of figures 6.23 and 6.24: every signal of the schemes about a switch",
                 f"Of the run of figure 6.26. {ENGINE}",
-                draw_records([PanelColumn("", panels, span, stays(run))]),
+                draw_panels([PanelColumn("", panels, span, stays(run))]),
             ),
         ),
     )
@@ -288,7 +288,7 @@ def _experiment(one: ForceLimitExperiment, runs: Sequence[Run]) -> Counterpart:
                 f"{name}-record",
                 f"Counterpart of figure {one.figure}: command, torque and selection",
                 f"The P of the thesis, X_i the reference at the switch. {ENGINE}",
-                draw_records([whole]),
+                draw_panels([whole]),
             ),
             Illustration(
                 f"{name}-close",
@@ -296,7 +296,7 @@ def _experiment(one: ForceLimitExperiment, runs: Sequence[Run]) -> Counterpart:
                 "The third controller is not in the thesis, which leaves an integral out because "
                 "stability under switching is not guaranteed with it; position control and this "
                 "PI are certified for any switching (specs/neuroboscope/force-limit-pi.nrs.yaml).",
-                draw_records(close),
+                draw_panels(close),
             ),
         ),
         runs={

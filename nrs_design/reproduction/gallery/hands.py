@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
     Reproducibility,
@@ -123,7 +123,7 @@ def _illustrate(name: str, title: str, runs: Sequence[HandRun]) -> Illustration:
         title,
         "Angle and speed of the robot and torque of the hand until 15 degrees are passed. The "
         "total torque of an experiment is the area between its last curve and zero.",
-        draw_records([_column(runs[:3], "1 to 3: Bt 4"), _column(runs[3:], "4 to 6: Bt 8")]),
+        draw_panels([_column(runs[:3], "1 to 3: Bt 4"), _column(runs[3:], "4 to 6: Bt 8")]),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import PanelColumn, draw_records
+from nrs_design.reporting.figures.panels import PanelColumn, draw_panels
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
@@ -123,14 +123,14 @@ def _counterpart(one: ImpedanceExperiment) -> Counterpart:
                 f"Counterpart of figure {one.figure}: command, torque, depth, displayed impedance",
                 "Crosses: what the thesis prints. Where the command rests, the model displays "
                 f"Bt; while it changes, the depth lags by Bt/k = 50 ms. {ENGINE}",
-                draw_records([_record(one, run)]),
+                draw_panels([_column(one, run)]),
             ),
         ),
         runs={name: run.response},
     )
 
 
-def _record(one: ImpedanceExperiment, run: Run) -> PanelColumn:
+def _column(one: ImpedanceExperiment, run: Run) -> PanelColumn:
     response = run.response
     printed = [(instant, float(value)) for instant, value in one.impedances]
     panels = (

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from nrs_design.reporting.figures.records import Curve, Panel
+from nrs_design.reporting.figures.panels import Curve, Panel
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.interaction import DESIRED
 from nrs_design.simulation.metrics import displayed_impedance

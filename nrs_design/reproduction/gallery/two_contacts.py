@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
 from nrs_design.reporting.simulation import four_digits_up
 from nrs_design.reproduction.gallery.counterpart import (
     Counterpart,
@@ -114,7 +114,7 @@ def _desired() -> Counterpart:
                 "figure-6-30-record",
                 "Counterpart of figures 6.29 to 6.32: command, location and torque",
                 f"Shaded: whose controller is in force, by what was met last. {ENGINE}",
-                draw_records([_scene(run)]),
+                draw_panels([_scene(run)]),
             ),
         ),
         runs={"figure-6-30": run.response},
@@ -194,7 +194,7 @@ def _experiment(one: TwoContactsExperiment) -> Counterpart:
         impedance_panel(response),
     )
     times = tuple(map(float, one.times))
-    record = PanelColumn("", panels, (0.0, float(response.t[-1])), stays(run), times)
+    column = PanelColumn("", panels, (0.0, float(response.t[-1])), stays(run), times)
     switched = [time for time, controller in run.switches if controller == "tool"]
     why = "it is that of the command's course, which is not printed"
     return Counterpart(
@@ -239,7 +239,7 @@ def _experiment(one: TwoContactsExperiment) -> Counterpart:
                 f"{name}-record",
                 f"Counterpart of figure {one.figure}: command, torque, depth, displayed impedance",
                 f"Torque of the stiff specimen, which is met from above, is negative. {ENGINE}",
-                draw_records([record]),
+                draw_panels([column]),
             ),
         ),
         runs={name: response},

@@ -54,6 +54,6 @@ def test_outputs_are_refused_before_the_work(tmp_path):
 
 
 def test_both_types_of_page_and_a_spec(tmp_path):
-    for name in ("page.html", "page.PDF"):
+    for name in ("page.html", "page.HTM", "page.PDF"):
         assert checked(report=tmp_path / name).report == tmp_path / name
     assert checked(write=SOFT_TISSUE).spec.path == SOFT_TISSUE

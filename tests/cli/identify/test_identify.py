@@ -6,6 +6,7 @@ from tests.cli.identify.records import DATA, NOSE, SINUSOIDS, SOFT
 from tests.support import COMMUTING, run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["html", "pdf"])
 def test_report(tmp_path, ending):
     page = tmp_path / f"page.{ending}"

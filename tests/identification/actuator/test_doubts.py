@@ -45,6 +45,7 @@ def test_a_clock_that_is_ahead():
     assert (late.value, late.low, late.high) == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.slow
 def test_a_second_lag_needs_a_second_order():
     result = identify_actuator([motors.record("PRBS", 1, second=0.02)], MOTOR)
     fit = result.chosen
@@ -60,6 +61,7 @@ def test_noise_is_no_doubt():
     assert doubts(motors.record("chirp", 4)) == ""
 
 
+@pytest.mark.slow
 def test_what_is_not_determined_is_said():
     """A slow ramp shows the sum of time constant and dead time, and not which is which."""
     record = motors.record("chirp", 1)

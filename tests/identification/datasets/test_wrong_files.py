@@ -131,6 +131,12 @@ WRONG = {
         "does not hold real numbers",
         None,
     ),
+    "times in NumPy": (
+        "a.npz",
+        {"time_s": (TIME * 1e9).astype("timedelta64[ns]"), "deflection_m": TIME, "force_N": TIME},
+        "does not hold real numbers, but times or dates",
+        None,
+    ),
     "NaN in MATLAB": (
         "a.mat",
         {"time_s": TIME, "deflection_m": TIME, "force_N": np.where(TIME == 0.05, np.nan, 1)},

@@ -17,6 +17,7 @@ SEEDS = 200
 LATE = motors.DELAY * signals.RATE
 
 
+@pytest.mark.slow
 def test_a_copy():
     found = identify_delay(signals.copy(1))
     assert found.chosen.follower.name == "a copy"
@@ -56,6 +57,7 @@ def test_dynamics_are_no_delay(options, name):
         assert found.peak[0] > 2 * motors.DELAY
 
 
+@pytest.mark.slow
 def test_of_models_that_are_nearly_as_good_the_simplest_is_chosen():
     """Here a second, fast lag lowers BIC by 3 and takes a third of a sample from the delay."""
     found = identify_delay(signals.lag(92))
@@ -65,6 +67,7 @@ def test_of_models_that_are_nearly_as_good_the_simplest_is_chosen():
     assert found.samples.covers(LATE)
 
 
+@pytest.mark.slow
 def test_a_square_wave_turned_into_an_angle():
     # Delay and lag lie in a narrow valley: cut one by one, the steps of the search left it.
     delay, tau, step = 5, 0.05, 1 / signals.RATE
@@ -80,12 +83,14 @@ def test_a_square_wave_turned_into_an_angle():
     assert found.samples.high - found.samples.low < 1
 
 
+@pytest.mark.slow
 def test_another_unit_of_time_is_suspected():
     record = signals.copy(1)
     found = identify_delay(replace(record, time=1e-3 * record.time))
     assert any("is that their unit?" in doubt for doubt in found.doubts)
 
 
+@pytest.mark.slow
 def test_a_delay_that_varies_is_said():
     delay = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
     found = identify_delay(signals.copy(2, delay=delay))
@@ -95,6 +100,7 @@ def test_a_delay_that_varies_is_said():
     assert high >= 4
 
 
+@pytest.mark.slow
 def test_a_sine_does_not_tell_a_delay_from_a_lag():
     """A motor behind a sine of 2 Hz: a copy 78 samples late is as good as an integrator."""
     record = read_signals(ROOT / "specs" / "data" / "actuator-2hz.csv")
@@ -102,6 +108,7 @@ def test_a_sine_does_not_tell_a_delay_from_a_lag():
     assert "cannot be told apart" in found.doubts[0]
 
 
+@pytest.mark.slow
 def test_of_one_frequency_every_delay_up_to_that_of_a_copy_is_held():
     """A delay of 3 samples and a lag of 2 make the phase of 5: the delay is not near 5."""
     record = signals.copy(1)
@@ -120,6 +127,7 @@ def test_opposite_signs_are_said():
     assert any("opposite" in doubt for doubt in found.doubts)
 
 
+@pytest.mark.slow
 def test_swapped_columns_are_said():
     record = signals.copy(4)
     found = identify_delay(replace(record, sent=record.seen, seen=record.sent))

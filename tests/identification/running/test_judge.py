@@ -6,30 +6,13 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError, DesignError
-from nrs_design.identification.datasets.columns import parse_mapping
-from nrs_design.identification.running import judge_run, read_run, read_run_bounds
+from nrs_design.identification.running import judge_run, read_run_bounds
 from nrs_design.identification.running.bounds import Stiffness
 from nrs_design.identification.running.stiffness import cut_windows, stiffness_of
 from nrs_design.spec import read_spec
 from tests.identification import runs
-from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
-
-SOFT = read_run_bounds(read_spec(SOFT_TISSUE))
-SAMPLED = read_run_bounds(read_spec(ROBOT / "soft-tissue-sampled.nrs.yaml"))
-
-
-def log(tmp_path, data=None, text=None, entries=()):
-    path = tmp_path / "run.csv"
-    path.write_text(runs.text(*(data or runs.run())) if text is None else text)
-    return read_run(path, parse_mapping(entries))
-
-
-def judged(record, bounds=SOFT, **options):
-    return judge_run(record, bounds, proved=True, **options)
-
-
-def check(found, name):
-    return next(item for item in found.checks if item.name == name)
+from tests.identification.running.support import SAMPLED, SOFT, check, judged, log
+from tests.support import COMMUTING, ROBOT
 
 
 def test_bounds_of_the_spec():
@@ -176,33 +159,6 @@ def test_a_strange_mode(tmp_path):
     assert str(check(found, "dwell times").status) == "not judged"
 
 
-def with_switching(tmp_path, rules):
-    """The nominal tissue: a dwell time and a range exclude each other."""
-    text = SOFT_TISSUE.read_text().replace("switching: arbitrary", f"switching: {rules}")
-    text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
-    path = tmp_path / "spec.nrs.yaml"
-    path.write_text(text)
-    return read_run_bounds(read_spec(path))
-
-
-@pytest.mark.parametrize(
-    ("rules", "status", "words"),
-    [
-        ("{dwell_time: 2 s}", "inside", None),
-        # The log tells 2.5 s to a row; what no reading allows is a violation, and nothing else.
-        ("{dwell_time: 2.5 s}", "inside", None),
-        ("{dwell_time: 2.503 s}", "outside", "insertion lasted|withdrawal lasted"),
-        ("{dwell_time: 1 s, longest_dwell_time: 2 s}", "outside", "insertion lasted 2.498 s"),
-        ("{transitions: [[insertion, withdrawal]]}", "outside", "withdrawal was followed by"),
-    ],
-)
-def test_dwell_times(tmp_path, rules, status, words):
-    found = check(judged(log(tmp_path), with_switching(tmp_path, rules)), "dwell times")
-    assert str(found.status) == status
-    if words is not None:
-        assert any(word in found.first.words for word in words.split("|"))
-
-
 @pytest.mark.parametrize(
     ("spec", "name", "allowed"),
     [
@@ -215,23 +171,6 @@ def test_what_no_log_shows_is_not_judged_so_the_run_is_not_inside(tmp_path, spec
     unseen = check(judged(log(tmp_path), bounds, command_limit=3000), name)
     assert (str(unseen.status), unseen.allowed) == ("not judged", allowed)
     assert SOFT.unseen == ()
-
-
-def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
-    rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
-    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
-    stays = check(found, "dwell times")
-    assert str(stays.status) == "not judged"
-    assert "name contacts" in stays.measured
-    assert found.verdict == "inconclusive"
-
-
-def test_rules_without_a_column(tmp_path):
-    text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
-    record = log(tmp_path, text=text)
-    assert str(check(judged(record), "dwell times").status) == "inside"
-    found = judged(record, with_switching(tmp_path, "{dwell_time: 2 s}"))
-    assert check(found, "dwell times").measured == "no column for mode"
 
 
 def test_a_tissue_that_remembers(tmp_path):

@@ -35,6 +35,7 @@ def test_without_air_nothing_is_found(law):
     assert not any(find_contact(record(law, motion(seed), noise, seed)) for seed in range(10))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "noise"), [(synthetic.NOSE, 0.0165), (Maxwell(1.129, 20.0), 0.0135)]
 )

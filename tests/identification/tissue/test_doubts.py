@@ -26,6 +26,7 @@ def test_short_record():
     assert "the record (80 s) is shorter than the relaxation time (1" in said
 
 
+@pytest.mark.slow
 def test_elastic_data_do_not_determine_a_damper():
     said = doubts(KelvinVoigt, Elastic(750.0), quick(), 0.1)
     assert "b has a relative standard error of" in said

@@ -69,6 +69,7 @@ def test_it_is_written_as_the_law_that_it_is():
     assert plain.model == "elastic"
 
 
+@pytest.mark.slow
 def test_an_exponent_that_may_be_below_one_leaves_a_spring_and_a_damper():
     """Such a law is not convex, and its chords are not those that a spec covers."""
     found = identified(2)

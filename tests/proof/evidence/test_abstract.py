@@ -347,10 +347,11 @@ def test_a_kind_that_says_nothing_of_itself_claims_nothing(fact):
 
 
 def test_only_what_speaks_of_saturation_says_how_motions_begin():
-    assert Claimed().start_size is None
+    assert Claimed().start_size is Claimed().start_rate is None
     pairs = [genuine(example) for example in SYSTEMS]
-    begun = {item.kind for _, item in pairs if item.start_size is not None}
-    assert begun == {"saturated-ellipsoid"}
+    for fact in ("start_size", "start_rate"):
+        begun = {item.kind for _, item in pairs if getattr(item, fact) is not None}
+        assert begun == {"saturated-ellipsoid"}
 
 
 @pytest.mark.parametrize("example", SYSTEMS)

@@ -184,8 +184,9 @@ def growth(system: SwitchedSystem, Q: Rows, start: int) -> Fraction:
     """Return by how much V grows in 200 steps from some state, in fractions of bounded length."""
     x = [Fraction((7 * start + 3 * i * i + 1) % 11 - 5) for i in range(system.order)]
     before = _value(Q, x)
+    touching, flying = system.modes[0].A.fractions(), system.contact.free[0].A.fractions()
     for _ in range(200):
-        A = (system.modes[0] if x[-1] > 0 else system.contact.free[0]).A.fractions()
+        A = touching if x[-1] > 0 else flying
         x = [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
         x = [entry.limit_denominator(10**12) for entry in x]
     return _value(Q, x) / before if before else Fraction(0)

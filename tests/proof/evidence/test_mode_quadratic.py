@@ -618,7 +618,12 @@ def test_pieces_of_a_stay(monkeypatch):
         (
             Switching(transitions=(("m0", "m1"),), resets=RESETS),
             Time.CONTINUOUS,
-            "1 allowed transitions, 2 resets",
+            "1 allowed transition, 2 resets",
+        ),
+        (
+            Switching(transitions=(("m0", "m1"), ("m1", "m0")), resets=RESETS[:1]),
+            Time.CONTINUOUS,
+            "2 allowed transitions, 1 reset",
         ),
     ],
 )

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import pytest
 
-import nrs_design
 from nrs_design.proof import evidence as proof
 from nrs_design.reporting import kinds
 from nrs_design.reporting.document import Illustration
 from nrs_design.reporting.kinds import KINDS, page_of
+from tests.package import FILES, PACKAGE, nodes_of
 from tests.proof.systems import SYSTEMS, genuine
 
-PACKAGE = Path(nrs_design.__file__).parent
 CLASSES = tuple(map(proof.class_of, proof.KINDS))
 NAMES = frozenset(proof.KINDS.values())
 TEXTS = frozenset(proof.KINDS)
@@ -59,12 +58,12 @@ def test_every_page_speaks_in_sentences_and_draws_a_run(kind):
     assert any(isinstance(block, Illustration) for block in page.run().blocks)
 
 
-def aliases(trees):
+def aliases(files):
     """Names of kinds, and of all that is assigned from them: unions and tuples of kinds."""
     assigned = [
         node
-        for tree in trees
-        for node in ast.walk(tree)
+        for nodes in files
+        for node in nodes
         if isinstance(node, ast.Assign | ast.AnnAssign)
         and isinstance(node.value, ast.Tuple | ast.BinOp)
     ]
@@ -83,9 +82,9 @@ def mentions(node, known):
     return any(name in known for name in names)
 
 
-def questions(tree, known):
+def questions(nodes, known):
     """Yield the lines that ask of what kind some evidence is, other than by a look into a table."""
-    for node in ast.walk(tree):
+    for node in nodes:
         match node:
             case ast.Call(func=ast.Name("isinstance" | "issubclass"), args=[_, kind]):
                 asks = mentions(kind, known)
@@ -123,17 +122,16 @@ def questions(tree, known):
     ],
 )
 def test_questions_about_kinds_are_recognized(text, count):
-    tree = ast.parse(text)
-    assert len(list(questions(tree, aliases([tree])))) == count
+    nodes = tuple(ast.walk(ast.parse(text)))
+    assert len(list(questions(nodes, aliases([nodes])))) == count
 
 
 def test_no_code_asks_for_the_kind_of_evidence():
-    trees = {path: ast.parse(path.read_text("utf-8")) for path in PACKAGE.rglob("*.py")}
-    known = aliases(trees.values())
+    known = aliases(map(nodes_of, FILES.values()))
     asked = [
-        f"{path.relative_to(PACKAGE)}:{line}"
-        for path, tree in sorted(trees.items())
-        for line in questions(tree, known)
+        f"{name}:{line}"
+        for name, path in FILES.items()
+        for line in questions(nodes_of(path), known)
     ]
     assert asked == []
 

@@ -10,7 +10,7 @@ def counterparts():
     """All runs and statements, with empty figures: drawing takes longer than all the rest."""
     with pytest.MonkeyPatch.context() as patch:
         for topic in (agility, force_limit, hands, impedance, two_contacts):
-            patch.setattr(topic, "draw_records", lambda records: Figure())
+            patch.setattr(topic, "draw_panels", lambda columns: Figure())
         patch.setattr(force_limit, "draw_root_locus", lambda *arguments: Figure())
         return draw_counterparts()
 

@@ -25,6 +25,7 @@ PRINTED = {
 NUMBER = re.compile(r"\d+(\.\d+)?")
 
 
+@pytest.mark.slow
 def test_every_figure_has_one_counterpart(counterparts):
     figures = [figure for one in counterparts for figure in one.shows]
     assert figures == [f"6.{number}" for number in range(14, 35)]

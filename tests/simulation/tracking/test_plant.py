@@ -129,6 +129,7 @@ def test_a_joint_that_stops_stays_without_chatter(drive):
     assert not np.any(speeds[moving:])
 
 
+@pytest.mark.slow
 def test_agrees_with_an_independent_integrator(robot, smooth):
     # DOP853 on the same equation, without friction; the weight is held by half of its command.
     mechanism, start = Mechanism(robot), at_rest(robot)

@@ -33,7 +33,7 @@ _ROWS = 10
 
 
 @dataclass(frozen=True, eq=False)
-class ReleasePanel:
+class BoundedSignal:
     """One quantity over time.
 
     Parameters
@@ -58,8 +58,8 @@ class ReleasePanel:
 
 
 @styled
-def draw_release(
-    response: SwitchedRun, panels: Sequence[ReleasePanel], names: Sequence[str]
+def draw_bounded_run(
+    response: SwitchedRun, panels: Sequence[BoundedSignal], names: Sequence[str]
 ) -> Figure:
     """Draw all panels over one time axis, and below them the mode that is active.
 
@@ -67,7 +67,7 @@ def draw_release(
     ----------
     response : SwitchedRun
         The run.
-    panels : sequence of ReleasePanel
+    panels : sequence of BoundedSignal
         At least one.
     names : sequence of str
         Of all modes.
@@ -100,7 +100,7 @@ def draw_release(
     return figure
 
 
-def _draw_panel(axes: Axes, time: Array, panel: ReleasePanel) -> None:
+def _draw_panel(axes: Axes, time: Array, panel: BoundedSignal) -> None:
     low, high = panel.values.min(axis=1), panel.values.max(axis=1)
     if panel.values.shape[1] > 1:
         axes.fill_between(time, low, high, color=BLUE, alpha=0.25, label="over the contact's range")

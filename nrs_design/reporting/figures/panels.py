@@ -129,41 +129,41 @@ class PanelColumn:
 
 
 @styled
-def draw_records(records: Sequence[PanelColumn]) -> Figure:
+def draw_panels(columns: Sequence[PanelColumn]) -> Figure:
     """Draw runs beside each other.
 
     Parameters
     ----------
-    records : sequence of PanelColumn
+    columns : sequence of PanelColumn
         One, or a few with panels alike.
     """
-    rows = len(records[0].panels)
+    rows = len(columns[0].panels)
     figure = new_figure(1.1 + 1.45 * rows)
-    grid = figure.subplots(rows, len(records), sharex="col", sharey="row", squeeze=False)
-    names = list(dict.fromkeys(name for r in records for _, _, name in r.stays))
+    grid = figure.subplots(rows, len(columns), sharex="col", sharey="row", squeeze=False)
+    names = list(dict.fromkeys(name for column in columns for _, _, name in column.stays))
     handles: dict[str, Artist] = {}
-    for column, record in enumerate(records):
-        for row, panel in enumerate(record.panels):
-            axes: Axes = grid[row, column]
-            _draw_panel(axes, panel, record, handles)
-            _shade(axes, record, names, _LETTERS / len(records) if row == 0 else 0.0)
-            if column == 0:
+    for place, column in enumerate(columns):
+        for row, panel in enumerate(column.panels):
+            axes: Axes = grid[row, place]
+            _draw_panel(axes, panel, column, handles)
+            _shade(axes, column, names, _LETTERS / len(columns) if row == 0 else 0.0)
+            if place == 0:
                 axes.set_ylabel(panel.label)
-            if panel.other is not None and column == len(records) - 1:
+            if panel.other is not None and place == len(columns) - 1:
                 _second_scale(axes, *panel.other)
-        grid[-1, column].set_xlabel("Time [s]")
-        grid[-1, column].set_xlim(record.span)
-        if record.title:
-            grid[0, column].set_title(record.title, fontsize=9.5, pad=18 if record.stays else 6)
+        grid[-1, place].set_xlabel("Time [s]")
+        grid[-1, place].set_xlim(column.span)
+        if column.title:
+            grid[0, place].set_title(column.title, fontsize=9.5, pad=18 if column.stays else 6)
     figure.align_ylabels(grid[:, 0])
     _legend(figure, handles, names)
     return figure
 
 
-def _draw_panel(axes: Axes, panel: Panel, record: PanelColumn, handles: dict[str, Artist]) -> None:
+def _draw_panel(axes: Axes, panel: Panel, column: PanelColumn, handles: dict[str, Artist]) -> None:
     for curve in panel.curves:
         look = _PRINTED if curve.printed else _LOOKS[curve.look]
-        t, y = (curve.t, curve.y) if curve.printed else _thinned(curve, record.span)
+        t, y = (curve.t, curve.y) if curve.printed else _thinned(curve, column.span)
         (line,) = axes.plot(t, y, label=curve.label, **look)
         # What stands alone is named by its axis.
         if len(panel.curves) > 1:
@@ -172,7 +172,7 @@ def _draw_panel(axes: Axes, panel: Panel, record: PanelColumn, handles: dict[str
         handles.setdefault(panel.limit, axes.axhline(level, **_LIMIT))
     if panel.ticks:
         axes.set_yticks(panel.ticks)
-    for instant in record.instants:
+    for instant in column.instants:
         line = axes.axvline(instant, **_INSTANT)
         handles.setdefault("printed instant", line)
 
@@ -197,9 +197,9 @@ def _thinned(
     return t[picked], y[picked]
 
 
-def _shade(axes: Axes, record: PanelColumn, names: Sequence[str], letters: float) -> None:
-    begin, end = record.span
-    for start, stop, name in record.stays:
+def _shade(axes: Axes, column: PanelColumn, names: Sequence[str], letters: float) -> None:
+    begin, end = column.span
+    for start, stop, name in column.stays:
         low, high = max(start, begin), min(stop, end)
         if low >= high:
             continue

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.reporting.figures.records import Curve, Panel, PanelColumn, draw_records
+from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
 
 T = np.linspace(0, 10, 20_001)
 
@@ -13,7 +13,7 @@ def lines(axes, label):
 def test_a_short_peak_is_drawn_however_long_the_run():
     y = np.zeros_like(T)
     y[12_345] = 1.0
-    figure = draw_records([PanelColumn("", (Panel("y", (Curve(T, y, "y"),)),), (0, 10))])
+    figure = draw_panels([PanelColumn("", (Panel("y", (Curve(T, y, "y"),)),), (0, 10))])
     (line,) = lines(figure.axes[0], "y")
     assert len(line.get_xdata()) < 1000
     assert line.get_ydata().max() == 1.0
@@ -22,7 +22,7 @@ def test_a_short_peak_is_drawn_however_long_the_run():
 
 def test_a_gap_stays_a_gap():
     y = np.where((T > 4) & (T < 6), np.nan, 1.0)
-    figure = draw_records([PanelColumn("", (Panel("y", (Curve(T, y, "y"),)),), (0, 10))])
+    figure = draw_panels([PanelColumn("", (Panel("y", (Curve(T, y, "y"),)),), (0, 10))])
     (line,) = lines(figure.axes[0], "y")
     assert np.isnan(line.get_ydata()).any()
     assert not (
@@ -39,7 +39,7 @@ def test_limits_stays_instants_and_the_second_scale():
         other=("Force [N]", 4.0),
     )
     stays = ((0.0, 6.0, "position"), (6.0, 6.01, "force"))
-    figure = draw_records([PanelColumn("a", (panel,), (0, 10), stays, (7.0,))])
+    figure = draw_panels([PanelColumn("a", (panel,), (0, 10), stays, (7.0,))])
     axes = figure.axes[0]
     assert [text.get_text() for text in axes.texts] == ["position"]
     assert sum(patch.get_alpha() is not None for patch in axes.patches) == 2
@@ -54,7 +54,7 @@ def test_limits_stays_instants_and_the_second_scale():
 
 
 def test_what_stands_alone_is_named_by_its_axis():
-    record = PanelColumn("", (Panel("Depth [mm]", (Curve(T, T, "depth"),)),), (0, 10))
-    figure = draw_records([record, record])
+    column = PanelColumn("", (Panel("Depth [mm]", (Curve(T, T, "depth"),)),), (0, 10))
+    figure = draw_panels([column, column])
     assert figure.legends == []
     assert [axes.get_ylabel() for axes in figure.axes] == ["Depth [mm]", ""]

@@ -1,0 +1,133 @@
+"""The goals that a certificate must show: what is wanted, what it shows, whether that is enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from nrs_design.certificates.bounds import bound_on
+from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.proof.bounds import rounded_down, rounded_up
+from nrs_design.proof.evidence import Shows
+from nrs_design.proof.mode import Time
+from nrs_design.proof.noun import dataclass
+from nrs_design.spec import InteractionDesignSpec
+
+if TYPE_CHECKING:
+    from nrs_design.spec import Spec
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedGoal:
+    """One goal of a spec that a certificate must show.
+
+    Parameters
+    ----------
+    key : str
+        Of the goal in the spec, such as ``decay_rate``.
+    said : str
+        What is proved; numbers are rounded to their safe side.
+    wanted : str
+        As the spec writes it; ``largest`` and ``settles`` want no number.
+    met : bool
+        Whether what is proved is enough. Where it is not, nothing is known: more may be true.
+    """
+
+    key: str
+    said: str
+    wanted: str
+    met: bool
+
+
+def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
+    """Yield the goals of a spec that what is proved decides, in exact arithmetic.
+
+    Parameters
+    ----------
+    spec : Spec
+        One without such goals, or of another kind, has none.
+    certificate : Certificate or None
+        Checked; None if nothing was shown.
+    """
+    if not isinstance(spec, InteractionDesignSpec) or spec.goals is None:
+        return
+    goals = spec.goals
+    if goals.peak_torque is not None:
+        yield _peak_torque(goals.peak_torque.exact, goals.peak_torque.text, certificate)
+    if goals.decay_rate is not None:
+        yield _decay_rate(goals.decay_rate.exact, goals.decay_rate.text, certificate)
+    if goals.delay is not None and spec.sampling is not None:
+        yield _delay(spec, goals.delay.exact, goals.delay.text, certificate)
+    if goals.constant_force is not None:
+        statements = () if certificate is None else certificate.statements
+        met = any(item.shows is Shows.CONVERGENCE for item in statements)
+        said = "the force is proved to settle at" if met else "not proved: the force settles at"
+        said += " every constant Fd that pushes in, at every constant stiffness"
+        yield CertifiedGoal("constant_force", said, goals.constant_force, met)
+    if isinstance(goals.initial_force, str):
+        yield _initial_force(None, goals.initial_force, certificate)
+    elif goals.initial_force is not None:
+        yield _initial_force(goals.initial_force.exact, goals.initial_force.text, certificate)
+
+
+def _peak_torque(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:
+    found = None
+    if certificate is not None:
+        found = bound_on(certificate.system, certificate.statements, "force")
+    if found is None:
+        return CertifiedGoal("peak_torque", "no bound on the force was proved", text, False)
+    acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
+    said = (
+        f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
+        f"{rounded_up(found.level, 'N*m')}, from rest"
+    )
+    return CertifiedGoal("peak_torque", said, text, found.level <= wanted)
+
+
+def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:
+    rate = _decay(certificate)
+    if rate is None:
+        return CertifiedGoal("decay_rate", "no decay rate in 1/s was proved", text, False)
+    said = f"the proved decay rate is {rounded_down(rate, '1/s')}"
+    if certificate is not None and certificate.system.saturation is not None:
+        said += " while no signal saturates"
+    return CertifiedGoal("decay_rate", said, text, rate >= wanted)
+
+
+def _decay(certificate: Certificate | None) -> Fraction | None:
+    """Return the proved rate in 1/s; of a contraction rho per step, ``1 - rho`` is not above it."""
+    evidence = None if certificate is None else certificate.evidence
+    if certificate is None or evidence is None:
+        return None
+    rate, system = evidence.proved_rate(certificate.system), certificate.system
+    if rate is None or system.time is Time.CONTINUOUS:
+        return rate
+    return None if system.sample_time is None else (1 - rate) / system.sample_time
+
+
+def _delay(
+    spec: InteractionDesignSpec, wanted: Fraction, text: str, certificate: Certificate | None
+) -> CertifiedGoal:
+    assert spec.sampling is not None
+    if certificate is None or certificate.verdict != Verdict.PROVED:
+        return CertifiedGoal("delay", "nothing was proved", text, False)
+    oldest, least = spec.sampling.oldest, spec.sampling.delay[0] * spec.sampling.outer
+    ages = f"{rounded_up(least, 's')} to {rounded_down(oldest, 's')} old"
+    said = f"the loop is proved for force samples {ages}"
+    return CertifiedGoal("delay", said, text, oldest >= wanted)
+
+
+def _initial_force(
+    wanted: Fraction | None, text: str, certificate: Certificate | None
+) -> CertifiedGoal:
+    statements = () if certificate is None else certificate.statements
+    level = next((size for s in statements if (size := s.start_size) is not None), None)
+    if level is None:
+        said = "no force was proved from which motions decay although signals saturate"
+        return CertifiedGoal("initial_force", said, text, False)
+    said = (
+        f"from rest with a contact force up to {rounded_down(level, 'N*m')} motions are proved to "
+        "decay although signals saturate"
+    )
+    return CertifiedGoal("initial_force", said, text, wanted is None or level >= wanted)

@@ -1,0 +1,77 @@
+"""The first samples of a program, in a loop with its motor: what the header says of the start."""
+
+import math
+
+import numpy as np
+import pytest
+
+from nrs_design.exporters.c import header_text
+from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.start import PLACED, SPRUNG, start_lines
+from nrs_design.simulation.step_program import StepProgram
+from tests.exporters.programs import LAWS, law
+
+PERIOD, LAG, GAIN, STIFFNESS, DEPTH, SPRING = 0.002, 0.0351, 4.8417e-4, 43.0, 0.007, 0.5
+
+
+def pressed_in(program, states, samples):
+    """Let a pressed axis go, both controllers in turn; return commands and the last angle."""
+    left = math.exp(-PERIOD / LAG)
+    angle, speed, commands = DEPTH, 0.0, []
+    for n in range(samples):
+        given = {"angle": angle, "torque": STIFFNESS * angle, **states}
+        values = [np.float32(given.get(v.name, 0.0)) for v in program.law.values]
+        (command,), after, valid = program.step(n // 500 % 2, values)
+        assert valid
+        states = {s.name: value for s, value in zip(program.law.states, after, strict=True)}
+        commands.append(float(command))
+        wanted = GAIN * float(command)
+        angle += LAG * (1 - left) * (speed - wanted) + wanted * PERIOD
+        speed = left * speed + (1 - left) * wanted
+    return commands, angle
+
+
+def begun(one, angle):
+    """Return the states that `init` makes."""
+    return {state.name: angle if state.starts_at_angle else 0.0 for state in one.states}
+
+
+def test_a_spring_is_unloaded_where_the_program_starts():
+    """From within contact k d Kt/(k + Kt) stays; from the surface all dies out, as is proved."""
+    sprung = law(Kt=("0.5", "0.5"))
+    program = StepProgram(sprung)
+    _, stays = pressed_in(program, begun(sprung, DEPTH), 2_000)
+    lasting = DEPTH * SPRING / (STIFFNESS + SPRING)
+    assert stays == pytest.approx(lasting, rel=1e-3)
+    _, gone = pressed_in(program, begun(sprung, DEPTH) | {"commanded": 0.0}, 2_000)
+    assert abs(gone) < 1e-6 * lasting
+    _, plain = pressed_in(StepProgram(law()), begun(law(), DEPTH), 2_000)
+    assert abs(plain) < 1e-6 * lasting
+
+
+def test_a_position_away_from_the_joint_is_differentiated_at_the_first_sample():
+    placed = LAWS["force and position"]
+    program, states = StepProgram(placed), begun(placed, DEPTH)
+    (first, *_), _ = pressed_in(program, states, 1)
+    Kp, D = (float(placed.coefficient[name].values[0]) for name in ("Kp", "Kd_over_T"))
+    assert first == pytest.approx(-(Kp + D) * DEPTH, rel=1e-5)
+    (there, *_), _ = pressed_in(program, states | {"position": DEPTH}, 1)
+    assert there == 0
+
+
+@pytest.mark.parametrize(
+    ("shape", "said"),
+    [
+        ("inertia", ()),
+        ("filter and spring", (SPRUNG,)),
+        ("force and position", (PLACED,)),
+        ("integral", (PLACED,)),
+        ("mixed, spring", (PLACED,)),
+    ],
+)
+def test_the_header_says_where_to_start(sampled_export, shape, said):
+    assert tuple(start_lines(LAWS[shape])) == said
+    text = header_text(sampled_export.record, LAWS[shape], CNames("x"))
+    plain = " ".join(text.replace("\n *", " ").split())
+    assert all(line in plain for line in said)
+    assert ("PD differentiates all" in plain) == (PLACED in said)

@@ -1,0 +1,100 @@
+"""Times in each mode: inside is what every reading of a log allows, outside what none does."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.identification.running import read_run_bounds
+from nrs_design.spec import read_spec
+from tests.identification import runs
+from tests.identification.running.support import check, judged, log
+from tests.support import SOFT_TISSUE
+
+
+def with_switching(tmp_path, rules):
+    """The nominal tissue: a dwell time and a range exclude each other."""
+    text = SOFT_TISSUE.read_text().replace("switching: arbitrary", f"switching: {rules}")
+    text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
+    path = tmp_path / "spec.nrs.yaml"
+    path.write_text(text)
+    return read_run_bounds(read_spec(path))
+
+
+@pytest.mark.parametrize(
+    ("rules", "status", "words"),
+    [
+        ("{dwell_time: 2 s}", "inside", None),
+        # The log tells 2.5 s to a row: inside is what every reading allows, outside what none does.
+        ("{dwell_time: 2.498 s}", "inside", None),
+        ("{dwell_time: 2.4981 s}", "undecided", None),
+        ("{dwell_time: 2.5 s}", "undecided", None),
+        ("{dwell_time: 2.503 s}", "outside", "withdrawal lasted"),
+        ("{longest_dwell_time: 2.503 s}", "inside", None),
+        ("{longest_dwell_time: 2.5 s}", "undecided", None),
+        ("{longest_dwell_time: 2.497 s}", "outside", "insertion lasted 2.498 s"),
+        ("{dwell_time: 1 s, longest_dwell_time: 2 s}", "outside", "insertion lasted 2.498 s"),
+        ("{transitions: [[insertion, withdrawal]]}", "outside", "withdrawal was followed by"),
+    ],
+)
+def test_dwell_times(tmp_path, rules, status, words):
+    found = check(judged(log(tmp_path), with_switching(tmp_path, rules)), "dwell times")
+    assert str(found.status) == status
+    if words is not None:
+        assert any(word in found.first.words for word in words.split("|"))
+
+
+def test_what_the_rows_of_a_log_tell_of_stays(tmp_path):
+    """A first stay may have begun before the log; a last one has not ended within it."""
+    rules, record = with_switching(tmp_path, "{dwell_time: 2 s}"), log(tmp_path)
+    found = check(judged(record, rules), "dwell times")
+    assert found.measured == "3 switches; a stay between two rows (up to 0.002 s) is not seen"
+    seen = check(judged(record, replace(rules, period=0.002)), "dwell times")
+    assert (str(seen.status), seen.measured) == ("inside", "3 switches")
+    t, *rest, _ = runs.run()
+    late = np.where(t < 0.5, "insertion", "withdrawal")
+    found = check(judged(log(tmp_path, (t, *rest, late)), rules), "dwell times")
+    assert str(found.status) == "undecided"
+    assert "insertion lasted 0.498 s at least: the log begins with it" in found.measured
+    last = np.where(t < 9.5, "insertion", "withdrawal")
+    found = check(judged(log(tmp_path, (t, *rest, last)), rules), "dwell times")
+    assert (str(found.status), found.measured.partition(";")[0]) == ("inside", "1 switch")
+    short = np.where((t < 5) | (t > 6), "insertion", "withdrawal")
+    found = check(judged(log(tmp_path, (t, *rest, short)), rules), "dwell times")
+    assert (str(found.status), found.first.time) == ("outside", 5.0)
+
+
+@pytest.mark.parametrize(
+    ("rules", "cut", "status"),
+    [
+        ("{dwell_time: 2 s}", (1.0, 1.1), "undecided"),
+        ("{longest_dwell_time: 2.45 s}", (1.0, 1.1), "outside"),
+        ("{transitions: [[insertion, withdrawal]]}", (1.0, 1.1), "outside"),
+        ("{transitions: [[insertion, withdrawal]]}", (4.9, 5.1), "undecided"),
+        ("{longest_dwell_time: 8 s}", (1.0, 1.1), "undecided"),
+    ],
+)
+def test_missing_rows_may_hide_switches(tmp_path, rules, cut, status):
+    """Neither inside, nor outside by what would need the rows."""
+    columns = runs.run()
+    kept = (columns[0] < cut[0]) | (columns[0] > cut[1])
+    record = log(tmp_path, tuple(column[kept] for column in columns))
+    found = check(judged(record, with_switching(tmp_path, rules)), "dwell times")
+    assert str(found.status) == status
+
+
+def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
+    rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
+    found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
+    stays = check(found, "dwell times")
+    assert str(stays.status) == "not judged"
+    assert "name contacts" in stays.measured
+    assert found.verdict == "inconclusive"
+
+
+def test_rules_without_a_column(tmp_path):
+    text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
+    record = log(tmp_path, text=text)
+    assert str(check(judged(record), "dwell times").status) == "inside"
+    found = judged(record, with_switching(tmp_path, "{dwell_time: 2 s}"))
+    assert check(found, "dwell times").measured == "no column for mode"

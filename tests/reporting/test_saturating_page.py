@@ -1,0 +1,70 @@
+"""The page of a spec whose signals saturate: what is said of each of the two loops."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from nrs_design.pipeline import run_analysis, run_certification
+from nrs_design.reporting import build_report
+from nrs_design.reporting.document import Illustration, Table
+from nrs_design.spec import read_spec
+from tests.support import ROOT
+
+
+@pytest.fixture(scope="module")
+def page():
+    result = run_certification(read_spec(ROOT / "docs/examples/saturating.nrs.yaml"))
+    return build_report(result, run_analysis(result.designed))
+
+
+def section(page, title):
+    return next(part for part in page.sections if part.title == title)
+
+
+def test_the_lead_says_both_rates_and_what_each_is_of(page):
+    lead, facts = page.summary[0], dict(page.facts)
+    whole, cut = re.findall(r"at a rate of at least ([0-9.]+) 1/s", lead)
+    assert lead.startswith("Proved: while no signal saturates, under arbitrary switching")
+    start = "at rest with a contact force up to 0.5 N*m"
+    signals = "velocity command and motor command saturate"
+    assert f"; where {signals}, motions that begin {start} die out" in lead
+    assert lead.endswith(", and of others nothing is said.")
+    assert facts["Proved decay rate alpha"].startswith(whole)
+    assert facts["Proved where signals saturate"] == f"{cut} 1/s, for motions that begin {start}"
+    assert float(cut) < float(whole)
+    assert any(f"alpha >= {cut} 1/s" in remark for remark in page.remarks)
+
+
+def test_no_assumption_contradicts_what_is_proved(page):
+    assert "saturation only as stated" in page.summary[1]
+    assert "friction or saturation" not in page.summary[1]
+
+
+def test_every_run_says_whether_signals_are_cut_off_in_it(page):
+    (run,) = (b for b in section(page, "Saturation").blocks if isinstance(b, Illustration))
+    assert re.search(
+        r"cut off at their limits: the velocity command for \d+ % of this run, the motor command "
+        r"never\.",
+        run.caption,
+    )
+    plain, *_ = section(page, "Simulated switching").blocks
+    assert plain.text.startswith("Nothing is cut off at a limit in this run")
+    said, *_ = section(page, "Force, deflection and velocity").blocks
+    assert "Nothing is cut off at a limit in it" in said.text
+
+
+def test_gains_that_are_given_are_no_optimum(page):
+    table = next(b for b in section(page, "Impedance control").blocks if isinstance(b, Table))
+    rows = {label: values for label, *values in table.rows}
+    assert rows["Mt at the optimum [kg·m²]"] == ["given", "given"]
+    assert rows["Bt at the optimum [N·m·s/rad]"] == ["given", "given"]
+    blocks = section(page, "What the gains give up").blocks
+    assert not any(isinstance(block, Table) for block in blocks)
+    maps = [b for b in blocks if isinstance(b, Illustration) and b.name.startswith("cost-")]
+    assert all("are given by the spec, not optimized" in one.caption for one in maps)
+    for one in maps:
+        (shown,) = one.figure.axes[0].get_legend_handles_labels()[1:]
+        assert "as shipped" in shown
+        assert "optimum within bounds and goals" not in shown

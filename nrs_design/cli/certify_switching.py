@@ -170,7 +170,7 @@ def _look_further(result: Result, limits: Limits, asked: _Asked, *, quiet: bool)
         )
         look = run_subsets if asked.subsets else find_subsets
         parts = look(result, limits, step)
-    return _More(asked, margins, parts, _next_steps(result, asked))
+    return _More(asked, margins, parts, _next_steps(result, asked, parts))
 
 
 def _write(result: Result, path: Path, *, quiet: bool) -> Path | None:
@@ -218,7 +218,7 @@ def _margin_lines(result: Result, more: _More) -> Iterator[str]:
         yield from margin_lines(more.margins, result.loaded)
 
 
-def _next_steps(result: Result, asked: _Asked) -> tuple[str, ...]:
+def _next_steps(result: Result, asked: _Asked, parts: tuple[Subset, ...] | None) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
     from nrs_design.reporting.next_steps import next_steps
@@ -227,6 +227,7 @@ def _next_steps(result: Result, asked: _Asked) -> tuple[str, ...]:
         result,
         margin=asked.margin,
         shortest_dwell=asked.shortest_dwell,
+        subsets=parts is not None,
         spec=result.loaded.path,
     )
 

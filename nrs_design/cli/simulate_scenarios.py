@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Designed
     from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
     from nrs_design.pipeline.scenarios import Runs, Simulated
+    from nrs_design.simulation.run import Run
     from nrs_design.spec import InteractionDesignSpec
 
 # A run, and the bounds and the rate that are certified beside it.
@@ -199,6 +200,7 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
     run = one.run
     print_table(f"{run.scenario}: {run.engine} engine", ["", "value", "unit", "limit"],
                 metric_rows(one.metrics, one.scenario.limits))  # fmt: skip
+    say(f"  {_setting(run)}")
     peaks = {"force": one.metrics["peak_torque"], "velocity": one.metrics["peak_velocity"]}
     for b in bounds:
         peak = peaks.get(b.output)
@@ -225,6 +227,21 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
         )
     if run.stopped:
         say(f"  STOPPED: {run.stopped}")
+
+
+def _setting(run: Run) -> str:
+    """Say which controllers were in force, and when the law ran, on how old a force sample."""
+    modes = run.response.modes
+    active = [modes[i] for i in sorted(set(run.response.mode.tolist()))]
+    said = f"in force: {', '.join(active)}"
+    if run.sampling is None:
+        return f"{said}; continuous time, force of the moment"
+    period, youngest, oldest = run.sampling
+    age = f"{oldest}" if youngest == oldest else f"{youngest} to {oldest}, drawn anew at each"
+    clock = f"a sample every {period:.6g} s"
+    if run.outer not in (None, period):
+        clock = f"motion loop every {period:.6g} s, force sample every {run.outer:.6g} s"
+    return f"{said}; {clock}, age of the force in samples: {age}"
 
 
 def _rate(rate: CertifiedRate) -> str:

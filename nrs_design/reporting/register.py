@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.switched.assumption import Assumption, AssumptionKind, Standing
-from nrs_design.switched.assumption_kinds import MOTOR, TISSUE
+from nrs_design.switched.assumption_kinds import MOTOR, NOMINAL_MOTOR, TISSUE
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
@@ -79,6 +79,6 @@ def _tested(spec: InteractionDesignSpec) -> Iterator[AssumptionKind]:
         and not item.doubts
     }
     if "actuator" in measured:
-        yield MOTOR
+        yield from (MOTOR, NOMINAL_MOTOR)
     if spec.touched and measured.issuperset(spec.touched):
         yield TISSUE

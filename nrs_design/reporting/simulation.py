@@ -38,7 +38,7 @@ def _rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[st
     yield _peak("largest deflection", m["peak_depth"], "deg", limits.get("deflection"))
     yield _row("time in contact", m["time_in_contact"], "s")
     if m["impedance_rmse"] is not None:
-        wanted = f"{m['desired_impedance']:.4g} wanted"
+        wanted = f"off the wanted {m['desired_impedance']:.4g}"
         name = "RMSE of the displayed impedance"
         yield _row(name, m["impedance_rmse"], "N m s/rad", wanted)
     yield _row("duration", m["duration"], "s")

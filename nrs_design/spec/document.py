@@ -42,6 +42,7 @@ MAX_SCALAR = 1000
 
 # Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
+_TABLES = {".csv", ".tsv", ".npz", ".mat", ".xlsx", ".parquet"}
 _WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
 # What YAML 1.2 reads as a truth value or a number, when it is not quoted.
@@ -104,6 +105,12 @@ def read_source(path: Path) -> tuple[bytes, str]:
         raise SpecError(
             "this is a page, not a spec", path=path, remedy="name the *.nrs.yaml file it is about"
         )
+    if path.suffix.lower() in _TABLES:
+        raise SpecError(
+            "this is a table, not a spec",
+            path=path,
+            remedy="name a *.nrs.yaml file; where a command takes both, the record comes first",
+        )
     if len(content) > MAX_BYTES:
         raise SpecError(
             f"the file is larger than {MAX_BYTES} bytes",
@@ -113,6 +120,10 @@ def read_source(path: Path) -> tuple[bytes, str]:
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
+        if b"\0" in content:
+            raise SpecError(
+                "the file is not UTF-8 text", path=path, remedy="name a *.nrs.yaml file"
+            ) from None
         before = content[: error.start].decode("utf-8-sig")
         place = _Places(before).at(len(before))
         raise SpecError(
@@ -377,12 +388,11 @@ class _Builder:
     def _value(self, key: str, key_place: Position, event: NodeEvent) -> Node:
         """Read the value of a key; a missing one is reported where the key stands."""
         if isinstance(event, ScalarEvent) and event.style is None and _NULL.fullmatch(event.value):
-            self._note(
-                f"the key {quoted(key)} has no value",
-                key_place,
-                "write decimals with a point: a comma ends a value"
-                if key[:1].isdigit()
-                else "write a value or remove the key",
-            )
+            remedy = "write a value or remove the key"
+            if key[:1].isdigit():
+                # Nothing else is said then: the number before the comma seems to lack its unit.
+                remedy = "write decimals with a point: a comma ends a value"
+                self._fail(f"the key {quoted(key)} has no value", key_place, remedy)
+            self._note(f"the key {quoted(key)} has no value", key_place, remedy)
             return Scalar("", key_place)
         return self._node(event)

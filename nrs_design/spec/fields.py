@@ -59,7 +59,8 @@ def _read_name(value: object, pattern: str) -> str:
     if not re.fullmatch(pattern, text):
         raise fault(
             f"{quoted(text)} is not a name",
-            f"use 1 to 64 letters, digits, '.', '_' and '-', as in {pattern}",
+            "use 1 to 64 letters from a to z, digits, '.', '_' and '-'"
+            f"{'' if 'A-Z' in pattern else ', no capitals'}, as in {pattern}",
         )
     if is_device_name(text):
         raise fault(

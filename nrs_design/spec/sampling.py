@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, WithJsonSchema
 
+from nrs_design.proof.text import exact_text
 from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
@@ -43,8 +44,11 @@ def _read_delay(value: object) -> tuple[int, int]:
                 f"{end!r} is a time, and a delay counts samples", f"{_FORM}: age over period"
             )
     numbers = [read_exact(end) for end in ends]
-    if any(n.denominator != 1 or not 0 <= n <= LONGEST_DELAY for n in numbers):
-        raise fault("a delay is a whole number of samples", _FORM)
+    for number in numbers:
+        if number.denominator != 1:
+            raise fault(f"a delay of {exact_text(number)} is no whole number of samples", _FORM)
+        if not 0 <= number <= LONGEST_DELAY:
+            raise fault(f"a delay of {number} samples is not modelled", _FORM)
     if numbers[1] < numbers[0]:
         raise fault("the range of the delay ends below its start", "write [smallest, largest]")
     return int(numbers[0]), int(numbers[1])

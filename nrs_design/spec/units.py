@@ -24,6 +24,9 @@ MAX_UNIT_EXPONENT = 9
 
 _TOKEN = re.compile(r"[A-Za-z]+|\^[+-]?[0-9]+|[*/()]|1")
 _STRANGE = {
+    "±": "write {nominal: ..., range: [lowest, highest]}",
+    "+-": "write {nominal: ..., range: [lowest, highest]}",
+    "%": "write numbers in the unit; a tolerance is {nominal: ..., range: [lowest, highest]}",
     "·": "write a product with '*'",
     "⋅": "write a product with '*'",
     "×": "write a product with '*'",

@@ -15,6 +15,12 @@ MOTOR = AssumptionKind(
     "Motors outside are not covered.",
     "nrs-design identify actuator on steps and sinusoids",
 )
+NOMINAL_MOTOR = AssumptionKind(
+    "the motor is linear, and has no tolerance",
+    "nominal gain and time constant of the spec",
+    "Another gain or time constant is not covered.",
+    MOTOR.test,
+)
 UNLOADED = AssumptionKind(
     "what is touched does not load the motor",
     "torque of contact far below that of the motor",

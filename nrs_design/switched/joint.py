@@ -13,7 +13,7 @@ from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import LOAD, MOTOR, UNLOADED
+from nrs_design.switched.assumption_kinds import LOAD, MOTOR, NOMINAL_MOTOR, UNLOADED
 from nrs_design.switched.parameter_box import Box
 
 
@@ -68,7 +68,7 @@ class Joint:
     def texts(self) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
         moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
-        yield MOTOR.says(
+        yield (NOMINAL_MOTOR if self.ranges.fixed else MOTOR).says(
             "The motion loop is the linear actuator model of the spec under the motion gains "
             f"listed here; {motor_text(self.ranges)}{moving}.",
             motor_text(self.ranges),

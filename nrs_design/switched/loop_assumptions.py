@@ -33,15 +33,14 @@ from nrs_design.switched.assumptions import (
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.joint import Joint
 
-_GIVEN_LOOP = kinds.MOTOR.says(
+_GIVEN_LOOP = kinds.NOMINAL_MOTOR.says(
     "The motion loop is the transfer function G(s) that the spec states, whatever the motion gains "
     "listed here.",
     "the G(s) of the spec",
 )
-_DESIGNED_LOOP = kinds.MOTOR.says(
+_DESIGNED_LOOP = kinds.NOMINAL_MOTOR.says(
     "The motion loop is the linear actuator model of the spec, at its nominal values and not "
-    "loaded by what is touched, under the motion gains listed here.",
-    "nominal gain and time constant of the spec",
+    "loaded by what is touched, under the motion gains listed here."
 )
 _INPUTS = "All inputs are zero (velocity command, reference force, motion of the environment); "
 # In free motion, a command moves the axis ever further from the surface.

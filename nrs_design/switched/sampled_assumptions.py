@@ -150,7 +150,7 @@ def assume_sampled(
     return (
         *_period_texts(sampling, design),
         _delay_text(*sampling.delay),
-        kinds.MOTOR.says(
+        (kinds.NOMINAL_MOTOR if ranges.fixed else kinds.MOTOR).says(
             f"The motor follows the linear actuator model of the spec; {_actuator_text(ranges)}.",
             motor_text(ranges),
         ),

@@ -112,9 +112,22 @@ def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
     assert "other axes" in result.stdout
 
 
+def test_controllers_in_force_and_age_of_the_force_are_said(spec, tmp_path):
+    """A run shows no more than these."""
+    path = spec(scenario=None, more="sampling: {period: 2 ms, delay: [0, 1]}\n")
+    told = run("simulate", path, cwd=tmp_path).stdout
+    assert "in force: insertion, withdrawal; a sample every 0.002 s" in told
+    assert "age of the force in samples: 0 to 1, drawn anew at each\n" in told
+    late = run("simulate", path, "--delay", "3", cwd=tmp_path).stdout
+    assert "age of the force in samples: 3\n" in late
+    twice = run("simulate", path, "--outer-period", "0.001", cwd=tmp_path).stdout
+    assert "motion loop every 0.002 s, force sample every 0.001 s" in twice
+
+
 def test_a_spec_without_scenarios_has_one(spec, tmp_path):
     result = run("simulate", spec(scenario=None), cwd=tmp_path)
     assert "insertion-and-withdrawal: exact engine" in result.stdout
+    assert "continuous time, force of the moment" in result.stdout
 
 
 def test_a_bound_stands_beside_the_peak(spec, tmp_path):

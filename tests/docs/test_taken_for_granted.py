@@ -7,6 +7,7 @@ from tests.support import ROOT
 # The beginning of its row; a signal that no rule restricts takes nothing for granted.
 ROWS = {
     "MOTOR": "the motor is a linear actuator",
+    "NOMINAL_MOTOR": "the motor is a linear actuator",
     "UNLOADED": "the tissue does not load the motor",
     "LOAD": "what is touched acts on the motor against a known inertia",
     "COMMAND_UNIT": "the command of the motor is in the unit",

@@ -7,6 +7,7 @@ import pytest
 from nrs_design.pipeline import run_certification
 from nrs_design.reporting.next_steps import next_steps
 from nrs_design.search.certification import Limits
+from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS
 from tests.support import COMMUTING, ROOT, run
@@ -47,6 +48,16 @@ def test_what_was_just_searched_is_not_advised(tmp_path):
     wide = run_certification(read_spec(ROOT / "docs/examples/wide-range.nrs.yaml"))
     assert any("--margin" in step for step in next_steps(wide))
     assert not any("--margin" in step for step in next_steps(wide, margin=True))
+
+
+def test_parts_of_an_open_design_are_looked_for(tmp_path):
+    path = tmp_path / "a.nrs.yaml"
+    text = (ROOT / "docs/examples/wide-range.nrs.yaml").read_text()
+    path.write_text(text + "sampling: {period: 2 ms, delay: 0}\n")
+    result = run_certification(read_spec(path), method=Method.GRADIENT)
+    assert str(result.certification.verdict) == "inconclusive"
+    assert any("--subsets" in step for step in next_steps(result))
+    assert not any("--subsets" in step for step in next_steps(result, subsets=True))
 
 
 def test_a_dwell_time_in_steps_is_not_searched(tmp_path):

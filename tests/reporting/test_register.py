@@ -6,15 +6,15 @@ from nrs_design.pipeline import run_certification
 from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
 from nrs_design.switched.assumption import Standing
-from nrs_design.switched.assumption_kinds import MOTOR, TISSUE, UNCOUPLED
+from nrs_design.switched.assumption_kinds import NOMINAL_MOTOR, TISSUE, UNCOUPLED
 from tests.support import SOFT_TISSUE
 
 AXES = "The axes of the robot do not act on each other."
 
 
 def test_an_assumption_keeps_its_sentence_and_order():
-    motor, axes = register_of([MOTOR.says("It turns.", "at 1 rpm"), UNCOUPLED.says(AXES)])
-    assert (motor.statement, motor.kind, motor.bound) == ("It turns.", MOTOR, "at 1 rpm")
+    motor, axes = register_of([NOMINAL_MOTOR.says("It turns.", "at 1 rpm"), UNCOUPLED.says(AXES)])
+    assert (motor.statement, motor.kind, motor.bound) == ("It turns.", NOMINAL_MOTOR, "at 1 rpm")
     assert (axes.statement, axes.bound, axes.standing) == (AXES, "zero coupling", Standing.OPEN)
 
 
@@ -44,4 +44,4 @@ def test_only_measured_records_without_doubt_count_as_a_test(tmp_path, data, dou
     statements = run_certification(read_spec(SOFT_TISSUE)).certification.system.assumptions
     found = {entry.kind: entry.standing for entry in register_of(statements, spec)}
     assert found[TISSUE] is standing
-    assert found[MOTOR] is Standing.OPEN
+    assert found[NOMINAL_MOTOR] is Standing.OPEN

@@ -56,6 +56,10 @@ def test_disturbances_without_a_proved_bound_are_said_in_the_lead(soft_tissue):
     assert "no bound" not in summary_of(soft_tissue)[0]
 
 
+def test_a_motor_without_ranges_is_not_said_to_have_them(soft_tissue):
+    assert "the motor is linear, and has no tolerance" in summary_of(soft_tissue)[1]
+
+
 def test_what_refutes_a_sampled_loop_is_said_to_be_of_modes_that_enclose_it():
     """In both sentences that say so, and in the claim: a corner is of no motor."""
     result = run_certification(read_spec(ROOT / "docs/examples/late-force.nrs.yaml"))

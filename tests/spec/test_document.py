@@ -271,3 +271,32 @@ def test_nodes_are_counted_where_no_comma_or_line_tells(monkeypatch: pytest.Monk
 
 def test_the_longest_text_is_read() -> None:
     assert to_data(parse_document("a: " + "x" * MAX_SCALAR)) == {"a": "x" * MAX_SCALAR}
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "said"),
+    [
+        ("run.csv", b"time_s,force_N\n0,1\n", "this is a table, not a spec"),
+        ("run.npz", b"PK\x03\x04\0", "this is a table, not a spec"),
+        ("run.png", b"\x89PNG\r\n\x1a\n\0", "the file is not UTF-8 text"),
+        ("a.nrs.yaml", "kind: x".encode("utf-16"), "the file is not UTF-8 text"),
+        ("b.nrs.yaml", "name: Gr\xf6\xdfe".encode("latin-1"), "byte 0xf6 is not UTF-8 text"),
+    ],
+)
+def test_files_of_another_kind_are_named(
+    tmp_path: Path, name: str, content: bytes, said: str
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(SpecError) as caught:
+        read_source(path)
+    assert caught.value.message == said
+
+
+def test_a_decimal_comma_hides_what_would_be_said_of_its_halves(tmp_path: Path) -> None:
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text("a: {lever_arm: 0,24 m}\nb:\n")
+    with pytest.raises(SpecError) as caught:
+        parse_document(path.read_text(), path)
+    assert len(caught.value.faults) == 1
+    assert caught.value.remedy == "write decimals with a point: a comma ends a value"

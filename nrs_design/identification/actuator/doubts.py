@@ -50,7 +50,8 @@ def find_doubts(
     if found.motor.delay < -half:
         yield (
             f"the output comes {-found.motor.delay:.3g} s before its command "
-            f"({-found.motor.delay / step:.2g} samples): the clocks of the columns differ"
+            f"({-found.motor.delay / step:.2g} samples): the clocks of the columns "
+            "differ, or command and output are swapped"
         )
     motor = found.motor
     if motor.friction is None and not tells_friction(records, motor.time_constant, motor.delay):

@@ -61,8 +61,9 @@ class RunBounds:
         several.
     period : float or None
         Of the processor that the proof is about, in s; None for a proof in continuous time.
-    losable : bool
-        Whether the spec asks for a proof that holds while contact is lost.
+    losable : bool or None
+        Whether the spec asks for a proof that holds while contact is lost; None if it leaves that
+        to the proof.
     command : str
         Unit of the motor's command.
     unseen : tuple of Unseen
@@ -81,7 +82,7 @@ class RunBounds:
     delay: float | None
     lever_arm: float | None
     period: float | None
-    losable: bool
+    losable: bool | None
     command: str
     unseen: tuple[Unseen, ...] = ()
     saturates: float | None = None
@@ -177,7 +178,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         delay=None if margin is None else margin.si,
         lever_arm=arms.pop() if len(arms) == 1 else None,
         period=_period(spec),
-        losable=spec.contact == "losable",
+        losable=None if spec.contact is None else spec.contact == "losable",
         command=spec.actuator.command,
         unseen=tuple(_unseen(spec)),
         saturates=None if spec.limits.command is None else spec.limits.command.si,

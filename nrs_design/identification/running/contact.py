@@ -37,7 +37,7 @@ class _Judged:
 
 
 def judge_contact(
-    log: RunLog, bounds: RunBounds, length: float, *, losable: bool
+    log: RunLog, bounds: RunBounds, length: float, *, losable: bool | None
 ) -> tuple[Check, Check, list[Window]]:
     """Judge stiffness and contact; a violation is claimed only where a whole interval is outside.
 
@@ -49,8 +49,8 @@ def judge_contact(
         What the spec promises.
     length : float
         Of a window, in s.
-    losable : bool
-        Whether contact may be lost.
+    losable : bool or None
+        Whether contact may be lost; None if nothing says it, so that no loss is a violation.
     """
     basis = "proved range" if bounds.proved else "range of the spec, not proved"
     reason = _missing(log, bounds)
@@ -68,14 +68,19 @@ def judge_contact(
     ]
     found = (_judge(log, bounds, w) for w in windows)
     judged = [item for item in found if item is not None]
-    if losable:
+    if losable is not False:
         # Partly free, a window has a stiffness that no tissue has.
         judged = [_doubted(item, f) for item in judged]
     told = [w for w in windows if w.low > -np.inf]
     if told and sum(w.high < 0 for w in told) > _OPPOSED * len(told):
         reason = "force and deflection have opposite signs; turn one with another column"
         return _not_judged("stiffness", reason), _not_judged("contact", reason), windows
-    contact = _losable(bounds, judged) if losable else _contact(log, bounds, judged, windows)
+    if losable:
+        contact = _losable(bounds, judged)
+    elif losable is None:
+        contact = _unsaid(judged, windows)
+    else:
+        contact = _contact(log, bounds, judged, windows)
     return _stiffness(log, bounds, judged, basis), contact, windows
 
 
@@ -181,27 +186,44 @@ def _stiffness(log: RunLog, bounds: RunBounds, judged: list[_Judged], basis: str
 
 
 def _losable(bounds: RunBounds, judged: list[_Judged]) -> Check:
-    free = sum(item.free for item in judged)
-    measured = f"{free} of {len(judged)} windows without contact"
     basis = "covered by the proof" if bounds.proved else "asked for by the spec, not proved"
-    return Check("contact", BoundStatus.INSIDE, measured, "lost and made again at any time", basis)
+    allowed = "lost and made again at any time"
+    return Check("contact", BoundStatus.INSIDE, _count(judged), allowed, basis)
+
+
+def _unsaid(judged: list[_Judged], windows: list[Window]) -> Check:
+    status = BoundStatus.INSIDE if _is_kept(judged, windows) else BoundStatus.UNDECIDED
+    basis = "`contact` of the spec, or a certificate, says whether it may be lost"
+    return Check("contact", status, _count(judged), "not said", basis)
 
 
 def _contact(log: RunLog, bounds: RunBounds, judged: list[_Judged], windows: list[Window]) -> Check:
     allowed, basis = "kept all the time", f"assumption of {bounds.source}"
     free = [item for item in judged if item.free]
     if not free:
-        status = (
-            BoundStatus.INSIDE if judged and len(judged) == len(windows) else BoundStatus.UNDECIDED
-        )
-        if any(item.status is BoundStatus.UNDECIDED and item.window.low <= 0 for item in judged):
-            status = BoundStatus.UNDECIDED
-        return Check("contact", status, "no window without contact", allowed, basis)
+        status = BoundStatus.INSIDE if _is_kept(judged, windows) else BoundStatus.UNDECIDED
+        return Check("contact", status, _count(judged), allowed, basis)
     w = free[0].window
     words = f"k = {w.value:.3g} [{w.low:.3g}, {w.high:.3g}] N m/rad: free motion"
     first = Violation(log.begin + float(log.time[w.first]), words)
-    measured = f"{len(free)} of {len(judged)} windows without contact"
-    return Check("contact", BoundStatus.OUTSIDE, measured, allowed, basis, first)
+    return Check("contact", BoundStatus.OUTSIDE, _count(judged), allowed, basis, first)
+
+
+def _is_kept(judged: list[_Judged], windows: list[Window]) -> bool:
+    """Tell whether every window shows contact."""
+    whole = bool(judged) and len(judged) == len(windows)
+    return whole and not any(item.free or _may_be_free(item) for item in judged)
+
+
+def _may_be_free(item: _Judged) -> bool:
+    return item.status is BoundStatus.UNDECIDED and item.window.low <= 0
+
+
+def _count(judged: list[_Judged]) -> str:
+    """Say how many windows have no contact, and of how many that cannot be told."""
+    free, untold = sum(item.free for item in judged), sum(map(_may_be_free, judged))
+    measured = f"{free} of {len(judged)} windows without contact"
+    return measured + (f", {untold} undecided" if untold else "")
 
 
 def _not_judged(name: str, reason: str) -> Check:

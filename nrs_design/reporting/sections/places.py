@@ -17,6 +17,7 @@ At = tuple[str | int, ...]
 # Where a spec says what an assumption is about.
 _ASSUMED: dict[AssumptionKind, At] = {
     kinds.MOTOR: ("actuator",),
+    kinds.NOMINAL_MOTOR: ("actuator",),
     kinds.LOAD: ("actuator", "load_inertia"),
     kinds.COMMAND_UNIT: ("actuator", "gain"),
     kinds.INPUTS: ("disturbances",),

@@ -46,7 +46,7 @@ def remedies_section(
         blocks.append(Bullets("How far a proof reaches", said))
     box = margins is not None and margins.box is not None
     dwell = margins is not None and margins.dwell is not None
-    steps = next_steps(result, margin=box, shortest_dwell=dwell)
+    steps = next_steps(result, margin=box, shortest_dwell=dwell, subsets=subsets is not None)
     if steps:
         blocks.append(Bullets("Next steps", steps))
     return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None

@@ -41,6 +41,7 @@ def test_a_clock_that_is_ahead():
     text = doubts(early)
     assert "before its command" in text
     assert "clocks" in text
+    assert "or command and output are swapped" in text
     late = identify_actuator([early], MOTOR).chosen.dead_time
     assert (late.value, late.low, late.high) == (0.0, 0.0, 0.0)
 

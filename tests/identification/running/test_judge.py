@@ -81,6 +81,28 @@ def test_lost_contact_that_the_proof_covers(tmp_path):
     assert str(check(kept, "contact").status) == "outside"
 
 
+def test_where_nothing_says_whether_contact_may_be_lost_no_loss_is_a_violation(tmp_path):
+    """A spec without `contact` leaves it to its proof; without one, nothing was promised."""
+    for free in (2.0, 1.8):
+        found = judge_run(log(tmp_path, runs.run(free=free)), SOFT, proved=False)
+        contact = check(found, "contact")
+        assert (str(contact.status), contact.allowed) == ("undecided", "not said")
+        assert str(check(found, "stiffness").status) != "outside"
+    kept = judge_run(log(tmp_path, runs.run(free=2.0)), replace(SOFT, losable=False), proved=False)
+    assert str(check(kept, "contact").status) == "outside"
+    whole = judge_run(log(tmp_path), SOFT, proved=False)
+    assert str(check(whole, "contact").status) == "inside"
+
+
+def test_windows_that_do_not_tell_are_counted(tmp_path):
+    """A torque that is exactly zero throughout may be free motion or a dead sensor."""
+    t, angle, torque, command, mode = runs.run()
+    data = log(tmp_path, (t, angle, np.where(t < 2.0, 0.0, torque), command, mode))
+    assert check(judged(data, losable=True), "contact").measured == (
+        "0 of 20 windows without contact, 4 undecided"
+    )
+
+
 def test_a_window_that_is_partly_free_is_no_stiffness(tmp_path):
     """Where the proof covers lost contact, what seems soft may have been free for a while."""
     t, angle, _, command, mode = runs.run()

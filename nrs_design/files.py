@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import stat
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -15,6 +16,13 @@ MAX_JSON_VALUES = 1_000_000
 DEVICES = frozenset(
     ["con", "prn", "aux", "nul", *(f"{port}{k}" for port in ("com", "lpt") for k in range(10))]
 )
+# How pages begin, which are met beside specs and certificates of the same name.
+_PAGE = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!doctype html|<html\b|%PDF-)", re.IGNORECASE)
+
+
+def is_page(content: bytes) -> bool:
+    """Tell whether a file is a page of HTML or PDF, by how it begins."""
+    return _PAGE.match(content) is not None
 
 
 def is_device_name(name: str) -> bool:

@@ -211,14 +211,18 @@ def alone_in(folder: Path) -> Iterator[None]:
     Parameters
     ----------
     folder : Path
-        Or one that is yet to be made: then the nearest that is there.
+        Made if it is not there.
     """
     try:
         from fcntl import LOCK_EX, flock
     except ImportError:
         yield
         return
-    handle = os.open(next(f for f in (folder, *folder.parents) if f.is_dir()), os.O_RDONLY)
+    # Made first: who locks the folder above would keep out nobody once this one is there.
+    _refuse_links(folder)
+    with _told(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder, os.O_RDONLY)
     try:
         with suppress(OSError):
             flock(handle, LOCK_EX)

@@ -2,7 +2,7 @@ import os
 
 import pytest
 
-from nrs_design.files import is_device_name, open_regular, unique_keys
+from nrs_design.files import is_device_name, is_page, open_regular, unique_keys
 
 
 @pytest.mark.parametrize("name", ["nul", "NUL", "aux.csv", "com1.a.b", "lpt9", "con", "prn "])
@@ -37,3 +37,11 @@ def test_a_key_that_would_hide_another_is_refused():
     assert unique_keys([("a", 1), ("b", 2)]) == {"a": 1, "b": 2}
     with pytest.raises(ValueError, match="a key occurs twice"):
         unique_keys([("a", 1), ("a", 1)])
+
+
+@pytest.mark.parametrize(
+    "content", [b"<!DOCTYPE html>", b"\xef\xbb\xbf \n<HTML lang=en>", b"%PDF-1.7\n"]
+)
+def test_a_page_is_told_by_how_it_begins(content):
+    assert is_page(content)
+    assert not is_page(b"x" + content)

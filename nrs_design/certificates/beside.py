@@ -55,10 +55,12 @@ def proof_beside(document: Mapping[str, Any]) -> Iterator[FindFault | None]:
     try:
         yield fault
     finally:
-        # Where nobody wants to know of children that end, it may be gone.
+        # Where nobody wants to know of children that end, it is gone when it has ended, and its
+        # number may be that of another process.
         with suppress(ProcessLookupError, ChildProcessError):
-            os.kill(process, signal.SIGKILL)
-            os.waitpid(process, 0)
+            if os.waitpid(process, os.WNOHANG) == (0, 0):
+                os.kill(process, signal.SIGKILL)
+                os.waitpid(process, 0)
         os.close(answer)
         os.close(hold)
 

@@ -26,7 +26,7 @@ from nrs_design.certificates.prove import (
     read_gains,
 )
 from nrs_design.errors import CertificateError
-from nrs_design.files import open_regular, read_json_text, unique_keys
+from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 
@@ -137,9 +137,11 @@ def read_document(path: Path) -> dict[str, Any]:
     CertificateError
         If the file is missing, too large, or not such JSON.
     """
+    content = b""
     try:
+        content = _read_bytes(path)
         document = json.loads(
-            read_json_text(_read_bytes(path)),
+            read_json_text(content),
             parse_float=_no_float,
             parse_constant=_no_float,
             object_pairs_hook=unique_keys,
@@ -153,8 +155,9 @@ def read_document(path: Path) -> dict[str, Any]:
                 path=path,
                 remedy="name the certificate first: nrs-design verify CERT SPEC",
             ) from error
+        said = "this is a page" if is_page(content) else str(error)
         raise CertificateError(
-            f"not a certificate: {error}", path=path, remedy="make it with certify-switching --out"
+            f"not a certificate: {said}", path=path, remedy="make it with certify-switching --out"
         ) from error
     if not isinstance(document, dict):
         raise CertificateError("not a certificate: expected a JSON object", path=path)

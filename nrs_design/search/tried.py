@@ -102,7 +102,22 @@ class Tried(Generic[Number]):
 def sharpen(
     accepted: Fraction, other: Fraction, steps: int, accepts: Callable[[Fraction], bool]
 ) -> Fraction:
-    """Bisect between a number that is accepted and one that is not; return the last accepted."""
+    """Bisect between a number that is accepted and one that is not.
+
+    Parameters
+    ----------
+    accepted, other : Fraction
+        The two numbers.
+    steps : int
+        How often the way between them is halved.
+    accepts : callable
+        Says whether a number between them is accepted.
+
+    Returns
+    -------
+    Fraction
+        The last number that was accepted.
+    """
     for _ in range(steps):
         middle = (accepted + other) / 2
         if accepts(middle):

@@ -26,7 +26,7 @@ from ruamel.yaml.events import (
 )
 
 from nrs_design.errors import Fault, SpecError
-from nrs_design.files import open_regular
+from nrs_design.files import is_page, open_regular
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.syntax import explain_syntax, fault_mark
@@ -42,8 +42,6 @@ MAX_SCALAR = 1000
 
 # Escapes such as "\ud800" can produce them; they cannot be printed or encoded.
 _SURROGATE = re.compile("[\ud800-\udfff]")
-# How pages begin, which are met beside specs of the same name.
-_PAGE = re.compile(rb"(?:\xef\xbb\xbf)?\s*(?:<!doctype html|<html\b|%PDF-)", re.IGNORECASE)
 _TABLES = {".csv", ".tsv", ".npz", ".mat", ".xlsx", ".parquet"}
 _WORD = re.compile(r"[^\s,\[\]{}]+")
 _NULL = re.compile(r"|~|null|Null|NULL")
@@ -103,7 +101,7 @@ def read_source(path: Path) -> tuple[bytes, str]:
         not UTF-8.
     """
     content = _read_bytes(path)
-    if _PAGE.match(content):
+    if is_page(content):
         raise SpecError(
             "this is a page, not a spec", path=path, remedy="name the *.nrs.yaml file it is about"
         )

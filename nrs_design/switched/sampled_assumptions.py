@@ -305,7 +305,7 @@ def _actuator_text(ranges: ActuatorRanges) -> str:
     tau = ranges.time_constant
     return (
         motor_text(ranges)
-        + ("" if ranges.fixed else ", and may change at every sample")
+        + ("" if ranges.fixed else ", and may change at every sample, not in between")
         + ". A proof covers exp(-T/tau) in what encloses it; what refutes may be at "
         + (
             f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"

@@ -18,7 +18,8 @@ RANGED_BITS = 32
 # Of s, per period, there are this many more.
 MORE_BITS = 4
 # The triangle is longer than the curve by one part in so many at both ends, so that what is rounded
-# there hardly turns its sides.
+# there hardly turns its sides; at the slow end by no more of what is left to one, where a motor
+# would not slow down.
 ROOM = 2**10
 
 
@@ -43,7 +44,7 @@ def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
         E_low, E_high = _down(fast[0], unit), _up(slow[1], unit)
         return Box({"Km": ranges.gain, "E": Interval(E_low, E_low, E_high)})
     unit = Fraction(1, 2**RANGED_BITS)
-    room = _up((slow[1] - fast[0]) / ROOM, unit)
+    room = _up(min(slow[1] - fast[0], 1 - slow[1]) / ROOM, unit)
     E_low, E_high = max(_down(fast[0], unit) - room, Fraction(0)), _up(slow[1], unit) + room
     finer = unit / 2 ** (MORE_BITS + ceil(1 / period).bit_length())
     first, last = tau.low * (1 - fast[1]), tau.high * (1 - slow[0])

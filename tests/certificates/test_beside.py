@@ -178,6 +178,23 @@ def test_nothing_is_left_open_and_no_process_is_left() -> None:
         os.waitpid(-1, os.WNOHANG)
 
 
+def test_no_process_is_killed_that_may_be_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where children that end are not waited for, their number is free at once."""
+    killed: list[int] = []
+    monkeypatch.setattr(os, "kill", lambda process, _: killed.append(process))
+    former = signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    try:
+        with proof_beside(_document(SPEC)) as proof:
+            assert proof is not None
+            assert proof() is None
+            # The answer comes a moment before the end.
+            with pytest.raises(ChildProcessError):
+                os.waitpid(-1, 0)
+    finally:
+        signal.signal(signal.SIGCHLD, former)
+    assert not killed
+
+
 def test_on_one_processor_nothing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0})
     with proof_beside(_document(SPEC)) as proof:

@@ -595,6 +595,7 @@ class TestFiles:
             (b'{"a": ' + b"[" * 5000 + b"]" * 5000 + b"}", "recursion"),
             (b'{"a": ' * 5000 + b"1" + b"}" * 5000, "recursion"),
             (b"\xff\xfe{}", "not a certificate"),
+            (b"<!doctype html>\n<p>{}", "not a certificate: this is a page"),
             (b"\xef\xbb\xbf{}", "not a certificate"),
             (b"{} {}", "not a certificate"),
             (b'{"a": 1,}', "not a certificate"),

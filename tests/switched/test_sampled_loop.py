@@ -84,7 +84,7 @@ def test_a_tolerance_of_the_motor_gives_its_corners(tmp_path):
     system = system_of(tmp_path, "{period: 2 ms, delay: [0, 1]}", *TOLERANCE)
     # Controllers, ages of the sample, ends of k and Km, and a triangle of E and s.
     assert len(system.modes) == 2 * 2 * 2 * 2 * 3
-    assert "may change at every sample" in " ".join(system.assumptions)
+    assert "may change at every sample, not in between" in " ".join(system.assumptions)
     assert MOTOR in kinds_of(system)
     assert NOMINAL_MOTOR not in kinds_of(system)
 

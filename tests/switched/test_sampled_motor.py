@@ -93,6 +93,13 @@ def test_no_corner_is_far_from_a_motor(period):
         assert abs(float(found) - motor) <= 0.002 * (float(period) - motor)
 
 
+def test_no_corner_is_a_motor_that_does_not_slow_down():
+    box = box_of(TAU / 100, TAU * 100, F(1, 10**4))
+    E = box.ranges["E"]
+    assert 0 < E.low < E.high < 1
+    assert all(is_inside(box, TAU * 10**i, F(1, 10**4)) for i in (-2, -1, 0, 1, 2))
+
+
 def test_three_corners():
     def rows_at(values):
         return [[values["E"], values["s"]]]

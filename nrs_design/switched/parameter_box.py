@@ -94,8 +94,9 @@ class Box:
     def values(self) -> Iterator[dict[str, Fraction]]:
         """Yield the values of the parameters at every corner, the last one turning fastest."""
         values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
+        inside = self._inside()
         for at in self._points(values):
-            yield self._at(values, at)
+            yield self._at(values, inside, at)
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
         """Yield the corners, the last parameter turning fastest.
@@ -119,7 +120,8 @@ class Box:
             If the matrix is not affine along each axis.
         """
         values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
-        corners = {at: rows_at(self._at(values, at)) for at in self._points(values)}
+        inside = self._inside()
+        corners = {at: rows_at(self._at(values, inside, at)) for at in self._points(values)}
         self._check_corners_suffice(rows_at, corners, name)
         for at, rows in corners.items():
             pairs = zip(values, at, strict=True)
@@ -137,7 +139,7 @@ class Box:
         most two in each coordinate, and in both of a triangle, this decides it: of that, the grid
         has the corners and the middles of the sides.
         """
-        known = dict(corners)
+        known, inside = dict(corners), self._inside()
         values = {symbol: self._grid(symbol) for symbol in self.ranges}
         # Rows that are the same objects are compared once; kept here, no other gets their ids.
         compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
@@ -150,7 +152,7 @@ class Box:
                 known[tuple(end if i in moved else label for i, label in enumerate(at))]
                 for end in ("min", "max")
             )
-            found = known[at] = rows_at(self._at(values, at))
+            found = known[at] = rows_at(self._at(values, inside, at))
             triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
             if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
@@ -164,15 +166,25 @@ class Box:
                 yield at
 
     def _at(
-        self, values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]
+        self,
+        values: Mapping[str, Mapping[str, Fraction]],
+        inside: Mapping[tuple[str, ...], dict[str, Fraction]],
+        at: Sequence[str],
     ) -> dict[str, Fraction]:
         """Return the values of all symbols where the labels of a point say."""
         found = {symbol: values[symbol][label] for symbol, label in zip(values, at, strict=True)}
+        return found | inside.get(tuple(at[i] for i in self._triangle_axes()), {})
+
+    def _inside(self) -> dict[tuple[str, ...], dict[str, Fraction]]:
+        """Return the values of a triangle's two parameters by their labels, for all grids."""
+        found: dict[tuple[str, ...], dict[str, Fraction]] = {}
         if self.triangle is not None:
-            shares, both = self._shares(at), (self.triangle.x, self.triangle.y)
-            for symbol, between in zip(both, self.triangle.between, strict=True):
-                low, high = self.ranges[symbol].low, self.ranges[symbol].high
-                found[symbol] = low + shares[1] * (between - low) + shares[0] * (high - between)
+            both = (self.triangle.x, self.triangle.y)
+            for x, y in product(_SHARES, repeat=2):
+                shares, point = (_SHARES[x], _SHARES[y]), found.setdefault((x, y), {})
+                for symbol, between in zip(both, self.triangle.between, strict=True):
+                    low, high = self.ranges[symbol].low, self.ranges[symbol].high
+                    point[symbol] = low + shares[1] * (between - low) + shares[0] * (high - between)
         return found
 
     def _moved(self, at: Sequence[str]) -> set[int]:
@@ -203,5 +215,8 @@ def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fractio
 
 def _is_middle(entry: Fraction, x: Fraction, y: Fraction) -> bool:
     """Tell whether an entry is halfway between two, without reducing fractions on the way."""
+    # Most entries are one zero.
+    if entry is x is y:
+        return True
     (n, d), (p, q), (r, s) = (number.as_integer_ratio() for number in (entry, x, y))
     return 2 * n * q * s == (p * s + r * q) * d

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
@@ -9,6 +10,7 @@ from nrs_design.gating.examine import Examiner
 from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.proof.mode import Time
 from nrs_design.reporting import build_report
 from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals
 from nrs_design.reporting.sections.summary import lights_of, summary_of
@@ -33,6 +35,13 @@ from tests.support import ROOT, SOFT_TISSUE
 )
 def test_the_first_sentence_says_what_was_shown(report, case, said):
     assert said in report(case).summary[0]
+
+
+def test_a_step_is_said_in_seconds_where_it_has_some(soft_tissue):
+    certification = soft_tissue.certification
+    system = replace(certification.system, time=Time.DISCRETE, sample_time=Fraction(1, 500))
+    stepping = replace(soft_tissue, certification=replace(certification, system=system))
+    assert "per step of 0.002 s" in summary_of(stepping)[0]
 
 
 def test_free_motion_is_named_only_where_its_loss_is_covered():

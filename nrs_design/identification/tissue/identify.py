@@ -73,6 +73,8 @@ class TissueIdentification:
     @property
     def covers(self) -> str:
         """What the ranges hold, in words."""
+        if len(self.records) == 1:
+            return "what this one record leaves open, with 95 % confidence, and no other specimen"
         return COVERS[self.chosen.coverage]
 
     @property

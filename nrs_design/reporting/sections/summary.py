@@ -12,6 +12,7 @@ from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import exact_text
 from nrs_design.reporting.document import Derived, Light, Sentence, State
 from nrs_design.reporting.formatting import plural
 from nrs_design.reporting.kinds import page_of
@@ -133,6 +134,8 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
         begin, text = "at a rate of at least ", f"{lower(rate)} 1/s"
     else:
         begin, text = "by a factor of at most ", f"{upper(rate)} per step"
+        if system.sample_time is not None:
+            text += f" of {exact_text(system.sample_time)} s"
     attained = "" if evidence.attains_rate else " (not attained)"
     once = "" if evidence.bounds_at_once else ", up to one constant factor"
     return Sentence(begin, Derived(text, EVIDENCE), attained, once)

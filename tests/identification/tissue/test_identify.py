@@ -35,6 +35,7 @@ def test_a_law_can_be_asked_for():
     assert found.chosen.law.name == "elastic"
     assert "prefers kelvin-boltzmann" in found.reason
     assert steps == list(LAWS)
+    assert "and no other specimen" in found.covers
     better, *doubts = found.caveats
     assert better.startswith("kelvin-boltzmann describes the records better than elastic")
     assert any("the residuals follow the velocity" in doubt for doubt in doubts)

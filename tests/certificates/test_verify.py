@@ -71,7 +71,7 @@ SPECS = {
     "saturating": ROOT / "docs" / "examples" / "saturating.nrs.yaml",
 }
 # Every change to the others, which are larger, is left to the slow tests.
-SMALL = ("given", "unstable", "discrete")
+SMALL = ("given", "discrete")
 ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for name in SPECS]
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {

@@ -57,6 +57,8 @@ SPECS = {
         "parameters": {"k": {"nominal": "1", "range": ["0", "50"], "varies": "false"}},
     },
 }
+# Every change to these, of whose kinds tests/proof changes the evidence alone, is slow.
+LONG = ("common-polynomial", "no-common-quadratic", "block-triangular", "mode-quadratic")
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +110,10 @@ def test_changes_without_a_new_id_are_noticed(issue, example):
             assert verify_document(changed, spec).fault is not None
 
 
-@pytest.mark.parametrize("example", SPECS)
+@pytest.mark.parametrize(
+    "example",
+    [pytest.param(e, marks=[pytest.mark.slow] if e in LONG else []) for e in SPECS],
+)
 def test_changes_signed_anew_are_rejected_or_true_all_the_same(issue, example):
     spec, system, document = issue(example)
     for words, statement in mutations(document["statements"][0]):

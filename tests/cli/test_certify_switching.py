@@ -194,14 +194,15 @@ def test_shipped_specs_are_proved(tmp_path, path):
     [
         ("auto", SIX, 0, "proved/impossible"),
         ("lmi", COMMUTING, 0, "proved/exists"),
-        ("lmi", SIX, 3, "inconclusive/unknown"),
-        ("gradient", SOFT_TISSUE, 0, "proved/exists"),
+        pytest.param("lmi", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
+        ("gradient", COMMUTING, 0, "proved/exists"),
+        pytest.param("gradient", SOFT_TISSUE, 0, "proved/exists", marks=pytest.mark.slow),
         pytest.param("gradient", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
         ("obstruction", SIX, 3, "inconclusive/impossible"),
         ("obstruction", COMMUTING, 3, "inconclusive/unknown"),
         ("mixture", WIDE, 3, "inconclusive/unknown"),
         ("period", WIDE, 1, "refuted/impossible"),
-        ("period", SIX, 3, "inconclusive/unknown"),
+        pytest.param("period", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
         ("polynomial", SIX, 0, "proved/unknown"),
         ("mode-quadratic", DWELL, 0, "proved/unknown"),
         ("parameter-quadratic", CONSTANT, 0, "proved/unknown"),
@@ -473,7 +474,9 @@ def test_verbose_lists_every_step(tmp_path):
     assert "lmi: found" in result.stdout
 
 
-@pytest.mark.parametrize("environment", [{}, {"FORCE_COLOR": "1", "NO_COLOR": "1"}])
+@pytest.mark.parametrize(
+    "environment", [pytest.param({}, marks=pytest.mark.slow), {"FORCE_COLOR": "1", "NO_COLOR": "1"}]
+)
 def test_no_color_in_a_pipe(tmp_path, environment):
     result = typed("certify-switching", COMMUTING, "-v", cwd=tmp_path, environment=environment)
     assert "\x1b" not in result.stdout + result.stderr
@@ -512,7 +515,7 @@ def start(arguments, **streams):
     return subprocess.Popen(command, text=True, **streams)
 
 
-@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("unbuffered", ["", pytest.param("1", marks=pytest.mark.slow)])
 def test_reader_that_has_gone(tmp_path, unbuffered):
     """Who reads changes nothing: the system is proved, and its certificate is written."""
     read, write = os.pipe()
@@ -531,7 +534,7 @@ def test_reader_that_has_gone(tmp_path, unbuffered):
     assert errors.splitlines() == ["certificate written to reports/commuting.cert.json"]
 
 
-@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("unbuffered", ["", pytest.param("1", marks=pytest.mark.slow)])
 def test_full_disk(tmp_path, unbuffered):
     env = {**os.environ, "PYTHONUNBUFFERED": unbuffered}
     with open("/dev/full", "w") as full:
@@ -590,7 +593,7 @@ def test_dwell_time_in_steps_is_proved_or_refuted(tmp_path):
 @pytest.mark.parametrize(
     ("spec", "state"),
     [
-        (ROBOT / "nose.nrs.yaml", "nose: damper deflection"),
+        pytest.param(ROBOT / "nose.nrs.yaml", "nose: damper deflection", marks=pytest.mark.slow),
         (ROOT / "docs/examples/mixed-controllers.nrs.yaml", "reference"),
     ],
 )

@@ -151,7 +151,10 @@ def test_correction_table_for_the_controller(tmp_path):
     assert float(by_tilt[-40]["K3"]) == pytest.approx(2.162, abs=6e-4)
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(c, marks=[pytest.mark.slow] if c == "correction" else []) for c in COMMANDS],
+)
 def test_tables_for_people(tmp_path, command):
     result = run("robot", command, ROBOT, cwd=tmp_path)
     assert result.returncode == int(command == "check"), result.stderr

@@ -42,8 +42,7 @@ def written(folder, law, export, count=COUNT):
 
 
 SHAPES = [
-    shape if shape in ("mixed", "limits") else pytest.param(shape, marks=pytest.mark.slow)
-    for shape in LAWS
+    shape if shape == "limits" else pytest.param(shape, marks=pytest.mark.slow) for shape in LAWS
 ]
 
 

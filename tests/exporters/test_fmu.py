@@ -29,21 +29,27 @@ def program(law, export):
 
 
 @pytest.fixture(scope="module")
-def model(sampled_export):
-    """Compile the model of a law once."""
-    return cache(lambda law: packed(contents(program(LAWS[law], sampled_export), compiler("cc"))))
+def model(sampled_export, tmp_path_factory):
+    """Compile, describe and unpack the model of a law once."""
+
+    @cache
+    def of(law):
+        folder = tmp_path_factory.mktemp("fmu")
+        file = folder / "model.fmu"
+        file.write_bytes(packed(contents(program(LAWS[law], sampled_export), compiler("cc"))))
+        described = fmpy.read_model_description(file)
+        return described, fmpy.extract(file, unzipdir=folder / "model")
+
+    return of
 
 
 @pytest.fixture
-def opened(tmp_path, model):
+def opened(model):
     """Open the model of a law as an importer does; it is closed at the end."""
     slaves = []
 
     def of(law):
-        file = tmp_path / "model.fmu"
-        file.write_bytes(model(law))
-        told = fmpy.read_model_description(file)
-        folder = fmpy.extract(file, unzipdir=tmp_path / "model")
+        told, folder = model(law)
         identity = {"guid": told.guid, "modelIdentifier": told.coSimulation.modelIdentifier}
         slave = FMU2Slave(unzipDirectory=folder, instanceName="law", **identity)
         slave.instantiate()

@@ -16,7 +16,7 @@ from nrs_design.reproduction.table import reproduce
 from tests.reporting.conftest import KINDS
 from tests.support import program_named
 
-CASES = ["proved", "dwell", "blocks"]
+CASES = ["proved", "dwell"]
 MORE = ["force", "refuted", "discrete", *(name for name in KINDS if name not in CASES)]
 ALL = [*CASES, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)]
 
@@ -197,7 +197,10 @@ def test_printed_pages_are_light_and_numbered(browser, page, tmp_path):
 
 @pytest.fixture(scope="module")
 def axe():
-    """The rules of axe-core, whose file AXE names; `nox -s accessibility` brings it along."""
+    """The rules of axe-core, whose file AXE names; `nox -s accessibility` brings it along.
+
+    Tests ask for them first: without them, no browser is started.
+    """
     path = os.environ.get("AXE")
     if path is None:
         pytest.skip("AXE does not name axe.min.js")
@@ -216,7 +219,7 @@ def faults_of(browser, axe):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("case", ["proved", "refuted", "inconclusive", "dwell", "discrete"])
-def test_no_serious_fault_of_accessibility(browser, axe, page, tmp_path, case, scheme):
+def test_no_serious_fault_of_accessibility(axe, browser, page, tmp_path, case, scheme):
     open_page(browser, page(case), tmp_path, 1280, scheme)
     assert faults_of(browser, axe) == []
 
@@ -233,7 +236,7 @@ def reproduced(axe):
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("name", ["figures", "numbers"])
 def test_no_serious_fault_of_accessibility_in_reproduced(
-    browser, axe, reproduced, tmp_path, name, scheme
+    axe, browser, reproduced, tmp_path, name, scheme
 ):
     open_page(browser, reproduced[name], tmp_path, 1280, scheme)
     assert faults_of(browser, axe) == []

@@ -46,7 +46,8 @@ def elements(reader):
 
 
 @pytest.mark.parametrize(
-    "case", ["refuted", "dwell", pytest.param("inconclusive", marks=pytest.mark.slow)]
+    "case",
+    ["dwell", *(pytest.param(c, marks=pytest.mark.slow) for c in ("refuted", "inconclusive"))],
 )
 def test_pdf_has_the_text_of_the_verdict(report, case):
     text = text_of(reader_of(report(case)))

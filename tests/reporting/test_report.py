@@ -62,6 +62,12 @@ FIGURES = {
     "discrete": ["eigenvalues", "quadratic", "mode-rates", "run", "phase-plane"],
     "marginal": ["eigenvalues", "run", "phase-plane"],
 }
+# Left to the slow tests; of each, the default session has a case that is nearly the same.
+ALIKE = {"steps", "resets", "value", "blocks-refuted", "dwell-refuted"}
+
+
+def cases(names):
+    return [pytest.param(n, marks=[pytest.mark.slow] if n in ALIKE else []) for n in names]
 
 
 def words(report):
@@ -96,12 +102,12 @@ def figure(report, name):
     return next(item for item in report.illustrations if item.name == name)
 
 
-@pytest.mark.parametrize("case", FIGURES)
+@pytest.mark.parametrize("case", cases(FIGURES))
 def test_every_case_has_its_figures_in_order(report, case):
     assert [item.name for item in report(case).illustrations] == FIGURES[case]
 
 
-@pytest.mark.parametrize("case", FIGURES)
+@pytest.mark.parametrize("case", cases(FIGURES))
 def test_every_axis_is_labelled_with_its_unit(report, case):
     for item in report(case).illustrations:
         axes = item.figure.axes
@@ -233,7 +239,7 @@ def test_unstable_mode_that_must_be_left_is_not_called_stable(report):
 
 @pytest.mark.parametrize(
     "case",
-    ["proved", "force", "discrete", "polynomial", "dwell", "steps", "resets", "parameter"],
+    cases(("proved", "force", "discrete", "polynomial", "dwell", "steps", "resets", "parameter")),
 )
 def test_simulated_run_stays_below_its_bound(report, case):
     curves = lines(figure(report(case), "run"))
@@ -398,7 +404,7 @@ SAID = {
 }
 
 
-@pytest.mark.parametrize("case", SAID)
+@pytest.mark.parametrize("case", cases(SAID))
 def test_head_and_box_fit_the_kind_of_evidence(report, case):
     head, box = SAID[case]
     facts = "\n".join(f"{label}: {value}" for label, value in report(case).facts)
@@ -442,7 +448,7 @@ def test_polynomial_shows_its_size_and_nested_levels(report):
             assert (np.nanmax(abs(line.get_xydata()), axis=0) <= 1.001 * box).all()
 
 
-@pytest.mark.parametrize("case", ["period", "word", "dwell-refuted"])
+@pytest.mark.parametrize("case", cases(["period", "word", "dwell-refuted"]))
 def test_witness_grows_from_period_to_period(report, case):
     curves = lines(figure(report(case), "run"))
     line = next(curve for label, curve in curves.items() if label.startswith("factor"))

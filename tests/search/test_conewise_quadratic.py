@@ -70,7 +70,7 @@ SAMPLED = [
     (SOFT, BOTH, "0.01", "0", "0", 2.35),
     (SOFT, BOTH, "0.01", "1", "0", 1.3),
     (SOFT, BOTH, "0.01", "2", "0", 0.5),
-    (SOFT, BOTH, "0.01", "[0, 1]", "0", 1.29),
+    pytest.param(SOFT, BOTH, "0.01", "[0, 1]", "0", 1.29, marks=slow),
     pytest.param(SOFT, BOTH, "0.01", "[0, 1]", "0.02", 0.94, marks=slow),
     pytest.param(SOFT, INSERTION, "0.01", "[0, 2]", "0.05", 9.46, marks=slow),
     pytest.param(STIFF, INSERTION, "0.01", "[0, 2]", "0.05", 4.0, marks=slow),

@@ -71,7 +71,7 @@ def in_continuous_time(k: tuple[str, ...], Bt: tuple[str, ...]) -> SwitchedSyste
     ("k", "Bt", "Mt", "level", "speed"),
     [
         (("43", "43"), INSERTION, "0.01", 0.448, 5.4),
-        (SOFT, BOTH, "0.01", 1.12, 2.1),
+        pytest.param(SOFT, BOTH, "0.01", 1.12, 2.1, marks=pytest.mark.slow),
         (SOFT, BOTH, "0", 0.66, 3.6),
     ],
 )

@@ -28,7 +28,12 @@ def assumed(path):
     return assemble(made.spec, made.plant, made.design, made.spec.coordinates).assumptions
 
 
-@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.name.split(".")[0])
+def named(path):
+    name = path.name.split(".")[0]
+    return pytest.param(path, id=name, marks=[pytest.mark.slow] if name == "hands-on" else [])
+
+
+@pytest.mark.parametrize("path", [named(path) for path in SPECS])
 def test_every_assumption_of_a_spec_has_all_fields(path):
     for sentence in assumed(path):
         assert isinstance(sentence, Assumption), sentence

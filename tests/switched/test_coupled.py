@@ -39,6 +39,11 @@ def axes(Bt, coupling, load=NO_LOAD, **sections):
     return couple_axes(thesis_robot(SOFT, Bt, "0.01", load=load, **sections), coupling)
 
 
+@cache
+def evidence(Bt, coupling, contact):
+    return certify(axes(Bt, coupling, contact=contact)).evidence
+
+
 @pytest.mark.parametrize(
     ("Bt", "coupling", "contact", "rate"),
     [
@@ -48,7 +53,7 @@ def axes(Bt, coupling, load=NO_LOAD, **sections):
     ],
 )
 def test_rates_of_the_reference(Bt, coupling, contact, rate):
-    found = certify(axes(Bt, coupling, contact=contact)).evidence
+    found = evidence(Bt, coupling, contact)
     assert isinstance(found, CoupledAxes)
     assert float(found.rate) == pytest.approx(rate, rel=0.02)
 
@@ -181,10 +186,8 @@ def test_motions_of_three_axes_by_their_equations(contact, seed):
     assert system.couplings
 
 
-@cache
 def proof(contact):
-    coupling = MOVING if contact == "kept" else LINKS
-    return certify(axes(BOTH, coupling, contact=contact)).evidence
+    return evidence(BOTH, MOVING if contact == "kept" else LINKS, contact)
 
 
 def symmetric(generator, low, high):

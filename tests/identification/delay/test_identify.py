@@ -43,7 +43,7 @@ def test_a_whole_number_of_samples_without_noise():
 @pytest.mark.parametrize(
     ("options", "name"),
     [
-        ({}, "a first-order lag"),
+        pytest.param({}, "a first-order lag", marks=pytest.mark.slow),
         pytest.param({"second": 0.02}, "a second-order lag", marks=pytest.mark.slow),
         ({"kind": "multisine", "is_angle": True}, "a lag and an integrator"),
     ],

@@ -14,7 +14,7 @@ TRUTHS = [
     (Elastic(750.0), quick, 0.1, synthetic.COUNT),
     pytest.param(KelvinVoigt(0.574, 0.957), slow, 0.01, 0.0, marks=pytest.mark.slow),
     pytest.param(Maxwell(1.129, 20.0), slow, 0.01, 0.0, marks=pytest.mark.slow),
-    (synthetic.NOSE, slow, 0.0111, 1e-4),
+    pytest.param(synthetic.NOSE, slow, 0.0111, 1e-4, marks=pytest.mark.slow),
     (HuntCrossley(0.28, 15.328, 1.2), slow, 0.0096, 0.0),
 ]
 

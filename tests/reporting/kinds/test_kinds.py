@@ -18,6 +18,20 @@ from tests.proof.systems import SYSTEMS, genuine
 CLASSES = tuple(map(proof.class_of, proof.KINDS))
 NAMES = frozenset(proof.KINDS.values())
 TEXTS = frozenset(proof.KINDS)
+# What says the most, or takes long to prove, is left to the slow tests.
+LONG = frozenset(
+    (
+        "conewise-mode-quadratic",
+        "conewise-polynomial",
+        "constant-force",
+        "coupled-axes",
+        "invariant-ellipsoid",
+        "mode-quadratic",
+        "parameter-quadratic",
+        "periodic-quadratic",
+        "saturated-ellipsoid",
+    )
+)
 
 
 def test_every_kind_has_one_page_of_its_own():
@@ -45,7 +59,10 @@ def test_outside_proof_and_search_only_the_page_names_its_kind():
         assert named == {"reporting/kinds/__init__.py", f"reporting/kinds/{file}.py"}
 
 
-@pytest.mark.parametrize("kind", sorted(TEXTS))
+@pytest.mark.parametrize(
+    "kind",
+    [*sorted(TEXTS - LONG), *(pytest.param(k, marks=pytest.mark.slow) for k in sorted(LONG))],
+)
 def test_every_page_speaks_in_sentences_and_draws_a_run(kind):
     example = next(name for name in SYSTEMS if name.split(",")[0] == kind)
     page = page_of(*genuine(example))

@@ -91,6 +91,9 @@ def test_gravity_gradient_is_the_derivative_of_the_torques(either):
     assert mids(at(either, POSE).gravity_gradient()) == pytest.approx(wanted, abs=1e-7)
 
 
+@pytest.mark.parametrize(
+    "either", [pytest.param("neuroboscope", marks=pytest.mark.slow), "crooked"], indirect=True
+)
 @pytest.mark.parametrize("order", [1, pytest.param(2, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ["inertia", "mobility", "gravity_gradient", "velocity_torques"])
 def test_every_pose_of_a_box_is_enclosed(either, order, name):

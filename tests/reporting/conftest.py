@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -142,6 +143,12 @@ modes:
   - {name: turn, A: [[0, -1], [1, 0]]}
 switching: arbitrary
 """
+# Left to the slow tests; of each, the default session has a case that is nearly the same.
+ALIKE = {"steps", "resets", "value", "blocks-refuted", "dwell-refuted"}
+
+
+def cases(names: Iterable[str]) -> list[Any]:
+    return [pytest.param(n, marks=[pytest.mark.slow] if n in ALIKE else []) for n in names]
 
 
 def report_of(path: Path) -> Report:

@@ -16,7 +16,7 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
-from tests.reporting.conftest import KINDS, ROOT, report_of
+from tests.reporting.conftest import KINDS, ROOT, cases, report_of
 from tests.support import SOFT_TISSUE
 
 FIGURES = {
@@ -62,12 +62,6 @@ FIGURES = {
     "discrete": ["eigenvalues", "quadratic", "mode-rates", "run", "phase-plane"],
     "marginal": ["eigenvalues", "run", "phase-plane"],
 }
-# Left to the slow tests; of each, the default session has a case that is nearly the same.
-ALIKE = {"steps", "resets", "value", "blocks-refuted", "dwell-refuted"}
-
-
-def cases(names):
-    return [pytest.param(n, marks=[pytest.mark.slow] if n in ALIKE else []) for n in names]
 
 
 def words(report):
@@ -578,22 +572,22 @@ controllers:
 """
 
 
-@pytest.fixture(scope="module")
-def many(tmp_path_factory):
-    """A robot with 14 modes: 7 controllers, of which the first two are alike."""
-    path = tmp_path_factory.mktemp("many") / "many.nrs.yaml"
+def robot_with(count, folder):
+    """Report on so many controllers, of which the first two are alike, each with two modes."""
+    path = folder / "many.nrs.yaml"
     lines = [
         f"  insertion-{i}: {{type: impedance, environment: nasal-concha, "
         "contacts: [silicone-soft-phantom, nasal-concha], "
         f"Mt: 0.01 kg*m^2, Bt: {2 + max(i, 1) / 10} N*m*s/rad}}"
-        for i in range(7)
+        for i in range(count)
     ]
     path.write_text(MANY + "\n".join([*lines, "switching: arbitrary", ""]))
     return report_of(path)
 
 
 @pytest.mark.slow
-def test_fourteen_modes_have_their_full_names_and_their_own_look(many):
+def test_fourteen_modes_have_their_full_names_and_their_own_look(tmp_path):
+    many = robot_with(7, tmp_path)
     names = [
         f"insertion-{i}/{e}" for i in range(7) for e in ("nasal-concha", "silicone-soft-phantom")
     ]
@@ -604,8 +598,8 @@ def test_fourteen_modes_have_their_full_names_and_their_own_look(many):
     assert sorted("".join(row.get_text().splitlines()) for row in rates) == sorted(names)
 
 
-def test_curves_that_coincide_are_told_apart(many):
-    (axes,) = figure(many, "displayed-impedance").figure.axes
+def test_curves_that_coincide_are_told_apart(tmp_path):
+    (axes,) = figure(robot_with(2, tmp_path), "displayed-impedance").figure.axes
     curves = {line.get_label(): line for line in axes.get_lines()}
     first, second = (curves[f"insertion-{i}, displayed"] for i in (0, 1))
     assert (first.get_ydata() == second.get_ydata()).all()

@@ -16,6 +16,7 @@ from nrs_design.reporting.sections.goals import goal_facts, goals_section, judge
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
 from tests.proof.systems import bouncing, pushed
+from tests.reporting.conftest import cases
 from tests.support import ROOT, SOFT_TISSUE
 
 
@@ -27,7 +28,9 @@ from tests.support import ROOT, SOFT_TISSUE
         ("dwell", "every switching that the spec declares, and no other"),
         ("dwell", "up to one constant factor"),
         ("parameter", "with one parameter unknown but constant"),
-        ("resets", "every switching that the spec declares, and no other"),
+        pytest.param(
+            "resets", "every switching that the spec declares, and no other", marks=pytest.mark.slow
+        ),
         ("discrete", "per step"),
         ("refuted", "Refuted: no guarantee of stability is possible under arbitrary switching"),
         ("inconclusive", "this report makes no statement about stability"),
@@ -78,7 +81,9 @@ def test_what_refutes_a_sampled_loop_is_said_to_be_of_modes_that_enclose_it():
     assert "may be no motor in the range that grows so" in evidence.claim(system)
 
 
-@pytest.mark.parametrize("case", ["dwell", "inconclusive", "resets", "parameter", "dwell-refuted"])
+@pytest.mark.parametrize(
+    "case", cases(("dwell", "inconclusive", "resets", "parameter", "dwell-refuted"))
+)
 def test_arbitrary_switching_is_claimed_only_where_it_is_declared(report, case):
     assert "arbitrary switching" not in report(case).summary[0]
 

@@ -18,7 +18,7 @@ def test_version(tmp_path):
 
 
 def test_help_lists_every_command_and_exit_code(tmp_path):
-    text = typed("--help", cwd=tmp_path).stdout
+    text = run("--help", cwd=tmp_path).stdout
     for command in COMMANDS:
         assert command in text
     assert {"optimize", "tune", "certify-switching", "verify"} <= set(COMMANDS)

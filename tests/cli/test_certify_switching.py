@@ -195,7 +195,6 @@ def test_shipped_specs_are_proved(tmp_path, path):
         ("auto", SIX, 0, "proved/impossible"),
         ("lmi", COMMUTING, 0, "proved/exists"),
         pytest.param("lmi", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
-        ("gradient", COMMUTING, 0, "proved/exists"),
         pytest.param("gradient", SOFT_TISSUE, 0, "proved/exists", marks=pytest.mark.slow),
         pytest.param("gradient", SIX, 3, "inconclusive/unknown", marks=pytest.mark.slow),
         ("obstruction", SIX, 3, "inconclusive/impossible"),

@@ -34,11 +34,24 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     loaded : LoadedSpec
         The spec that they are about.
     """
-    at = partial(linked, loaded)
-    design = isinstance(loaded.spec, InteractionDesignSpec)
+    at, spec = partial(linked, loaded), loaded.spec
+    design = isinstance(spec, InteractionDesignSpec)
     yield from _box_lines(margins, at, "environments" if design else "parameters")
     yield from _loop_lines(margins, at)
     yield from _dwell_lines(margins, at)
+    sampled = isinstance(spec, InteractionDesignSpec) and spec.sampling is not None
+    if sampled and _refutes(margins):
+        yield Sentence(
+            "what is refuted, is so in modes that enclose what the motor does, which may be those "
+            "of no motor in the range"
+        )
+
+
+def _refutes(margins: ProofMargins) -> bool:
+    """Tell whether a refutation ends one of the margins."""
+    loop = margins.loop
+    ends = (margins.box, *(() if loop is None else (loop.delay, loop.period)))
+    return any(end is not None and end.refuted is not None for end in ends)
 
 
 def _box_lines(margins: ProofMargins, at: _At, ranges: str) -> Iterator[Sentence]:

@@ -84,6 +84,12 @@ def test_an_easy_proof_loads_no_solver(easy):
     assert not {"scipy", "clarabel", "control", "cvxpy", "matplotlib"} & set(easy["modules"])
 
 
+def test_an_easy_proof_loads_no_model_of_a_design(easy):
+    """Its spec is of another kind; the models of all parts of a design take a tenth of a second."""
+    assert "nrs_design.spec.switched_system" in easy["modules"]
+    assert not {"nrs_design.spec.interaction", "nrs_design.spec.goals"} & set(easy["modules"])
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("command", ["certify-switching", "verify"])
 def test_given_matrices_need_no_model_of_a_design(tmp_path, command):

@@ -16,7 +16,7 @@ from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_inde
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import Reset, Switching
+from nrs_design.proof.switching import Clock, Reset, Switching
 from tests.proof.systems import (
     SYSTEMS,
     bouncing,
@@ -194,6 +194,16 @@ def test_what_is_good_must_cover_other_axes_and_what_grows_says_that_it_is_one(w
         assert fault is None
     assert claim == (f"It is so. {ALONE}" if what is Shows.INSTABILITY else "It is so.")
     assert Said(what=what).find_fault(replace(system, couplings=())) is None
+
+
+def test_who_does_not_know_of_turns_shows_nothing_where_modes_take_them():
+    in_turns = replace(
+        family([[Fraction(1, 2)]], [[Fraction(1, 3)]], time=Time.DISCRETE), clock=Clock(2, ("m0",))
+    )
+    assert Claimed().find_unfit(replace(in_turns, clock=None)) is None
+    assert Claimed().find_unfit(in_turns) == (
+        "evidence of kind claimed does not know that modes take turns"
+    )
 
 
 def test_unequal_modes_where_they_are_allowed():

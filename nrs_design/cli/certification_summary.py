@@ -42,7 +42,12 @@ def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
         "modes": [mode.name for mode in certification.system.modes],
         "gains": dict(result.certificate.gains) if result.certificate else None,
         "attempts": [
-            {"step": a.step, "outcome": a.outcome, "seconds": round(a.seconds, 6)}
+            {
+                "step": a.step,
+                "outcome": a.outcome,
+                "work": round(a.work, 6),
+                "seconds": round(a.seconds, 6),
+            }
             for a in certification.attempts
         ],
         "assumptions": list(certification.system.assumptions),

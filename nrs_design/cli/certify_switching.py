@@ -270,7 +270,8 @@ def _print(result: Result, *, verbose: bool) -> None:
         missing = sought and attempt.outcome != "found"
         if everything or missing:
             # What was not looked for took no time.
-            took = f" ({attempt.seconds * 1e3:.1f} ms)" if attempt.seconds else ""
+            took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
+            took = took if attempt.seconds else ""
             say(f"  {attempt.step}: {attempt.outcome}{took}")
     for goal in certified_goals(result.loaded.spec, result.certificate):
         ends = "met" if goal.met else "NOT PROVED"

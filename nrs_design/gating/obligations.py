@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from nrs_design.errors import NrsDesignError
+from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.gating.rules import INTERNAL, RULES, Rule
 
 
@@ -220,7 +220,7 @@ def of_error(path: Path, error: NrsDesignError) -> Obligation:
         RULES[error.rule],
         path,
         "spec",
-        Status.ERROR,
+        Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR,
         _one_line(message),
         None if elsewhere else error.line,
         None if elsewhere else error.column,

@@ -100,6 +100,15 @@ POSE = Rule(
     "stretched. The message names the leg and by how much it is overstretched or folded too far.",
     "Choose a pose inside the workspace; `nrs-design robot kinematics SPEC` maps it.",
 )
+CLOCK = Rule(
+    "NRS008",
+    "The clock does not stop the work",
+    "What a search may do is counted in units of work, the same on every machine, so that its "
+    "outcome depends neither on the machine nor on what else runs there. The clock is a fuse: "
+    "after ten seconds for each unit of the budget, and a minute more, it stops everything. Then "
+    "nothing is decided, and no rate is claimed that more time would have raised. Exit code 3.",
+    "Run it again where less else runs, or with a larger --budget, which allows more time, too.",
+)
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
@@ -250,6 +259,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             OUTPUT,
             DATA,
             POSE,
+            CLOCK,
             MODE_STABLE,
             SWITCHING_STABLE,
             STIFFNESS_RANGE,

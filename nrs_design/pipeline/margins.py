@@ -155,16 +155,18 @@ def _sampling_margins(
 
     def decide(changes: Mapping[str, object]) -> Verdict | str:
         try:
-            return certify(assemble_at(changes), limits=limits).verdict
+            system = assemble_at(changes)
         except NrsDesignError as error:
             return error.message
+        return certify(system, limits=limits).verdict
 
     def is_unstable(delay: int) -> bool:
         progress(f"delay {delay} alone")
         try:
-            return is_refuted_at_once(assemble_at({"delay": (delay, delay)}), limits)
+            system = assemble_at({"delay": (delay, delay)})
         except NrsDesignError:
             return False  # What makes no loop shows nothing.
+        return is_refuted_at_once(system, limits)
 
     def at_delay(longest: int) -> Verdict | str:
         return decide({"delay": (sampling.delay[0], longest)})

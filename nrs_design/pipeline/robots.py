@@ -63,7 +63,7 @@ def check_robot_bounds(
     path : Path
         The spec of the robot.
     budget : float
-        Time for each of the bounds in s.
+        Work for each of the bounds, in units.
     progress : callable
         Told the name of each step.
 
@@ -79,7 +79,9 @@ def check_robot_bounds(
     SpecError
         If the robot, or the file of its bounds, cannot be read.
     DesignError
-        If the time was over before something was decided.
+        If the work did not suffice to decide something.
+    ClockError
+        If the clock stopped it.
     """
     from nrs_design.models.robot import confirm_bounds
     from nrs_design.spec.robot_bounds import bounds_file, read_bounds

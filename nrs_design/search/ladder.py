@@ -8,12 +8,12 @@ from typing import Any
 
 from nrs_design.proof.late import late_function
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.search.rung import Facts, Rung, Step, _always
+from nrs_design.work import Allowance
 
-# Seconds of a degree of what is tried before the cheaper rungs.
+# Work of a degree of what is tried before the cheaper rungs.
 QUICK = 0.5
 
 

@@ -11,11 +11,11 @@ from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
+from nrs_design.work import Allowance, Cost
 
 # Degrees that are tried before the rungs below, which are quicker than higher ones.
 FIRST_DEGREES = 2
@@ -135,7 +135,7 @@ class Rung:
     only_quadratic : bool
         Left out once it is known that there is no common quadratic function.
     first : float
-        A degree that is predicted to take more seconds is tried with the higher ones, at last.
+        A degree that is predicted to take more work is tried with the higher ones, at last.
     coupled : bool
         What it finds of one axis says something about all axes that act on each other; other rungs
         are not tried where they do.
@@ -165,7 +165,7 @@ class Rung:
         if self.cost is None or self.first == inf:
             return FIRST_DEGREES
         degrees = range(2, 2 + FIRST_DEGREES)
-        return sum(self.cost(system, d)[0].seconds <= self.first for d in degrees)
+        return sum(self.cost(system, d)[0].work <= self.first for d in degrees)
 
     def is_wanted(self, facts: Facts, method: Method) -> bool:
         """Tell whether to try it, given what was asked for."""

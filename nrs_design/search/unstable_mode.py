@@ -15,13 +15,13 @@ from nrs_design.proof.evidence.unstable_mode import (
 )
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.search.allowance import Cost
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
+from nrs_design.work import Cost
 
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7
-# Exact tests of a mode that are predicted to take no more seconds are always made.
+# Exact tests of a mode that are predicted to take no more work are always made.
 ALWAYS_TESTED = 0.05
 
 
@@ -54,7 +54,7 @@ def _unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[Unstabl
             continue
         count += 1
         cost = exact_test_cost(mode.A)
-        if cost.seconds > ALWAYS_TESTED:
+        if cost.work > ALWAYS_TESTED:
             family.allowance.take(cost, f"the exact test of mode {mode.name}")
         if not is_stable(mode.A, time):
             evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))

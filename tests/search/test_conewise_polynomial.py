@@ -13,7 +13,6 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewisePolynomial
 from nrs_design.proof.mode import Mode
 from nrs_design.search import conewise_polynomial
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import certify
 from nrs_design.search.conewise_polynomial import (
     ConewisePolynomialProgram,
@@ -24,6 +23,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
 from nrs_design.search.polynomial import polynomial_cost
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import bouncing, bouncing_in_steps, dayawansa_martin, matrix
 from tests.search.support import found, outcome, thesis_robot
 

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.decay import (
     RESOLUTION,
     SMALLEST,
@@ -13,6 +12,7 @@ from nrs_design.search.decay import (
 )
 from nrs_design.search.lmi import find_common_quadratic
 from nrs_design.search.rounding import BACK_OFFS, rate_at, round_rate
+from nrs_design.work import Allowance, Cost, NotAffordableError
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
 

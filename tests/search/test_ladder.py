@@ -9,7 +9,6 @@ from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.switching import Switching
 from nrs_design.search import common_quadratic, gradient, mode_quadratic, obstruction, polynomial
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.family import Family
@@ -21,6 +20,7 @@ from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
 from nrs_design.search.polynomial import search_polynomial
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     ando_shih,
     branicky,

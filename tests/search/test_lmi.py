@@ -6,7 +6,6 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.search import lmi
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.interior_point import step_cost
 from nrs_design.search.lmi import (
     decreases,
@@ -14,6 +13,7 @@ from nrs_design.search.lmi import (
     margins,
     solve_by_clarabel,
 )
+from nrs_design.work import Allowance, NotAffordableError
 from tests.support import thinned
 
 

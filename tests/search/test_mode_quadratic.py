@@ -6,9 +6,9 @@ import pytest
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search import mode_quadratic
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.family import Family
 from nrs_design.search.mode_quadratic import search_mode_functions
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     ando_shih,
     family,

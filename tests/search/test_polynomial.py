@@ -12,7 +12,6 @@ from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIAL
 from nrs_design.proof.lift import monomials, vanishes
 from nrs_design.proof.mode import Time
 from nrs_design.search import polynomial
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.lifted import lift_family, products
 from nrs_design.search.polynomial import (
@@ -22,6 +21,7 @@ from nrs_design.search.polynomial import (
     polynomial_cost,
     search_polynomial,
 )
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import ando_shih, dayawansa_martin, family
 from tests.search.support import found
 

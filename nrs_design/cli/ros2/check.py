@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli.gate import OF_SEVERITY, GateFormat, format_of
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Json, Quiet, read_work
 from nrs_design.cli.printing import note, progress, say, say_failure
 from nrs_design.cli.ros2.options import Lag, range_of, read_lag
 from nrs_design.errors import NrsDesignError, SpecError
@@ -46,7 +46,12 @@ def check(
         typer.Option(metavar="HZ", help="Of the control loop; default: update_rate in the file."),
     ] = None,
     budget: Annotated[
-        float, typer.Option(min=0.0, help="Time for the search of each axis in s.")
+        float,
+        typer.Option(
+            metavar="WORK",
+            parser=read_work,
+            help="Work of the search of each axis, in units of about a second.",
+        ),
     ] = 20.0,
     format_: Annotated[
         GateFormat, typer.Option("--format", help="What to print.")

@@ -84,7 +84,7 @@ def compute_bounds(
     space : Space
         The poses.
     budget : float
-        Time for each quantity in s.
+        Work for each quantity, in units.
     progress : callable
         Told what is being done.
 
@@ -93,7 +93,9 @@ def compute_bounds(
     PoseError
         If a leg cannot reach one of the poses.
     DesignError
-        If the time was over before something was shown.
+        If the work did not suffice to show something.
+    ClockError
+        If the clock stopped it.
     """
     _refuse_unreachable(robot, space)
     found = {}
@@ -126,7 +128,7 @@ def confirm_bounds(
     document : mapping
         The file.
     budget : float
-        Time for each quantity in s.
+        Work for each quantity, in units.
     progress : callable
         Told what is being done.
 
@@ -135,7 +137,9 @@ def confirm_bounds(
     PoseError
         If a leg cannot reach one of the poses.
     DesignError
-        If the time was over before something was decided.
+        If the work did not suffice to decide something.
+    ClockError
+        If the clock stopped it.
     """
     space = space_of(document)
     _refuse_unreachable(robot, space)
@@ -252,7 +256,7 @@ def _undecided(item: Enclosed) -> DesignError:
     cover = item.cover
     left = int(np.sum(~(cover.bounds <= cover.goal)))
     return DesignError(
-        f"no bound of {item.quantity.name} was shown in the time that was given: "
+        f"no bound of {item.quantity.name} was shown with the work that was allowed: "
         f"{left} boxes of poses are left; found so far: {pose_text(item)}",
         remedy="narrow the workspace where a leg is nearly stretched or folded (--phi, --psi, "
         "--depth), or raise --budget",

@@ -87,8 +87,8 @@ def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
 
 def test_predictions_grow_with_degree_and_exceed_those_without_flight():
     costs = [conewise_cost(STIFF, d)[0] for d in range(2, 6)]
-    assert all(a.seconds < b.seconds and a.memory < b.memory for a, b in pairwise(costs))
-    assert costs[0].seconds > polynomial_cost(4, 4, 2)[0].seconds
+    assert all(a.work < b.work and a.memory < b.memory for a, b in pairwise(costs))
+    assert costs[0].work > polynomial_cost(4, 4, 2)[0].work
 
 
 def test_a_program_that_does_not_fit_is_not_built(monkeypatch):

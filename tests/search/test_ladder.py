@@ -45,7 +45,7 @@ def lying(shape, value):
 
 @pytest.mark.parametrize("value", LIES)
 def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
-    def lie(rows, offset, sizes, equalities=0, time_limit=0.0):
+    def lie(rows, offset, sizes, begun, equalities=0):
         return np.full(rows.shape[1], value)
 
     for module in (polynomial, obstruction, mode_quadratic):
@@ -199,7 +199,7 @@ def test_every_rung_names_a_search_that_there_is(rung):
 
 
 def test_degrees_rise_while_they_fit_into_what_is_left():
-    allowance = Allowance(0.5, clock=lambda: 0.0)
+    allowance = Allowance(0.5)
     found = names(dayawansa_martin(6), Method.POLYNOMIAL, allowance=allowance)
     last = [name for name in found if name.startswith("polynomial")][-1]
     assert last.startswith("polynomial of degree")

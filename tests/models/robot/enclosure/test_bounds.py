@@ -160,7 +160,7 @@ def test_inertia_over_a_small_workspace(robot):
 
 
 @pytest.mark.slow
-def test_time_that_is_over_shows_nothing(robot):
+def test_work_that_does_not_suffice_shows_nothing(robot):
     shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: found, budget=0.0)
     assert not shown.cover.reached
     assert shown.bound == np.inf

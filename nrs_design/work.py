@@ -2,8 +2,8 @@
 
 A unit of work is about a second of the machine that the benchmarks name. What is begun, and where a
 search ends, is decided by counts alone: factorizations, steps of a solver, matrices, boxes, each
-weighted by its size. So what comes of a budget depends neither on the machine nor on what else it
-does. The clock is but a fuse: it may end all in an error, and shapes no answer.
+weighted by its size. So what comes of a budget does not depend on how fast the machine is, nor on
+what else it does. The clock is but a fuse: it may end all in an error, and shapes no answer.
 """
 
 from __future__ import annotations

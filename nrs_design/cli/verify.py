@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.spec import LoadedSpec, Spec
 
-# For each of the bounds of a robot, in s.
+# Work for each of the bounds of a robot.
 BUDGET = 1800.0
 
 

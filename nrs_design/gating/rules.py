@@ -103,8 +103,8 @@ POSE = Rule(
 CLOCK = Rule(
     "NRS008",
     "The clock does not stop the work",
-    "What a search may do is counted in units of work, the same on every machine, so that its "
-    "outcome depends neither on the machine nor on what else runs there. The clock is a fuse: "
+    "What a search may do is counted in units of work, of about a second each, so that its "
+    "outcome does not depend on how fast a machine is or what else it does. The clock is a fuse: "
     "after ten seconds for each unit of the budget, and a minute more, it stops everything. Then "
     "nothing is decided, and no rate is claimed that more time would have raised. Exit code 3.",
     "Run it again where less else runs, or with a larger --budget, which allows more time, too.",

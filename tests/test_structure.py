@@ -126,6 +126,20 @@ def test_no_module_imports_itself_by_way_of_others():
     assert not graph
 
 
+def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
+    """What a search begins, and where it ends, is counted: a clock would differ under load."""
+    assert {item.source for item in imports() if item.target == "time"} == {
+        "nrs_design.work",
+        # How long something took, told beside what was found.
+        "nrs_design.search.certify",
+        "nrs_design.pipeline.certification",
+        "nrs_design.cli.printing",
+        "nrs_design.cli.gate",
+    }
+    limited = {name for name in FILES if "time_limit" in FILES[name].read_text(encoding="utf-8")}
+    assert limited == {"nrs_design.search.sdp", "nrs_design.search.raw"}
+
+
 def test_the_proof_stands_on_itself():
     below = {
         item.target.split(".")[0]

@@ -18,10 +18,12 @@ from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
-# Work per program and per cone of it; and in each step of the solver, per entry of the blocks that
-# cones add to its equations, and per multiplication in their factorization.
+# Work per program, per cone of it and per entry of its constraints; and in each step of the solver,
+# per entry of the blocks that cones add to its equations, and per multiplication in their
+# factorization.
 PER_PROGRAM = 1e-3
 PER_CONE = 5e-5
+PER_ENTRY = 5e-8
 PER_STEP = 1e-5
 PER_BLOCK_ENTRY = 7.5e-8
 PER_PRODUCT = 3e-11
@@ -29,8 +31,8 @@ PER_PRODUCT = 3e-11
 STEPS = 15
 MOST_STEPS = 200
 # Bytes for each entry of the dense constraints (with the copies), and of the factors.
-PER_ENTRY = 24
-PER_FACTOR_ENTRY = 20
+BYTES_PER_ENTRY = 24
+BYTES_PER_FACTOR_ENTRY = 20
 
 
 def symmetric_basis(n: int) -> Array:
@@ -101,9 +103,10 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
         entries += size**2
         products += size**3 / 3 + size * touched * (size + touched)
         factor += size * (size / 2 + touched)
-    memory = PER_ENTRY * rows * variables + PER_FACTOR_ENTRY * factor
+    memory = BYTES_PER_ENTRY * rows * variables + BYTES_PER_FACTOR_ENTRY * factor
     step = PER_STEP + PER_BLOCK_ENTRY * entries + PER_PRODUCT * products
-    return Cost(PER_PROGRAM + PER_CONE * count + STEPS * step, memory, step)
+    built = PER_PROGRAM + PER_CONE * count + PER_ENTRY * rows * variables
+    return Cost(built + STEPS * step, memory, step)
 
 
 @dataclass(frozen=True, slots=True)

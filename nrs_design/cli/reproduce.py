@@ -106,11 +106,11 @@ def _summary(
         CONVERTED,
         count_verdicts,
         printed_errors,
-        summary_line,
+        counts_line,
     )
 
     content = {
-        "summary": summary_line(table),
+        "summary": counts_line(table),
         "counts": count_verdicts(table),
         "errors_of_the_print": [
             {
@@ -134,7 +134,7 @@ def _summary(
 
 def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
     from nrs_design.reproduction.page import format_within
-    from nrs_design.reproduction.table import CONVERTED, printed_errors, summary_line
+    from nrs_design.reproduction.table import CONVERTED, printed_errors, counts_line
 
     cells = [
         [
@@ -178,4 +178,4 @@ def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] 
         outcomes = count_outcomes(gallery)
         told = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items())
         say(f"figures, {sum(outcomes.values())} statements: {told}")
-    say(summary_line(table))
+    say(counts_line(table))

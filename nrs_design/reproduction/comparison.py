@@ -428,9 +428,7 @@ def _precision(printed: Printed) -> str:
     """Write what `meets_standard` asks for, number by number; equal ones once."""
     found = (
         f"{digit:g}" if digit > STANDARD * abs(number) else str(Tolerance(STANDARD))
-        for number, digit in zip(
-            _numbers(printed), map(_last_digit, _texts(printed)), strict=True
-        )
+        for number, digit in zip(_numbers(printed), map(_last_digit, _texts(printed)), strict=True)
     )
     return ", ".join(dict.fromkeys(found))
 

@@ -70,16 +70,16 @@ def rows() -> tuple[ReproducedValue, ...]:
     """Recompute tables 3.5 and 3.7 along slow sines in phase."""
     sines = (_sine(*entry) for entry in zip(TABLE_3_5, SINES, OURS, strict=True))
     figure = (
-        omitted(f"K_corr along figure 3.7, d {d} mm", "table 3.5", print_, "", _FIGURE, ("figure 3.7",))
+        omitted(
+            f"K_corr along figure 3.7, d {d} mm", "table 3.5", print_, "", _FIGURE, ("figure 3.7",)
+        )
         for d, print_ in FIGURE
     )
     tilts = (row for tilt in TILTS for row in _tilt(*tilt))
     return (*sines, *figure, _whole(), _final(), *tilts)
 
 
-def _sine(
-    sine: Sine, printed: tuple[str, str, str], ours: tuple[str, str, str]
-) -> ReproducedValue:
+def _sine(sine: Sine, printed: tuple[str, str, str], ours: tuple[str, str, str]) -> ReproducedValue:
     low, high = (1e3 * d for d in sine.d)
     return near(
         f"K_corr, phi {sine.phi:g}, psi {sine.psi:g} rad, d {low:.0f} - {high:.0f} mm",
@@ -104,8 +104,8 @@ def _whole() -> ReproducedValue:
         "table 3.5",
         ", ".join(WHOLE),
         "",
-        "some of the ratios are of two values near zero, so their mean hangs on samples and phases, "
-        f"which are not printed; in phase: {_text(found.mean_ratio)}; least squares "
+        "some of the ratios are of two values near zero, so their mean hangs on samples and "
+        f"phases, which are not printed; in phase: {_text(found.mean_ratio)}; least squares "
         f"{_text(found.least_squares)}",
         ("table 3.5",),
     )

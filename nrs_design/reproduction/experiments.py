@@ -30,14 +30,9 @@ def rows() -> tuple[ReproducedValue, ...]:
 
 def _measured() -> tuple[ReproducedValue, ...]:
     return tuple(
-        omitted(*entry, tuple(errata)) for *entry, errata in map(_split, read_data("measured.yaml"))
+        omitted(name, section, printed, unit, because, tuple(touched))
+        for name, section, printed, unit, because, *touched in read_data("measured.yaml")
     )
-
-
-def _split(entry: list[str]) -> tuple[str, str, str, str, str, list[str]]:
-    """Part a line of the data file from the errors of the print that it names."""
-    name, section, printed, unit, because, *errata = entry
-    return name, section, printed, unit, because, errata
 
 
 def _displayed() -> ReproducedValue:

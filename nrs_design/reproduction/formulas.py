@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 
 import numpy as np
 
@@ -157,19 +158,15 @@ def _speed_command() -> bool:
         armature_resistance(thesis.ACTUATOR, thesis.MOTOR), thesis.MOTOR
     )
     # rad/s per rpm is in the gain of the actuator: the gradient alone makes the difference.
-    right, printed = (_damping(1.0), _damping(gradient))
+    right, printed = _damping(Fraction(1)), _damping(Fraction(gradient))
     return abs(right - thesis.DAMPING_RATIO) < 1e-3 and printed > 2 * thesis.DAMPING_RATIO
 
 
-def _damping(factor: float) -> float:
-    Kd = factor * float(thesis.DERIVATIVE_GAIN)
-    loop = close_motion_loop(thesis.ACTUATOR, Kp=Kd * float(thesis.ZERO), Kd=Kd)
-    return motion_loop_response(
-        TransferFunction(
-            tuple(map(float, loop.numerator)),
-            tuple(map(float, loop.denominator)),
-        )
-    ).damping_ratio
+def _damping(factor: Fraction) -> float:
+    Kd = factor * thesis.DERIVATIVE_GAIN
+    loop = close_motion_loop(thesis.ACTUATOR, Kp=Kd * thesis.ZERO, Kd=Kd)
+    numerator, denominator = tuple(map(float, loop.numerator)), tuple(map(float, loop.denominator))
+    return motion_loop_response(TransferFunction(numerator, denominator)).damping_ratio
 
 
 def _integrator() -> bool:
@@ -177,7 +174,7 @@ def _integrator() -> bool:
     wanted = 4 / thesis.SETTLING_TIME * complex(-1, math.tan(math.acos(thesis.DAMPING_RATIO)))
     lag = np.angle(wanted + 1 / tau)
     right, printed = (np.degrees(lag + more - np.pi) for more in (np.angle(wanted), 0.0))
-    return abs(right - 44.9914) < 5e-3 < abs(printed - 44.9914)
+    return bool(abs(right - 44.9914) < 5e-3 < abs(printed - 44.9914))
 
 
 def _decay() -> bool:
@@ -197,8 +194,7 @@ def _update() -> bool:
 
 def _input_of_admittance() -> bool:
     right = impedance_rows(thesis.SOFT, "0.01", "2.15", "force")
-    printed = [list(row) for row in right]
-    printed[2][3] = -printed[2][3]
+    printed = [*right[:2], [*right[2][:3], -right[2][3]], right[3]]
     return _is_stable(right) and not _is_stable(printed)
 
 

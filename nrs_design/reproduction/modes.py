@@ -150,9 +150,7 @@ def _eigenvalues() -> tuple[ReproducedValue, ...]:
     )
 
 
-def _not_hurwitz(
-    name: str, section: str, rows: Rows, errata: tuple[str, ...]
-) -> ReproducedValue:
+def _not_hurwitz(name: str, section: str, rows: Rows, errata: tuple[str, ...]) -> ReproducedValue:
     system = family(name, rows)
     return claim(
         f"eigenvalues of {name} as printed",

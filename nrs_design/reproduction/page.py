@@ -8,7 +8,7 @@ from nrs_design.reproduction.table import (
     CONVERTED,
     count_verdicts,
     printed_errors,
-    summary_line,
+    counts_line,
 )
 
 
@@ -36,7 +36,7 @@ def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) 
         rows=table,
         counts=count_verdicts(table),
         errors=printed_errors(table),
-        summary=summary_line(table),
+        summary=counts_line(table),
         converted=CONVERTED,
         gallery=gallery,
         version=__version__,

@@ -61,7 +61,8 @@ def _platform(ours: Robot) -> ReproducedValue:
     lateral, axial = (
         float(
             correction_coefficients(
-                replace(ours, platform=slender_rod(ours.platform.mass, place, 0.25, 2)), TABLE_3_5[0]
+                replace(ours, platform=slender_rod(ours.platform.mass, place, 0.25, 2)),
+                TABLE_3_5[0],
             ).mean_ratio[0]
         )
         for place in ((0.0367, 0.0, 0.010), (0.0, 0.0, 0.0367))

@@ -47,8 +47,8 @@ VOIGT = {
     "stiff": ((1055.4, 0.0127), (1076.6, 0.0055), (1079.6, 0.0057)),
 }
 _RECORDS = "the records of force and deflection are shown in figure 6.2 only"
-# Thesis 6.2: the motion loop runs at 500 Hz on the processor, the compliant controllers every 0.1 ms
-# on a computer. How often the records of 6.1 were sampled is not printed.
+# Thesis 6.2: the motion loop runs at 500 Hz on the processor, the compliant controllers every
+# 0.1 ms on a computer. How often the records of 6.1 were sampled is not printed.
 PERIOD = 0.002
 _BELOW = f"below one period of the motion loop ({PERIOD:g} s)"
 # Experiments with longer relaxation times than this have no elements.
@@ -71,11 +71,11 @@ def rows() -> tuple[ReproducedValue, ...]:
 def _hand() -> ReproducedValue:
     """Turn the hand of 6.1 at the pivot."""
     return derived(
-        "stiffness of a surgeon's hand at the pivot: least, mean, largest",
+        "stiffness of a hand at the pivot: least, mean, largest",
         "6.1",
         tuple(Elastic(k).at_pivot(ARM).stiffness for k in (1002 - 568, 1002, 1002 + 568)),
         "N m/rad",
-        printed="1002 +- 568 N/m, close to the stiff specimen's 1070.5 N/m",
+        printed="1002 +- 568 N/m, close to 1070.5 N/m of the stiff specimen",
         right=("24.9984", "57.7152", "90.432"),
         tolerance=Tolerance(1e-5),
         note="At the lever arm of 0.24 m of 6.3.1. The stiff specimen, 61.7 N m/rad, is 6.8 % "
@@ -84,15 +84,19 @@ def _hand() -> ReproducedValue:
 
 
 def _specimen(name: str, fits: tuple[str, ...], mean: str) -> tuple[ReproducedValue, ...]:
-    return (*_means(name, fits, mean), _voigt(name), *_boltzmann(name), *_measured(name), _largest(name))
+    return (
+        *_means(name, fits, mean),
+        _voigt(name),
+        *_boltzmann(name),
+        *_measured(name),
+        _largest(name),
+    )
 
 
 def _largest(name: str) -> ReproducedValue:
     """Hold the largest errors against the root mean square errors, which are below them."""
     errors, forces = LARGEST[name]
-    least = [
-        100 * float(rmse) / force for rmse, force in zip(RMSE[name][0], forces, strict=True)
-    ]
+    least = [100 * float(rmse) / force for rmse, force in zip(RMSE[name][0], forces, strict=True)]
     below = [f"{i + 1}" for i in range(3) if errors[i] + 0.5 < least[i]]
     return claim(
         f"largest error of the elastic law over the largest force, {name} specimen",

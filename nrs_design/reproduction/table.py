@@ -88,7 +88,7 @@ def printed_errors(
     return tuple((one, touched) for one, touched in found if touched)
 
 
-def summary_line(table: Sequence[ReproducedValue]) -> str:
+def counts_line(table: Sequence[ReproducedValue]) -> str:
     """Write the counts of rows, and of the errors behind those that are printed differently."""
     wrong = str(PrintVerdict.PRINTED_DIFFERENTLY)
     parts = (

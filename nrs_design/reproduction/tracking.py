@@ -34,9 +34,7 @@ MEASURED = (
         ("0.0449, 0.0680, 0.6263", "0.2139, 0.0782, 0.5086", "0.0690, 0.2347, 0.5827"),
     ),
 )
-_BECAUSE = (
-    "it was measured on the robot; `nrs-design robot track` shows simulated errors beside it"
-)
+_BECAUSE = "it was measured on the robot; `nrs-design robot track` shows simulated errors beside it"
 
 
 def rows() -> tuple[ReproducedValue, ...]:

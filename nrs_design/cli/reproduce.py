@@ -105,8 +105,8 @@ def _summary(
     from nrs_design.reproduction.table import (
         CONVERTED,
         count_verdicts,
-        printed_errors,
         counts_line,
+        printed_errors,
     )
 
     content = {
@@ -134,7 +134,7 @@ def _summary(
 
 def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
     from nrs_design.reproduction.page import format_within
-    from nrs_design.reproduction.table import CONVERTED, printed_errors, counts_line
+    from nrs_design.reproduction.table import CONVERTED, counts_line, printed_errors
 
     cells = [
         [

@@ -7,8 +7,8 @@ from nrs_design.reproduction.comparison import ReproducedValue
 from nrs_design.reproduction.table import (
     CONVERTED,
     count_verdicts,
-    printed_errors,
     counts_line,
+    printed_errors,
 )
 
 

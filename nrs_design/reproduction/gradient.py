@@ -51,17 +51,20 @@ def run(
     radius: float = RADIUS,
     order: Order = Order.ROUND_ROBIN,
     updates: int = UPDATES,
+    start: str | None = None,
 ) -> GradientResult:
-    """Run the iteration once, from the Lyapunov function of the first mode.
+    """Run the iteration once.
 
     Parameters
     ----------
     system : SwitchedSystem
         The pair.
-    coordinates, radius, order, updates
+    coordinates, radius, order, updates, start
         See `Gradient`.
     """
-    way = Gradient(radius=radius, order=order, coordinates=coordinates, max_updates=updates)
+    way = Gradient(
+        radius=radius, start=start, order=order, coordinates=coordinates, max_updates=updates
+    )
     return find_by_gradient(Family.of(system, gradient=way))
 
 

@@ -113,7 +113,8 @@ def _felt(log: RunLog, bounds: RunBounds) -> NDArray[np.bool_]:
     """Tell in which rows the controller in force may touch something."""
     if log.modes is None:
         return np.ones(len(log.time), dtype=bool)
-    return np.array([bounds.stiffness[label] is not None for label in log.labels])[log.modes]
+    felt = np.array([bounds.stiffness[label] is not None for label in log.labels], dtype=np.bool_)
+    return felt[log.modes]
 
 
 def _spans(

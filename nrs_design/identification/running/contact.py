@@ -114,7 +114,7 @@ def _felt(log: RunLog, bounds: RunBounds) -> NDArray[np.bool_]:
     if log.modes is None:
         return np.ones(len(log.time), dtype=bool)
     felt = np.array([bounds.stiffness[label] is not None for label in log.labels], dtype=np.bool_)
-    return felt[log.modes]
+    return np.asarray(felt[log.modes], dtype=np.bool_)
 
 
 def _spans(

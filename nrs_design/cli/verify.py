@@ -61,7 +61,7 @@ def verify(
     and the answer says so: whose modes they are is then not known.
 
     With --deployed, the numbers in an exported file are compared with the certificate: the gains of
-    a record; coefficients, limits and modes of a header; limits, ranges and code of a monitor; all
+    a record; coefficients, limits and modes of a header; limits and code of a monitor; all
     sources and variables of an FMU. Comments and compiled libraries are not compared.
 
     Where the spec names a robot, the bounds on its links are read from the file beside it, and the

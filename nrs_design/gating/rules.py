@@ -239,6 +239,15 @@ ROS_AXIS = Rule(
     "mass or the damping (with stiffness 0 only joint_damping damps); raise filter_coefficient "
     "towards 1. The message says up to which stiffness there is a proof.",
 )
+ROS_OTHERS = Rule(
+    "NRS203",
+    "Every controller of a ROS 2 parameter file is decided",
+    "`nrs-design ros2 check` knows admittance_controller of ros2_controllers, and broadcasters, "
+    "which command nothing. Any other node may move the same robot, in front of an admittance "
+    "controller or instead of it: nothing is said about that.",
+    "Show by other means what it does to the robot; keep nodes that are no controllers in a file "
+    "of their own; give the type of a node that is one.",
+)
 INTERNAL = Rule(
     "NRS900",
     "The program works as intended",
@@ -271,6 +280,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             SCENARIO_LIMIT,
             ROS_PARAMETERS,
             ROS_AXIS,
+            ROS_OTHERS,
             INTERNAL,
         )
     }

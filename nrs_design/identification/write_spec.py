@@ -71,7 +71,8 @@ def merge_tissue(
     node = document.root["environments"][name]
     power = found.tangent is not None and has_place(found.tangent)
     if found.tangent is not None and power:
-        kept = _put_power_law(document, node, found.tangent, law, rotational=found.rotational)
+        put = _PUT_BY_TANGENT[model.law.name]
+        kept = put(document, node, found.tangent, law, rotational=found.rotational)
     else:
         document.put(node, "model", law.name)
         units = law.units(rotational=found.rotational)
@@ -139,6 +140,10 @@ def _put_power_law(
     document.put(node, "about", f"{about.about!r} {length}")
     document.put(node, "preload", [f"{end!r} {length}" for end in (about.low, about.high)])
     return (*law.keys, *_POWER_KEYS)
+
+
+# How a law that is not linear is written, by its name.
+_PUT_BY_TANGENT = {HuntCrossley.name: _put_power_law}
 
 
 def _preload(found: TissueIdentification) -> str:

@@ -84,8 +84,9 @@ def _doubt_units(spec: InteractionDesignSpec) -> Iterator[Doubt]:
 
 def _doubt_thresholds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
     """Yield thresholds that the torque reaches only where it is too large already."""
-    logic, limit = spec.mode_logic, spec.limits.torque
-    if logic is None or logic.type != "thresholds":
+    logic = None if spec.mode_logic is None else spec.mode_logic.thresholds
+    limit = spec.limits.torque
+    if logic is None:
         return
     for index, switch in enumerate(logic.switches, 1):
         torque = switch.torque

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import field
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -136,19 +137,19 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     return _validate(*parse_with_faults(text, path), path)
 
 
+# Where the model of each kind is.
+_MODELS = {
+    "interaction-design": ("interaction", "InteractionDesignSpec"),
+    "robot": ("robot", "RobotSpec"),
+    "switched-system": ("switched_system", "SwitchedSystemSpec"),
+}
+
+
 def model_of(kind: str) -> type[Spec]:
     """Return the model of a kind of spec; a command pays only for the kind that it reads."""
-    if kind == "interaction-design":
-        from nrs_design.spec.interaction import InteractionDesignSpec
-
-        return InteractionDesignSpec
-    if kind == "robot":
-        from nrs_design.spec.robot import RobotSpec
-
-        return RobotSpec
-    from nrs_design.spec.switched_system import SwitchedSystemSpec
-
-    return SwitchedSystemSpec
+    module, name = _MODELS[kind]
+    found: type[Spec] = getattr(import_module(f"nrs_design.spec.{module}"), name)
+    return found
 
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:

@@ -100,7 +100,7 @@ CONTACTS = AssumptionKind(
     "nothing else is touched",
     "the contacts that the spec lists for a controller",
     "Any other contact is a mode that nothing is said about.",
-    "by procedure; nrs-design audit LOG SPEC compares the stiffness met with each controller",
+    "by procedure; nrs-design audit LOG SPEC estimates the stiffness met with each controller",
 )
 TISSUE = AssumptionKind(
     "environments follow their models in their ranges",

@@ -15,6 +15,7 @@ PUBLISHED = [
     *(f"NRS10{i}" for i in range(1, 10)),
     "NRS201",
     "NRS202",
+    "NRS203",
     "NRS900",
 ]
 

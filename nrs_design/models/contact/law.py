@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -104,6 +104,27 @@ class AbstractContactLaw(ABC):
 @dataclass(frozen=True)
 class AbstractNonlinearLaw(AbstractContactLaw):
     """A law that enters a design by its tangent: a spring and a damper about a deflection."""
+
+    # What an assumption calls it, with its article.
+    title: ClassVar[str]
+
+    @classmethod
+    @abstractmethod
+    def drawn(cls, numbers: Mapping[str, float]) -> Self:
+        """Return the law at the pivot from the numbers of its spec, by their keys."""
+
+    @classmethod
+    @abstractmethod
+    def preload_text(cls, environment: str, low: str, high: str) -> str:
+        """Say what the ranges of its linear law cover of it within a preload.
+
+        Parameters
+        ----------
+        environment : str
+            Its name.
+        low, high : str
+            Least and largest deflection of the preload, with their units.
+        """
 
     @abstractmethod
     def slope(self, motion: Motion) -> Array:

@@ -54,12 +54,12 @@ DRAWING = {
     "tune": (SOFT_TISSUE, "--json"),
     "gate": (COMMUTING, "--reports", "r"),
     "diff": (COMMUTING, COMMUTING, "--report", "x.html"),
-    "compare-methods": (COMMUTING, "--report", "x.html"),
+    "compare-methods": (COMMUTING, "--figure", "x.svg"),
     "export": (SOFT_TISSUE, "--out", "e"),
     "simulate": (ROOT / "docs/examples/scenarios.nrs.yaml", "--out", "s"),
     "identify tissue": (ROOT / "specs/data/nose-1.csv", "--report", "x.html"),
     "identify tool": (ROOT / "specs/data/tool-poses.csv", "--report", "x.html"),
-    "robot kinematics": (ROOT / "specs/robots/neuroboscope.nrs.yaml", "--report", "x.html"),
+    "robot kinematics": (ROOT / "specs/robots/neuroboscope.nrs.yaml", "--figures", "f"),
 }
 
 

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from tests.package import FILES
-from tests.support import COMMUTING, ROBOT, ROOT, SOFT_TISSUE, typed
+from tests.support import COMMUTING, ROOT, SOFT_TISSUE, typed
 from tests.test_structure import imports
 
 HOSTILE = "figure.dpi: 7\naxes.facecolor: red\ntimezone: Nowhere\nbackend: module://evil\n"

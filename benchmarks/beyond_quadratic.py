@@ -7,7 +7,7 @@ from fractions import Fraction
 from time import perf_counter
 
 from benchmarks.families import dayawansa_martin
-from benchmarks.measure import Finding
+from benchmarks.measure import Finding, Size
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
@@ -16,13 +16,13 @@ from nrs_design.search.method import Method
 LOW, LIMIT, HIGH = 583, 1126, 1200
 HUNDREDTH = Fraction(1, 100)
 MAX_DEGREE = 64
-BUDGETS, QUICK_BUDGETS = (1.0, 5.0, 20.0), (1.0,)
+BUDGETS, QUICK_BUDGETS, SMOKE_BUDGETS = (1.0, 5.0, 20.0), (1.0,), (0.1,)
 WANTED_PROVED, WANTED_REFUTED = 1120, 1127
 
 
-def run(quick: bool) -> tuple[Finding, ...]:
+def run(size: Size) -> tuple[Finding, ...]:
     """Bisect over hundredths, once for each budget of work per certification."""
-    return tuple(_enclose(budget) for budget in (QUICK_BUDGETS if quick else BUDGETS))
+    return tuple(_enclose(budget) for budget in size.pick(BUDGETS, QUICK_BUDGETS, SMOKE_BUDGETS))
 
 
 def _enclose(budget: float) -> Finding:
@@ -33,7 +33,7 @@ def _enclose(budget: float) -> Finding:
     steps = _last(-HIGH, -LIMIT, lambda a: _ends(-a, Method.PERIOD, limits, Verdict.REFUTED))
     refuted = -steps
     return Finding(
-        f"Dayawansa-Martin family, {budget:.0f} units of work per certification",
+        f"Dayawansa-Martin family, {budget:g} units of work per certification",
         f"stable proved up to a = {proved / 100:.2f}, refuted from {refuted / 100:.2f}",
         f"{WANTED_PROVED / 100:.2f} and {WANTED_REFUTED / 100:.2f}",
         proved >= WANTED_PROVED and refuted <= WANTED_REFUTED,

@@ -22,7 +22,6 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
-from nrs_design.plotting import load_matplotlib
 
 
 @dataclass(frozen=True)
@@ -178,8 +177,7 @@ def _stationary_frequencies(numerator: Sequence[float], denominator: Sequence[fl
 
 def _crossover_margins(tf: TransferFunction) -> tuple[float, float, float, float]:
     """Return the low and high gain margin, the phase margin (rad) and the delay margin (s)."""
-    load_matplotlib()
-    import control
+    from nrs_design.control_library import control
 
     gains, degrees, _, at_gain, at_phase, _ = control.stability_margins(
         to_control(tf), returnall=True
@@ -204,8 +202,7 @@ def _disk_margin(tf: TransferFunction) -> float:
     python-control evaluates on a grid, which overstates the margin between two points: it is
     given the stationary frequencies themselves.
     """
-    load_matplotlib()
-    import control
+    from nrs_design.control_library import control
 
     difference = np.polysub(tf.denominator, tf.numerator).tolist()
     closed = np.polyadd(tf.denominator, tf.numerator).tolist()

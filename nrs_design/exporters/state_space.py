@@ -11,7 +11,6 @@ import numpy as np
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.pipeline import Designed
-from nrs_design.plotting import load_matplotlib
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
@@ -107,8 +106,7 @@ def _of_transfer(
 
 
 def _state_space(A: Any, B: Any, C: Any, D: Any, dt: float | bool, **names: Any) -> Any:
-    load_matplotlib()
-    import control
+    from nrs_design.control_library import control
 
     return control.StateSpace(A, B, C, D, dt, remove_useless_states=False, **names)
 

@@ -27,6 +27,7 @@ from nrs_design.gating.rules import (
     LOCKED,
     MODE_STABLE,
     NOT_DOUBTED,
+    NOT_WEAKER,
     RULES,
     SPEC,
     SWITCHING_STABLE,
@@ -45,6 +46,7 @@ DECIDED_AGAIN = frozenset(
         CERTIFICATE_HOLDS,
         LOCKED,
         NOT_DOUBTED,
+        NOT_WEAKER,
     }
 )
 

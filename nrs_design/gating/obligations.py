@@ -157,6 +157,25 @@ class SpecOutcome:
 
 
 @dataclass(frozen=True, slots=True)
+class BaseChanges:
+    """What differs from the specs of a base, beside what is weaker, which breaks an obligation.
+
+    Parameters
+    ----------
+    base : Path
+        Folder of the base.
+    weaker : int
+        Number of obligations that it breaks.
+    others : tuple of Caution
+        What is stronger, or neither; versions.
+    """
+
+    base: Path
+    weaker: int
+    others: tuple[Caution, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class GateOutcome:
     """What one run of the gate found.
 
@@ -166,10 +185,13 @@ class GateOutcome:
         In the order of their paths.
     notes : tuple of str
         What a person should know beside it.
+    changes : BaseChanges or None
+        What differs from a base; None if it was not asked for.
     """
 
     specs: tuple[SpecOutcome, ...]
     notes: tuple[str, ...] = ()
+    changes: BaseChanges | None = None
 
     @property
     def broken(self) -> tuple[Obligation, ...]:

@@ -219,6 +219,17 @@ LOCKED = Rule(
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
     "together with its certificates; with --prune for specs that were removed.",
 )
+NOT_WEAKER = Rule(
+    "NRS110",
+    "Nothing is weaker than in the base",
+    "With --against BASE, what the specs of BASE asked for is still asked for: no spec is gone, no "
+    "range covers less, no goal, limit or disturbance is looser, nothing more is taken for granted "
+    "(a dwell time, contact that is kept, a doubt that is accepted), and no certified rate or "
+    "verdict is lower. A proof of a weaker spec is a proof, so no other rule sees this. Values "
+    "that are neither more nor less, and versions, are listed as other changes, and break nothing.",
+    "If it is meant, let somebody who may decide that say so where the change is reviewed: there "
+    "is no option for it, because the change itself could set it. Otherwise, take it back.",
+)
 ROS_PARAMETERS = Rule(
     "NRS201",
     "The parameters of a ROS 2 controller are read as they are meant",
@@ -278,6 +289,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             NOT_DOUBTED,
             CERTIFIED_GOAL,
             SCENARIO_LIMIT,
+            NOT_WEAKER,
             ROS_PARAMETERS,
             ROS_AXIS,
             ROS_OTHERS,

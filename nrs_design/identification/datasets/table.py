@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
-from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_sheet
+from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_arrays, read_sheet
 from nrs_design.identification.datasets.columns import Column, find_columns
 from nrs_design.identification.datasets.header import BLOCK, SYNTHETIC, read_header
 from nrs_design.identification.datasets.names import UNITS, standard_name
@@ -174,7 +174,7 @@ def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
 
 def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
     digest = _digest(file)
-    arrays, words = ARRAYS[path.suffix.lower()](file, path)
+    arrays, words = read_arrays(file, path)
     names = list(arrays)
     layout, groups = find_columns(
         names, wanted.layouts, wanted.mapping, path, None, wanted.optional

@@ -1,6 +1,7 @@
 """Wrong files: each has one message that says what, where and what to do."""
 
 import sys
+from io import BytesIO
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.io import savemat
 from scipy.io.matlab import MatlabOpaque
 
 from nrs_design.errors import DataError
+from nrs_design.foreign import read_mat, read_parquet, unpack_sheet
 from nrs_design.identification.datasets import (
     read_actuator,
     read_poses,
@@ -327,9 +329,10 @@ def test_an_archive_of_objects_is_not_run(tmp_path):
 def test_the_extra_is_named(tmp_path, monkeypatch, ending, package):
     monkeypatch.setitem(sys.modules, package, None)
     path = tmp_path / f"a.{ending}"
-    path.write_bytes(b"PAR1" if ending == "parquet" else b"PK\x03\x04")
+    # In this process, where the package is hidden.
+    reader = read_parquet if ending == "parquet" else unpack_sheet
     with pytest.raises(DataError, match=package) as caught:
-        read_tissue(path)
+        reader(BytesIO(b""), path)
     assert "nrs-design[tables]" in caught.value.remedy
 
 
@@ -346,7 +349,6 @@ def test_an_object_of_matlab(tmp_path, monkeypatch):
     opaque = MatlabOpaque(np.array((b"T", b"MCOS", b"timetable", None), dtype=kind))
     monkeypatch.setattr("scipy.io.loadmat", lambda *_, **__: {"None": opaque})
     path = tmp_path / "a.mat"
-    savemat(path, {"x": TIME})
     with pytest.raises(DataError, match="an object of a MATLAB class") as caught:
-        read_tissue(path)
+        read_mat(BytesIO(b""), path)
     assert "writetimetable" in caught.value.remedy

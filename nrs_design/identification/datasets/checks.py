@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.table import Array, MeasurementTable
+from nrs_design.spec.quantity import SMALLEST
 
 FEWEST_ROWS = 50
 # A step of more than so many usual ones is a gap.
@@ -15,6 +16,8 @@ GAP = 3.0
 # A sensor is saturated when its extreme reading repeats while this part of the motion passes.
 _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
+# Changes of so many units in the last place are none.
+_ROUNDED = 8
 # Between these lie the steps in s of what logs a robot or a test of a material.
 _FASTEST, _SLOWEST = 2e-5, 1.0
 
@@ -84,6 +87,8 @@ def check_advance(table: MeasurementTable, time: Array) -> None:
             row,
             "sort the rows, or remove the doubled ones",
         )
+    if len(time) and float(np.ptp(time)) <= SMALLEST:
+        table.fail("time hardly advances", len(time) - 1, "write it in s, ms, us or ns")
 
 
 def check_turns(table: MeasurementTable, angle: Array) -> None:
@@ -136,7 +141,7 @@ def check_saturation(table: MeasurementTable, name: str, values: Array, moving: 
 
 
 def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
-    """Check that a column is not constant.
+    """Check that a column is not constant, but for the rounding of its numbers.
 
     Parameters
     ----------
@@ -152,8 +157,10 @@ def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
     DataError
         At the first row.
     """
-    if np.ptp(values) == 0:
-        table.fail(f"the {name} never changes", 0, "record a motion, from before it begins")
+    change = float(np.ptp(values))
+    if change <= max(SMALLEST, _ROUNDED * np.finfo(float).eps * float(np.abs(values).max())):
+        by = f" by more than {change:.1g}, which is rounding" if change else ""
+        table.fail(f"the {name} never changes{by}", 0, "record a motion, from before it begins")
 
 
 def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> list[tuple[int, int]]:

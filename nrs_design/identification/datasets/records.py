@@ -39,6 +39,8 @@ ROLL_PITCH = ("roll", "pitch", *WRENCH)
 # How far from 1 the length of a quaternion may be: it is rounded.
 _ROTATION = 0.01
 RESPONSE = ("frequency", "magnitude", "phase")
+# In dB.
+_LOUDEST = 600.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -343,5 +345,9 @@ def _response(table: MeasurementTable) -> FrequencyResponse:
     bad = np.flatnonzero(frequency <= 0)
     if len(bad):
         table.fail("the frequency is not positive", int(bad[0]), "remove the row")
+    bad = np.flatnonzero(np.abs(magnitude) > _LOUDEST)
+    if len(bad):
+        size = f"the magnitude is {magnitude[bad[0]]:.4g} dB: no motor has such a gain"
+        table.fail(size, int(bad[0]), "correct the value, or remove the row")
     response = 10 ** (magnitude / 20) * np.exp(1j * phase)
     return FrequencyResponse(table.source, 2 * np.pi * frequency, response)

@@ -107,11 +107,22 @@ def fit_delay(
     J = _sensitivities(record, follower, x, rows)
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
     columns = shaped.columns(record, float(x[0]) * record.step)
-    solution = np.linalg.lstsq(columns[rows], record.seen[rows], rcond=None)[0].astype(float)
+    solution = solve(columns[rows], record.seen[rows])
     return DelayFit(
         shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
         columns @ solution, solution,
     )  # fmt: skip
+
+
+def solve(columns: Array, seen: Array) -> Array:
+    """Return the factors of the columns, shape (p,), that fit best, whatever their units."""
+    sizes = _sizes(columns)
+    found = np.linalg.lstsq(columns / sizes, seen, rcond=None)[0]
+    return np.asarray(found / sizes, float)
+
+
+def _sizes(columns: Array) -> Array:
+    return np.asarray(np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
 
 
 def _errors(
@@ -119,7 +130,7 @@ def _errors(
 ) -> Array:
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
     columns = shaped.columns(record, float(x[0]) * record.step)[rows]
-    basis, _ = np.linalg.qr(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
+    basis, _ = np.linalg.qr(columns / _sizes(columns))
     seen = record.seen[rows]
     return np.asarray(seen - basis @ (basis.T @ seen), float)
 

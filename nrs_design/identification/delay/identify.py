@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import SignalRecord
 from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.delay.fit import DelayFit, fit_delay
+from nrs_design.identification.delay.fit import DelayFit, fit_delay, solve
 from nrs_design.identification.delay.models import (
     AbstractFollower,
     Copy,
@@ -248,7 +248,7 @@ def _missed(
     record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
 ) -> float:
     columns = follower.columns(record, delay)[rows]
-    solution = np.linalg.lstsq(columns, record.seen[rows], rcond=None)[0]
+    solution = solve(columns, record.seen[rows])
     return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
 
 

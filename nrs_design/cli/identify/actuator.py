@@ -57,14 +57,17 @@ def actuator(
     """
     from nrs_design.identification.actuator import MotorConstants, identify_actuator
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
-    from nrs_design.identification.write_spec import merge_actuator
+    from nrs_design.identification.write_spec import check_actuator, merge_actuator
 
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
     items = read_all(data, read_actuator, columns or [], quiet=quiet)
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
+    items_of_all = [item for group in series for item in group]
+    if outputs.spec is not None:
+        for item in items_of_all:
+            check_actuator(outputs.spec, item.unit)
     with progress("fitting", quiet=quiet) as step:
-        items_of_all = [item for group in series for item in group]
         found = identify_actuator(items_of_all, motor, covers.value, step)
     outputs.deliver(
         "identify-actuator",

@@ -47,9 +47,11 @@ def tool(
     """
     from nrs_design.identification.datasets import read_poses
     from nrs_design.identification.tool import identify_tool
-    from nrs_design.identification.write_spec import merge_tool
+    from nrs_design.identification.write_spec import check_tool, merge_tool
 
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    if outputs.spec is not None:
+        check_tool(outputs.spec)
     records = read_all(data, read_poses, columns or [], quiet=quiet)
     with progress("fitting", quiet=quiet):
         found = identify_tool(records, gravity)

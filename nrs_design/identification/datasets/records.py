@@ -124,11 +124,14 @@ class FrequencyResponse:
         In rad/s.
     response : ndarray of complex, shape (m,)
         In rad/s for each unit of the command.
+    unit : str
+        Of the command, which no column says: that of the motor of the thesis.
     """
 
     source: Source
     frequency: Array
     response: np.ndarray[tuple[int], np.dtype[np.complex128]]
+    unit: str = "rpm"
 
 
 def read_tissue(

@@ -43,7 +43,9 @@ def test_the_step_of_the_sensor_under_a_ramp(step):
 
 def test_a_step_that_is_rounded_again_by_the_digits_of_a_file():
     count = 0.1 * 2 * np.pi / 4096
-    assert resolution(np.round(count * np.round(SMOOTH / count), 6)) == pytest.approx(count, rel=0.01)
+    assert resolution(np.round(count * np.round(SMOOTH / count), 6)) == pytest.approx(
+        count, rel=0.01
+    )
 
 
 def test_rounding_dominates_a_slow_velocity():

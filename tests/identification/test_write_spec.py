@@ -205,7 +205,9 @@ def test_the_declared_law_is_kept(tmp_path):
         law_to_write(loaded, None, None, None, **options)
     held = "    model: hand\n    damping: 5 N*s/m\n    mass: 0.1 kg\n"
     hand = merged(tmp_path, SOFT_TISSUE.read_text().replace("    model: elastic\n", held))
-    with pytest.raises(SpecError, match="soft is a hand, which no record of a press tells") as caught:
+    with pytest.raises(
+        SpecError, match="soft is a hand, which no record of a press tells"
+    ) as caught:
         law_to_write(hand, None, None, None, **options)
     assert "--model elastic" in caught.value.remedy
 

@@ -116,6 +116,8 @@ def _print(found: ActuatorIdentification) -> None:
         say(f"R = {found.figures.resistance} ohm")
         say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
         say(f"both for a motor with {found.figures.sheet}; options give another data sheet")
+    for remark in found.remarks:
+        say(remark)
     for doubt in found.doubts:
         say(f"doubt: {doubt}")
 
@@ -129,6 +131,7 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
         "sampling_step_s": found.step,
         "chosen": found.chosen.method,
         "reason": found.reason,
+        "remarks": list(found.remarks),
         "doubts": list(found.doubts),
         "fits": [_fit(fit, found) for fit in found.fits],
         "range": {

@@ -109,6 +109,8 @@ def _print(found: DelayIdentification) -> None:
     say(f"delay = {found.delay} s, beside {found.chosen.follower.name}")
     low, high = found.whole_samples
     say(f"whole samples that hold it, and every part of the record: {low} to {high}")
+    for remark in found.remarks:
+        say(remark)
     for doubt in found.doubts:
         say(f"doubt: {doubt}")
 
@@ -137,5 +139,7 @@ def _summary(found: DelayIdentification) -> dict[str, Any]:
             }
             for fit in found.fits
         ],
+        "smooth_between_samples": found.smooth,
+        "remarks": list(found.remarks),
         "doubts": list(found.doubts),
     }

@@ -89,6 +89,11 @@ class ActuatorIdentification:
         return MOTOR_COVERS[self.coverage]
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """How pauses part records, in words."""
+        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
+
+    @property
     def caveats(self) -> tuple[str, ...]:
         """What whoever uses the motor in a proof must know: doubts, and a dead time."""
         late = self.chosen.dead_time
@@ -133,7 +138,7 @@ def identify_actuator(
         range for other records is wanted, and there is one record only.
     """
     if coverage != "confidence":
-        check_spread(coverage, len(data))
+        check_spread(coverage, len({_origin(item) for item in data}))
     responses = [item for item in data if isinstance(item, FrequencyResponse)]
     records = [item for item in data if isinstance(item, ActuatorRecord)]
     if not data or (responses and records) or len(responses) > 1:
@@ -141,7 +146,7 @@ def identify_actuator(
             f"{len(records)} records and {len(responses)} frequency responses",
             remedy="give records of the motor, or one frequency response",
         )
-    if len({(r.source.sha256, r.group) for r in records}) < len(records):
+    if len({(*_origin(r), r.part) for r in records}) < len(records):
         raise DataError(
             "a record is there twice, which would narrow the intervals", remedy="name it once"
         )
@@ -163,19 +168,27 @@ def identify_actuator(
 
 def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Estimate, ...]:
     """Return ranges that hold other records, from a fit to each of these by itself."""
-    fits = [fit_of(record.name, _alone(record)) for record in records]
+    wholes: dict[tuple[str, str], list[ActuatorRecord]] = {}
+    for record in records:
+        wholes.setdefault(_origin(record), []).append(record)
+    fits = [fit_of(parts[0].name, _alone(parts)) for parts in wholes.values()]
     single = [(fit.gain, fit.time_constant) for fit in fits]
     logarithms = np.log([[estimate.value for estimate in row] for row in single])
     return spread_ranges(coverage, logarithms, single)
 
 
-def _alone(record: ActuatorRecord) -> TimeFit:
+def _origin(item: ActuatorRecord | FrequencyResponse) -> tuple[str, str]:
+    """Return what stretches between pauses of one record have in common."""
+    return item.source.sha256, item.group if isinstance(item, ActuatorRecord) else ""
+
+
+def _alone(parts: Sequence[ActuatorRecord]) -> TimeFit:
     try:
-        return _first_order([record])
+        return _first_order(parts)
     except DataError as error:
         raise DataError(
-            f"{record.name} alone does not determine the motor: {error.message}",
-            path=record.source.path,
+            f"{parts[0].name} alone does not determine the motor: {error.message}",
+            path=parts[0].source.path,
             remedy="give records that each do, such as steps or chirps; or leave --covers out",
         ) from None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,8 +45,32 @@ def gaps_in(time: Array) -> NDArray[np.bool_]:
     return np.asarray(steps > GAP * np.median(steps))
 
 
+def stretches_in(time: Array) -> tuple[slice, ...]:
+    """Return the rows between gaps, all of them, in their order; one slice where there is none."""
+    edges = [0, *(np.flatnonzero(gaps_in(time)) + 1).tolist(), len(time)]
+    return tuple(slice(a, b) for a, b in pairwise(edges))
+
+
+def long_stretches(time: Array) -> tuple[slice, ...]:
+    """Return those of them that are long enough to tell anything."""
+    return tuple(rows for rows in stretches_in(time) if rows.stop - rows.start >= FEWEST_ROWS)
+
+
+def pauses_text(time: Array) -> str | None:
+    """Say how a record is parted by pauses; None if it is not."""
+    if (count := len(stretches_in(time)) - 1) == 0:
+        return None
+    kept = long_stretches(time)
+    spans = ", ".join(f"{time[r.start]:.4g} s to {time[r.stop - 1]:.4g} s" for r in kept)
+    left = len(time) - sum(rows.stop - rows.start for rows in kept)
+    short = f"; {left} samples in shorter stretches are left out" if left else ""
+    many = f"{count} pauses part the record" if count > 1 else "a pause parts the record"
+    joined = "its stretches are fitted together" if len(kept) > 1 else "this stretch is fitted"
+    return f"{many}: {joined} ({spans}){short}"
+
+
 def check_time(table: MeasurementTable, time: Array) -> None:
-    """Check that time advances without gaps.
+    """Check that time advances, and that a stretch without gaps is long enough.
 
     Raises
     ------
@@ -59,13 +84,13 @@ def check_time(table: MeasurementTable, time: Array) -> None:
             "record longer",
         )
     check_advance(table, time)
-    gaps = np.flatnonzero(gaps_in(time))
-    if len(gaps):
-        row, steps = int(gaps[0]) + 1, np.diff(time)
+    if not long_stretches(time):
+        row, steps = stretches_in(time)[0].stop, np.diff(time)
         table.fail(
-            f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s",
+            f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s, and no "
+            f"{FEWEST_ROWS} rows without one",
             row,
-            "cut the record there and give its parts as records of their own",
+            "record without interruption",
         )
 
 

@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import SignalRecord
-from nrs_design.identification.delay.models import AbstractFollower
+from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 from nrs_design.identification.steps import limited_step
 
 Array = NDArray[np.float64]
 
+# So far from where columns are most alike, in samples, a whole number of them is sought.
+_AROUND = 8
 _STEPS = 40
 _HALVINGS = 10
 _CONVERGED = 1e-7
@@ -112,6 +114,34 @@ def fit_delay(
         shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
         columns @ solution, solution,
     )  # fmt: skip
+
+
+def fit_held(record: SignalRecord, delay: float, rows: NDArray[np.int64]) -> DelayFit:
+    """Find the whole number of samples by which a copy is late.
+
+    Parameters
+    ----------
+    record, rows
+        As for `fit_delay`.
+    delay : float
+        Where both columns are most alike, in s.
+    """
+    follower, near = HeldCopy(()), round(delay / record.step)
+
+    def columns(late: int) -> Array:
+        return follower.columns(record, late * record.step)
+
+    def missed(late: int) -> float:
+        error = _errors(record, follower, np.array([float(late)]), rows)
+        return float(error @ error)
+
+    best = min(range(near - _AROUND, near + _AROUND + 1), key=lambda k: (missed(k), abs(k - near)))
+    solution = solve(columns(best)[rows], record.seen[rows])
+    fitted = columns(best) @ solution
+    slope = (columns(best + 1) - columns(best - 1))[rows] @ solution / 2
+    error = record.seen[rows] - fitted[rows]
+    known = uncertainty(slope[:, None], error)
+    return DelayFit(follower, best * record.step, known, slope, error, rows, fitted, solution)
 
 
 def solve(columns: Array, seen: Array) -> Array:

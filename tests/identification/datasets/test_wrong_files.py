@@ -107,7 +107,8 @@ WRONG = {
     "a quote that does not end": ("a.csv", text(replace=[(7, '"0.07,0.007,7')]), "has 1 values", 9),
     "time repeats": ("a.csv", text(replace=[(5, BODY[4])]), "time repeats", 7),
     "time goes back": ("a.csv", text(replace=[(5, "0.01,0.005,5")]), "time goes back", 7),
-    "a gap": ("a.csv", text(body=[*BODY[:55], "9.5,0.01,3"]), "a gap of", None),
+    "a gap": ("a.csv", text(body=[*BODY[:45], "9.5,0.01,3", "9.51,0.02,2", "9.52,0.03,1"] + [
+        f"9.{i},0.01,{i % 7}" for i in range(53, 60)]), "a gap of .* and no 50 rows", 47),
     "a huge value": (
         "a.csv",
         text(replace=[(5, "0.05,1e297,5")]),

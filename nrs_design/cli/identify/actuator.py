@@ -76,6 +76,7 @@ def actuator(
         page=lambda: _page(found),
         merge=lambda spec: merge_actuator(spec, found),
         caveats=found.caveats,
+        slips=found.slips,
     )
 
 
@@ -133,6 +134,7 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
         "reason": found.reason,
         "remarks": list(found.remarks),
         "doubts": list(found.doubts),
+        "slips": list(found.slips),
         "fits": [_fit(fit, found) for fit in found.fits],
         "range": {
             f"gain_rad_s_{found.unit}": estimate_numbers(found.ranges[0]),

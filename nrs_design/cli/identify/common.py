@@ -168,6 +168,7 @@ class Destinations:
         page: Callable[[], Report],
         merge: Callable[[LoadedSpec], str] | None = None,
         caveats: Iterable[str] = (),
+        slips: Sequence[str] = (),
     ) -> None:
         """Write a result to where it is wanted, and print it; also what a spec refuses to take.
 
@@ -183,6 +184,9 @@ class Destinations:
             Returns the spec with the result in it.
         caveats : iterable of str
             What is doubtful about values that are merged.
+        slips : sequence of str
+            What of it says that the data are likely read in another unit or sign: the result is
+            then no success, and the exit code says so.
         """
         refused, merged = None, None
         if merge is not None and self.spec is not None:
@@ -210,6 +214,10 @@ class Destinations:
         if refused is not None:
             print_error(refused)
             raise typer.Exit(exit_codes.USAGE)
+        if slips:
+            for slip in slips if merged is None else ():
+                note(f"warning: {slip}")
+            raise typer.Exit(exit_codes.INCONCLUSIVE)
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:

@@ -83,6 +83,7 @@ def delay(
         page=lambda: _page(found),
         merge=lambda spec: merge_delay(spec, found),
         caveats=found.caveats,
+        slips=found.slips,
     )
 
 
@@ -142,4 +143,5 @@ def _summary(found: DelayIdentification) -> dict[str, Any]:
         "smooth_between_samples": found.smooth,
         "remarks": list(found.remarks),
         "doubts": list(found.doubts),
+        "slips": list(found.slips),
     }

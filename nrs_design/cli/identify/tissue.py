@@ -133,6 +133,7 @@ def tissue(
         page=lambda: _page(found, arm, series or []),
         merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
         caveats=found.caveats,
+        slips=found.chosen.slips,
     )
 
 
@@ -251,6 +252,7 @@ def _summary(
         "chosen": law.name,
         "reason": found.reason,
         "caveats": list(found.caveats),
+        "slips": list(found.chosen.slips),
         "ranges": {
             name: estimate_numbers(estimate) | {"unit": unit}
             for name, estimate, unit in zip(

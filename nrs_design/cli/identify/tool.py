@@ -62,6 +62,7 @@ def tool(
         page=lambda: _page(found),
         merge=lambda spec: merge_tool(spec, found),
         caveats=found.doubts,
+        slips=found.slips,
     )
 
 
@@ -101,4 +102,5 @@ def _summary(found: ToolIdentification) -> dict[str, Any]:
         "torque_bias_Nm": along(found.torque_bias),
         "rmse": {"force_N": found.rmse[0], "torque_Nm": found.rmse[1]},
         "doubts": list(found.doubts),
+        "slips": list(found.slips),
     }

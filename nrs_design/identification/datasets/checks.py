@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.table import Array, MeasurementTable
+from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.quantity import SMALLEST
 
 FEWEST_ROWS = 50
@@ -19,14 +20,13 @@ _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
 # Changes of so many units in the last place are none.
 _ROUNDED = 8
-# Between these lie the steps in s of what logs a robot or a test of a material.
-_FASTEST, _SLOWEST = 2e-5, 1.0
 
 
 def doubt_step(step: float) -> Iterator[str]:
     """Doubt a usual step in s that no logger has: seconds were read as milliseconds, or back."""
-    if not _FASTEST <= step < _SLOWEST:
-        yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
+    if asked := doubt_size("recorded_step", step, "s", f"{step:.3g}"):
+        asked = asked.replace("its unit", "their unit")
+        yield f"the steps of time are {step:.3g} s: {asked} (--map names another)"
 
 
 def gaps_in(time: Array) -> NDArray[np.bool_]:

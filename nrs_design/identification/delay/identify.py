@@ -28,6 +28,7 @@ from nrs_design.identification.delay.models import (
     SecondOrder,
     SmoothCopy,
 )
+from nrs_design.spec.plausible import doubt_size
 from nrs_design.identification.statistics import (
     CONFIDENCE,
     WHITE,
@@ -133,6 +134,13 @@ class DelayIdentification:
         return isinstance(self.chosen.follower, SmoothCopy | HeldCopy)
 
     @property
+    def slips(self) -> tuple[str, ...]:
+        """What is asked about the size of the delay, and of the steps of time."""
+        asked = doubt_size("delay", self.delay.value, "s")
+        said = () if asked is None else (f"the delay is {self.delay.value:.4g} s: {asked}",)
+        return (*doubt_step(self.record.step), *said)
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """What the interval rests on, in words."""
         said = pauses_text(self.record.time)
@@ -148,11 +156,16 @@ class DelayIdentification:
     @property
     def caveats(self) -> tuple[str, ...]:
         """What whoever takes it for the age of a sample must know: doubts, and dynamics."""
+        sized = [said for said in self.slips if said not in self.doubts]
         if self._is_copy:
-            return self.doubts
+            return (*self.doubts, *sized)
         sent, seen = self.record.names
         name = self.chosen.follower.name
-        return (*self.doubts, f"{name} fits better between {sent} and {seen} than a mere delay")
+        return (
+            *self.doubts,
+            *sized,
+            f"{name} fits better between {sent} and {seen} than a mere delay",
+        )
 
     def in_periods(self, period: Fraction) -> tuple[int, int]:
         """Return what is held, in whole periods of another length in s, rounded outward."""

@@ -140,7 +140,8 @@ def law_to_write(
         raise SpecError(
             f"the environment {name} is a {law}, which no record of a press tells",
             path=loaded.path,
-            remedy=f"name the law that shall replace it: --model {' or --model '.join(TISSUE_LAWS)}",
+            remedy="name the law that shall replace it: "
+            f"--model {' or --model '.join(TISSUE_LAWS)}",
         )
     if law not in TISSUE_LAWS and not preloaded:
         raise _no_place(law, declared.preload_range)

@@ -61,7 +61,8 @@ def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
     for at, text in doubt_sizes(loaded.spec):
         if text not in (error.remedy or ""):
             place = loaded.place(*at)
-            error.remedy = f"first, line {place.line}: {text} Otherwise, {error.remedy}"
+            rest = f" Otherwise, {error.remedy}" if error.remedy else ""
+            error.remedy = f"first, line {place.line}: {text}{rest}"
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:

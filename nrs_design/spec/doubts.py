@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.load import Spec
 
-# Beyond a force that a motion begins with, in limits of the torque, another unit was probably meant.
+# Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
 _HARDEST = 10
 
 

@@ -74,7 +74,7 @@ def sizes() -> tuple[Size, ...]:
 
 def _sizes() -> Iterator[Size]:
     time, length, angle = ("ms", "s", "min"), ("mm", "cm", "m"), ("deg", "mrad", "rad")
-    turning, torque = ("deg/s", "mrad/s", "rad/s"), ("mN*m", "N*mm", "N*m", "kN*m")
+    turning, torque = ("deg/s", "rad/s"), ("mN*m", "N*mm", "N*m", "kN*m")
     inertia = ("g*m^2", "kg*cm^2", "g*cm^2", "kg*mm^2", "kg*m^2")
 
     def row(unit: str, low: float, high: float, slips: tuple[str, ...], fields: str = "") -> Size:
@@ -178,8 +178,8 @@ _ENDS = frozenset({"nominal", "range", "min", "max"})
 def doubt_sizes(spec: SpecModel) -> Iterator[tuple[tuple[str, ...], str]]:
     """Yield fields of a spec with implausible sizes, as keys that lead there, and a question.
 
-    A field is asked about once, by its first size that is not plausible. Where a part of the spec has
-    `accept_doubt`, and no doubts of an identification that this would be about, nothing is asked.
+    A field is asked about once, by its first size that is not plausible. Where a part of the spec
+    has `accept_doubt`, and no doubts of an identification that this is about, nothing is asked.
     """
     yield from _walk(spec, (), "")
 
@@ -194,10 +194,10 @@ def _walk(value: object, at: tuple[str, ...], field: str) -> Iterator[tuple[tupl
         size = size_of(field, value.dimension)
         asked = size and size.doubt(value.si, value.text.split(" ")[0], value.unit)
         if asked:
-            yield at, f"{' '.join(at[-2:])} is {value.text}: {asked}"
+            yield at, f"{'.'.join(at)} is {value.text}: {asked}"
     elif isinstance(value, SpecModel):
-        accepted = getattr(value, "accept_doubt", None) is not None
-        if not accepted or getattr(value, "doubts", ()):
+        reason, doubts = (getattr(value, key, None) for key in ("accept_doubt", "doubts"))
+        if reason is None or doubts:
             yield from _parts(value, at, field)
     elif isinstance(value, dict):
         for key, item in value.items():

@@ -28,7 +28,6 @@ from nrs_design.identification.delay.models import (
     SecondOrder,
     SmoothCopy,
 )
-from nrs_design.spec.plausible import doubt_size
 from nrs_design.identification.statistics import (
     CONFIDENCE,
     WHITE,
@@ -36,6 +35,7 @@ from nrs_design.identification.statistics import (
     independent,
     student_quantile,
 )
+from nrs_design.spec.plausible import doubt_size
 
 Array = NDArray[np.float64]
 
@@ -97,9 +97,9 @@ class DelayIdentification:
         The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
         together.
     smooth : bool
-        Whether the command is smooth between samples, so that a copy tells parts of them. Otherwise,
-        or beside a lag, nobody knows when within a sample a logged command began: the interval is a
-        sample wide, at least.
+        Whether the command is smooth between samples, so that a copy tells parts of them.
+        Otherwise, or beside a lag, nobody knows when within a sample a logged command began: the
+        interval is a sample wide, at least.
     held : tuple of float
         From and to, in samples: they hold the interval and every part of the record. Where errors
         are not noise, they hold those of a copy, too: then a lag may stand for a part of the delay.

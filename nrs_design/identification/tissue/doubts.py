@@ -53,9 +53,11 @@ def doubts(
     sensitivities : ndarray, shape (n, p + m)
         Derivatives of the force by p parameters and m offsets.
     """
+    read = slips(law, trial, residuals, sensitivities[:, len(law.values) :])
+    left = doubt_residuals(trial, residuals, sensitivities, len(law.values))
     return (
-        *_units(law, trial),
-        *doubt_residuals(trial, residuals, sensitivities, len(law.values)),
+        *read,
+        *(doubt for doubt in left if doubt not in read),
         *_bounds(law, bounds),
         *_errors(law, found),
         *_times(law, trial),
@@ -75,11 +77,23 @@ def slips(
     offsets : ndarray, shape (n, m)
         Derivatives of the force by m offsets.
     """
-    return (*_units(law, trial), *doubt_signs(trial, residuals, offsets))
+    read = (*_units(trial), *doubt_signs(trial, residuals, offsets))
+    # What comes of a record that was read wrongly has no size of its own.
+    return read or tuple(_sizes(law, rotational=trial.record.rotational))
 
 
-def _units(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
-    """Doubt a record, or what comes of it, of a size that no probe of a robot meets."""
+def _sizes(law: AbstractContactLaw, *, rotational: bool) -> Iterator[str]:
+    """Doubt parameters of a size that no tissue has under a robot."""
+    if not isinstance(law, AbstractLinearLaw):
+        return
+    units = law.units(rotational=rotational)
+    for name, key, value, si in zip(law.parameters(), law.keys, law.values, units, strict=True):
+        if asked := doubt_size(key, value, si, f"{value:.3g}"):
+            yield f"{name} is {value:.3g} {si}: {asked}"
+
+
+def _units(trial: Trial) -> Iterator[str]:
+    """Doubt a record of a size that no probe of a robot meets: its units are likely others."""
     rotational = trial.record.rotational
     for values, what, name, unit in (
         (trial.motion.deflection, "deflection", ("deflection", "angle"), ("m", "rad")),
@@ -89,13 +103,6 @@ def _units(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
         field, si = f"recorded_{name[rotational]}", unit[rotational]
         if asked := doubt_size(field, span, si, f"{span:.3g}"):
             yield f"the {what} spans {span:.3g} {si}: {asked} (--map names another)"
-    if isinstance(law, AbstractLinearLaw):
-        units = law.units(rotational=rotational)
-        for name_, key, value, si in zip(
-            law.parameters(), law.keys, law.values, units, strict=True
-        ):
-            if asked := doubt_size(key, value, si, f"{value:.3g}"):
-                yield f"{name_} is {value:.3g} {si}: {asked}"
     yield from doubt_step(float(np.median(trial.motion.steps)))
 
 

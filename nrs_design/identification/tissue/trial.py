@@ -287,7 +287,7 @@ def _assemble(
 
 
 def _pauses(time: Array) -> tuple[NDArray[np.int64], Flags]:
-    """Number the stretches between pauses, and find the samples that are not used for them.
+    """Return numbers of the stretches between pauses, and the samples that are not used for them.
 
     These are the last one before a pause and the first one after it, whose velocity is none, and
     stretches that are too short.

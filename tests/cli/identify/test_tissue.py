@@ -180,7 +180,7 @@ def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
 
 
 def test_a_law_that_is_not_refused_before_the_fit_does_not_lose_it(tmp_path):
-    """Records of a spring do not tell the damper of the spec: the fit is printed, nothing written."""
+    """Records of a spring do not tell the damper of the spec: what was found is printed."""
     spec, text = tmp_path / "copy.nrs.yaml", SOFT_TISSUE.read_text().replace(*VOIGT)
     spec.write_text(text)
     record_, options = damped_csv(tmp_path, b=0.0), ("--contact", "given", "--zero", "0 m")
@@ -231,6 +231,40 @@ def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
             result = run("identify", *arguments, cwd=tmp_path)
             assert result.returncode == 2, (arguments, result.stderr)
             assert message in result.stderr, arguments
+
+
+@pytest.mark.parametrize(
+    ("scales", "said"),
+    [
+        ((1.0, 1e-3), "the force spans 0.00265 N: is that its unit? did you mean 0.00265 kN?"),
+        ((1e3, 1.0), "the deflection spans 6.61 m: is that its unit? did you mean 6.61 mm"),
+        ((1e-3, 1.0), "the deflection spans 6.61e-06 m: is that its unit?"),
+        ((1.0, -1.0), "force and deflection have opposite signs"),
+        ((-1.0, 1.0), "force and deflection have opposite signs"),
+    ],
+)
+def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
+    """kN for N, mm for m, m for mm, and both signs: each has a doubt, the exit code, the gate."""
+    made = record(KelvinVoigt(400.0, 3.0), quick(1), 0.001, 1)
+    rows = zip(made.motion.time, scales[0] * made.motion.deflection, scales[1] * made.force,
+               strict=True)  # fmt: skip
+    path, spec = tmp_path / "press.csv", tmp_path / "copy.nrs.yaml"
+    path.write_text("time_s,deflection_m,force_N\n" + "\n".join(f"{t},{x},{f}" for t, x, f in rows))
+    shutil.copy(SOFT_TISSUE, spec)
+    result = run("identify", "tissue", path, cwd=tmp_path)
+    assert result.returncode == 3
+    assert f"warning: press: {said}" in result.stderr
+    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    assert any(said in slip for slip in document["slips"])
+    options = ("--write", spec, "--model", "elastic", "-q")
+    written = run("identify", "tissue", path, *options, cwd=tmp_path)
+    if "signs" in said:
+        # No spring pushes that way: its range has no end, and nothing is written.
+        assert written.returncode == 2
+        assert spec.read_text() == SOFT_TISSUE.read_text()
+        return
+    assert written.returncode == 3
+    assert any(said in doubt for doubt in read_spec(spec).spec.environments["soft"].doubts)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,20 @@ def placed(loaded: LoadedSpec) -> Iterator[None]:
             place = loaded.place(*error.at)
             error.line, error.column = place.line, place.column
         error.path = error.path or loaded.path
+        if isinstance(error, DesignError):
+            _ask_first(error, loaded)
         raise
+
+
+def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
+    """Put what is asked about sizes before advice on gains, which would follow from a slip."""
+    from nrs_design.spec.plausible import doubt_sizes
+
+    for at, text in doubt_sizes(loaded.spec):
+        if text not in (error.remedy or ""):
+            place = loaded.place(*at)
+            rest = f" Otherwise, {error.remedy}" if error.remedy else ""
+            error.remedy = f"first, line {place.line}: {text}{rest}"
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:

@@ -204,6 +204,7 @@ def command_in(statements: Iterable[str]) -> str:
 
 def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Say what identified ranges hold, and what is doubtful about identified values."""
+    from nrs_design.spec.plausible import unusual
     from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
     if spec.actuator.range_covers is not None:
@@ -221,6 +222,11 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
                 f"{name} is the linearization about {about}: it holds for small motions there."
             )
     for at, item in spec.identified.items():
+        if item.accept_doubt is not None and not item.doubts:
+            sizes = "; ".join(text.partition(":")[0] for text in unusual(item))
+            yield kinds.DOUBT.says(
+                f"Sizes of {at[-1]} are unusual: {sizes}; accepted because: {item.accept_doubt}."
+            )
         if item.doubts:
             why = item.accept_doubt
             end = "nothing says why that is accepted" if why is None else f"accepted because: {why}"

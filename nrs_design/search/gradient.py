@@ -21,7 +21,7 @@ from nrs_design.search.rounding import rate_at
 from nrs_design.work import Allowance, NotAffordableError
 
 # Work per round and per multiplication in it.
-PER_ROUND = 2e-5
+PER_ROUND = 4e-5
 PER_PRODUCT = 1e-8
 # The largest v is told after so many updates each time, then whenever they have grown by a part.
 TOLD_ONE_BY_ONE = 100

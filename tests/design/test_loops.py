@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at, open_loop
 from nrs_design.design.loops import Loops, gain_extremes, multiply
-from nrs_design.design.margins import loop_margins
+from tests.design.classical import loop_margins
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 

@@ -15,7 +15,7 @@ from nrs_design.design.impedance import (
     open_loop,
     stabilizes,
 )
-from nrs_design.design.margins import loop_margins, stiffness_limit
+from tests.design.classical import loop_margins, stiffness_limit
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell

@@ -17,7 +17,7 @@ from nrs_design.controllers.laws import (
 )
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.margins import stiffness_limit
+from tests.design.classical import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinVoigt

@@ -1,10 +1,11 @@
-"""How far the impedance loop is from instability: classical margins and the stiffness limit."""
+"""What the thesis's loop G Ze H Y bears, by python-control and by bisection: an oracle."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -13,13 +14,10 @@ from nrs_design.design.transfer import (
     FloatArray,
     TransferFunction,
     frequency_response,
-    hurwitz,
     positive_roots,
-    product_parts,
     ratio_slope,
     squared_magnitude,
     to_control,
-    trim,
 )
 from nrs_design.errors import DesignError
 from nrs_design.plotting import load_matplotlib
@@ -109,54 +107,22 @@ def loop_margins(loop: ImpedanceLoop, Mt: float, Bt: float) -> LoopMargins:
     )
 
 
-def stiffness_limit(loop: ImpedanceLoop, Mt: float, Bt: float) -> float:
-    """Return the largest stiffness up to which the closed loop is Hurwitz throughout.
+def stiffness_limit(loop, Mt, Bt):
+    """The largest stiffness up to which the closed loop is Hurwitz, by bisection."""
 
-    In elastic and Kelvin-Voigt contact the damping is held. In Maxwell and Kelvin-Boltzmann contact
-    all parameters are scaled alike, so that the relaxation time is held, and the stiffness is that
-    which a sudden motion meets. The characteristic polynomial is then ``A(s) + k B(s)``: a root
-    can reach the right half plane only across the imaginary axis, so the limit is the smallest
-    positive ``k = -A(j omega)/B(j omega)`` that is real. None crosses at s = 0, where a positive k
-    only adds to what is positive.
+    def stable(k):
+        contact = loop.contact.at_stiffness(Fraction(k))
+        return bool(stabilizes(replace(loop, contact=contact), Mt, Bt))
 
-    Parameters
-    ----------
-    loop : ImpedanceLoop
-        Motion loop and law of the environment; its own stiffness is not used.
-    Mt, Bt : float
-        Admittance, kg m^2 and N m s/rad; Mt may be zero.
-
-    Returns
-    -------
-    float
-        Stiffness, N m/rad: infinite if no stiffness destabilizes the loop, 0 if the loop is
-        unstable however soft the environment is.
-
-    Raises
-    ------
-    DesignError
-        If Mt is negative or Bt is not positive.
-    """
-    free, contact = _by_stiffness(loop, Mt, Bt)
-    real, imaginary = product_parts(free.tolist(), contact)
-    x = positive_roots(imaginary)
-    critical = -np.polyval(real, x) / np.polyval(squared_magnitude(contact), x)
-    limit = min((float(k) for k in critical if k > 0), default=math.inf)
-    probe = limit / 2 if math.isfinite(limit) else 1.0
-    return limit if bool(hurwitz(np.polyadd(free, probe * np.asarray(contact)))) else 0.0
-
-
-def _by_stiffness(
-    loop: ImpedanceLoop, Mt: float, Bt: float
-) -> tuple[FloatArray, tuple[float, ...]]:
-    """Write the characteristic polynomial as ``A(s) + k B(s)``; return A and B."""
-    free = np.asarray(open_loop(loop, Mt, Bt).denominator)
-    held, grown = loop.contact.by_stiffness
-    motion = loop.motion.numerator
-    return (
-        np.polyadd(free, np.polymul(motion, trim(held))),
-        tuple(np.polymul(motion, trim(grown)).tolist()),
-    )
+    low, high = 0.0, 1.0
+    while stable(high):
+        low, high = high, 2 * high
+        if high > 1e9:
+            return math.inf
+    for _ in range(100):
+        middle = (low + high) / 2
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return low if low > 1e-9 else 0.0
 
 
 def _sensitivity_peak(tf: TransferFunction) -> tuple[float, float]:

@@ -398,9 +398,7 @@ def achieve_force(
     found = []
     for measure in measures:
         values = {
-            corner.label: _force_value(
-                requirement, corner, measure, loops[corner.label], approach
-            )
+            corner.label: _force_value(requirement, corner, measure, loops[corner.label], approach)
             for corner in requirement.corners
             if corner.home or measure is not FORCE_ERROR
         }

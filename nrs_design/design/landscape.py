@@ -75,9 +75,7 @@ class Alternative:
     sensitivity: float
 
 
-def map_cost(
-    problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float
-) -> CostMap:
+def map_cost(problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float) -> CostMap:
     """Evaluate the cost within the bounds, around them, and around a point.
 
     Parameters
@@ -197,7 +195,11 @@ def delay_borne(
         N m/rad, positive.
     """
     gains = np.full_like(stiffness, Mt), np.full_like(stiffness, Bt)
-    families = {id(f): f for corner in requirement.corners if corner.home
-                for f in (requirement.family(corner),)}
+    families = {
+        id(f): f
+        for corner in requirement.corners
+        if corner.home
+        for f in (requirement.family(corner),)
+    }
     borne = [f.loops(*gains, stiffness).delay_margin() for f in families.values()]
     return np.asarray(np.min(borne, axis=0), dtype=np.float64)

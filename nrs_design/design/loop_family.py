@@ -188,7 +188,9 @@ class LoopFamily:
             for k in (1, 2)
         ]
         exact = {
-            name: np.array([[getattr(loop, name) for loop in three] for three in made], dtype=object)
+            name: np.array(
+                [[getattr(loop, name) for loop in three] for three in made], dtype=object
+            )
             for name in (_OPENED, _FREE, _CLOSED)
         }
         for cut in (_OPENED, _FREE):

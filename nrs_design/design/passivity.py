@@ -93,9 +93,7 @@ def passive_band(
     return PassiveBand(passive, min(broken, default=None))
 
 
-def real_part(
-    axis: ContinuousAxis, law: Admittance, values: Mapping[str, Fraction]
-) -> Polynomial:
+def real_part(axis: ContinuousAxis, law: Admittance, values: Mapping[str, Fraction]) -> Polynomial:
     """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first.
 
     Parameters
@@ -129,9 +127,7 @@ def _bernstein(grid: Mapping[tuple[int, ...], Polynomial]) -> list[Polynomial]:
     for axis in range(len(next(iter(grid)))):
         for at in [at for at in found if at[axis] == 1]:
             ends = (found[(*at[:axis], end, *at[axis + 1 :])] for end in (0, 2))
-            found[at] = [
-                2 * m - (a + b) / 2 for m, a, b in zip(found[at], *ends, strict=True)
-            ]
+            found[at] = [2 * m - (a + b) / 2 for m, a, b in zip(found[at], *ends, strict=True)]
     return [*found.values()]
 
 

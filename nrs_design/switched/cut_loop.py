@@ -270,7 +270,8 @@ class SampledAxis(AbstractAxis):
         k, b = contact.exact[0], (*contact.exact, ZERO)[1]
         frame = self._frame(law, place)
         opened, closed = (
-            characteristic(self._rows(frame, law, place, *touch)) for touch in ((ZERO, ZERO), (k, b))
+            characteristic(self._rows(frame, law, place, *touch))
+            for touch in ((ZERO, ZERO), (k, b))
         )
         while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
             opened, closed = opened[:-1], closed[:-1]

@@ -18,5 +18,7 @@ PLACE = Place(Actuator(Fraction("4.8417e-4"), Fraction("0.0351")))
 
 def axis_with(motion: TransferFunction) -> ContinuousAxis:
     """The axis with this motion loop and nothing else."""
-    loop = MotionLoop(tuple(map(Fraction, motion.numerator)), tuple(map(Fraction, motion.denominator)))
+    loop = MotionLoop(
+        tuple(map(Fraction, motion.numerator)), tuple(map(Fraction, motion.denominator))
+    )
     return ContinuousAxis((PLACE,), realize(loop))

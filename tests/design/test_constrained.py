@@ -15,7 +15,6 @@ from nrs_design.design.impedance_optimum import (
     impedance_cost,
     optimize_impedance,
 )
-from tests.design.classical import loop_margins
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     DISK_MARGIN,
@@ -29,6 +28,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec.interval import Interval
+from tests.design.classical import loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
 
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.

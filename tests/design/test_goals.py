@@ -16,7 +16,6 @@ from nrs_design.design.goals import (
     corners_of,
 )
 from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at
-from tests.design.classical import loop_margins
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     FORCE_ERROR,
@@ -29,7 +28,9 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec.interval import Interval
+from tests.design.classical import loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
+
 
 def interval(nominal, low, high):
     return Interval(*(Fraction(value) for value in (nominal, low, high)))

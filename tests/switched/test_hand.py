@@ -73,7 +73,9 @@ def test_the_stiffness_limit_of_the_design_takes_damping_and_mass_along():
         limit = item.lowest_limit
         Bt = 4.0 if item.name == "lively" else 8.0
         worst = [
-            max(max(implicit(share * limit, b, m, 2, Bt).real) for b in (4, 7, 10) for m in (0, 0.2))
+            max(
+                max(implicit(share * limit, b, m, 2, Bt).real) for b in (4, 7, 10) for m in (0, 0.2)
+            )
             for share in (0.999, 1.001)
         ]
         assert worst[0] < 0 < worst[1]

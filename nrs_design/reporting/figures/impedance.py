@@ -122,7 +122,9 @@ def _frequencies(items: Sequence[ImpedanceAnalysis]) -> FloatArray:
     peaks = [float(_worst_loops(item).peak_frequency()[0]) for item in items]
     highest = 10 * max([bandwidth, *(peak for peak in peaks if math.isfinite(peak))])
     period = _worst_loops(items[0]).period
-    return np.geomspace(bandwidth / 100, min(highest, math.pi / (period or math.pi / highest)), _POINTS)
+    return np.geomspace(
+        bandwidth / 100, min(highest, math.pi / (period or math.pi / highest)), _POINTS
+    )
 
 
 def _finish(axes: Axes, items: Sequence[ImpedanceAnalysis], ylabel: str) -> None:

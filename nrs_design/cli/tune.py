@@ -23,7 +23,6 @@ from nrs_design.cli.tables import print_table
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
-    from nrs_design.spec import InteractionDesignSpec
 
 FORCE_COLUMNS = (
     "controller",
@@ -44,8 +43,8 @@ PARALLEL_COLUMNS = (
 
 _NOMINAL = (
     "Poles, damping and steady error in this table are those of the loop at nominal values in "
-    "continuous time. Goals and warnings are about the loop that certify-switching is about, at the "
-    "worst corner of the ranges."
+    "continuous time. Goals and warnings are about the loop that certify-switching is about, at "
+    "the worst corner of the ranges."
 )
 _NO_OFFSET = (
     "{}: the steady-state error is that of a commanded position where contact begins. A simulated "

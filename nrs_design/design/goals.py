@@ -39,12 +39,11 @@ from nrs_design.design.measures import (
     TRANSPARENCY,
     Measure,
 )
-from nrs_design.design.transfer import ComplexArray, FloatArray, TransferFunction
+from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
 from nrs_design.switched.cut_loop import AbstractAxis, Place
-
 
 # In the place of a corner.
 NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"
@@ -152,18 +151,24 @@ class Requirement:
             and corner.place.motor == first.place.motor
         )
 
+    def stable(self, Mt: FloatArray, Bt: FloatArray) -> BoolArray:
+        """Tell for which admittances nominal contact is stable, at every age of the force sample.
+
+        Parameters
+        ----------
+        Mt, Bt : ndarray, shape (m,)
+            kg m^2 and N m s/rad.
+        """
+        loops = [self.loops(corner, Mt, Bt) for corner in self.nominal]
+        return np.asarray(np.all([each.stable for each in loops], axis=0))
+
     def corner(self, label: str) -> ContactCorner:
         """Return the corner of a label."""
         return next(corner for corner in self.corners if corner.label == label)
 
     def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-        """Return by which part the worst goal is missed; not positive where all are met.
-
-        Infinite where the nominal loop is not stable, whatever the goals are.
-        """
+        """Return by which part the worst goal is missed; not positive where all are met."""
         worst = np.full(len(Mt), -np.inf)
-        for corner in self.nominal if self.axis is not None else ():
-            worst[~self.loops(corner, Mt, Bt).stable] = np.inf
         for measure, goal in self.goals:
             values = self.values(measure, Mt, Bt)[0]
             missed = [measure.violation(float(value), goal) for value in values]
@@ -229,7 +234,8 @@ class Requirement:
         loops = self.loops(corner, *gains)
         above, below = self.family(corner).over_admittance(*gains)
         shown = Loops(multiply(loops.numerator, above), multiply(loops.closed, below), loops.period)
-        return shown.response(omega)[0]
+        (found,) = shown.response(omega)
+        return np.asarray(found)
 
     def stiffness_limits(
         self, Mt: float, Bt: float, *, retuned: bool = True

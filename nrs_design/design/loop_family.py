@@ -24,7 +24,7 @@ from nrs_design.design.transfer import (
     squared_magnitude,
 )
 from nrs_design.models.contact import AbstractLinearLaw
-from nrs_design.switched.cut_loop import AbstractAxis, Place, SampledAxis
+from nrs_design.switched.cut_loop import AbstractAxis, Place, ProcessorAxis
 
 # What the polynomials of a mode are called.
 _OPENED, _CLOSED, _FREE = "opened", "closed", "free"
@@ -115,7 +115,7 @@ class LoopFamily:
             As for `loops`.
         """
         n = len(Mt)
-        if not isinstance(self.axis, SampledAxis):
+        if not isinstance(self.axis, ProcessorAxis):
             low_pass = getattr(self.axis, "low_pass", None)
             lags = (1.0,) if low_pass is None else low_pass.denominator
             spring = [np.full(n, float(self.spring))] if self.spring else []
@@ -160,7 +160,7 @@ class LoopFamily:
 
     def _coordinates(self, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return in what the polynomials are affine: as the processor holds it, if there is one."""
-        if not isinstance(self.axis, SampledAxis):
+        if not isinstance(self.axis, ProcessorAxis):
             return Mt, Bt
         T, method = float(self.axis.period), self.axis.sampling.admittance
         if not Mt.any():

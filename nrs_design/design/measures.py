@@ -21,8 +21,8 @@ MEANING = (
 )
 # What else a table of an impedance design shows.
 LIMIT_MEANING = (
-    "k limit: one constant stiffness of the environment of the design, up to which the same loop is "
-    "stable at every corner of the other ranges."
+    "k limit: one constant stiffness of the environment of the design, up to which the same loop "
+    "is stable at every corner of the other ranges."
 )
 COST_MEANING = (
     "Cost: that of the thesis, of its loop G Ze H Y at nominal values, in continuous time and "

@@ -69,7 +69,7 @@ def passive_band(
     law : Admittance
         With its gains; Bt is positive.
     ranges : mapping of str to Interval
-        Where ``Mt``, ``Bt``, ``Kt`` and ``Km``, ``tau`` of the motor are, as far as they have ranges.
+        Where ``Mt``, ``Bt``, ``Kt``, and ``Km``, ``tau`` of the motor are, if they have ranges.
     """
     if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(Fraction(0), None)

@@ -178,8 +178,8 @@ class Examiner:
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name}{held}, at the worst corner of the other ranges "
-                "(floating point, not a proof)"
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name}{held}, "
+                "at the worst corner of the other ranges (floating point, not a proof)"
             )
             yield self.obligation(
                 STIFFNESS_RANGE,

@@ -35,14 +35,14 @@ from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.coupled import AxesCoupling
 from nrs_design.switched.joint import Joint
-from nrs_design.switched.modes import Cut, position_mode, velocity_mode
+from nrs_design.switched.modes import ForceShare, position_mode, velocity_mode
 from nrs_design.switched.sampled_coupled import slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
 
 Polynomial = tuple[Fraction, ...]
 ZERO, ONE = Fraction(0), Fraction(1)
 # Shares of the force that reach the law and a motor with a load.
-_CLOSED, _OPENED, _FREE = Cut(), Cut(sensed=ZERO), Cut(ZERO, ZERO)
+_CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +179,7 @@ class ContinuousAxis(AbstractAxis):
         )
 
     def rows(
-        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: Cut = _CLOSED
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = _CLOSED
     ) -> list[LinearForm]:
         """Return a mode, of the states of this controller and contact alone.
 
@@ -187,7 +187,7 @@ class ContinuousAxis(AbstractAxis):
         ----------
         law, contact, place
             As in `AbstractAxis.cut`.
-        cut : Cut
+        cut : ForceShare
             How much of the force acts.
         """
         if law.commands == "position":
@@ -212,7 +212,7 @@ class ContinuousAxis(AbstractAxis):
 
 
 @dataclass(frozen=True, slots=True)
-class SampledAxis(AbstractAxis):
+class ProcessorAxis(AbstractAxis):
     """An axis whose law a processor computes.
 
     Parameters
@@ -281,7 +281,7 @@ class SampledAxis(AbstractAxis):
     def _rows(
         self, frame: Frame, law: SampledLaw, place: Place, k: Fraction, b: Fraction
     ) -> Sequence[LinearForm]:
-        E = sum(exponential_between(-frame.period / place.motor.time_constant)) / 2
+        E = sum(exponential_between(-frame.period / place.motor.time_constant), ZERO) / 2
         values = {"Km": place.motor.gain, "E": E, "k": k, "b": b}
         n = len(frame.states)
         rows = [row[:n] for row in frame.rows(law, place.age, values)[:n]]
@@ -341,7 +341,7 @@ def axis_of(
         return None
     if spec.coupling is not None and plant.load_inertia is not None:
         ranges = slowed_motor(ranges, AxesCoupling.of(spec.coupling, plant.load_inertia))
-    return SampledAxis(tuple(_places(ranges, sampling.delay)), motion, sampling, low_pass)
+    return ProcessorAxis(tuple(_places(ranges, sampling.delay)), motion, sampling, low_pass)
 
 
 def _places(ranges: ActuatorRanges, ages: tuple[int, int]) -> Iterator[Place]:
@@ -349,7 +349,10 @@ def _places(ranges: ActuatorRanges, ages: tuple[int, int]) -> Iterator[Place]:
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
     ends = (interval.ends for interval in (ranges.gain, ranges.time_constant))
     for (_, gain), (_, tau) in product(*ends):
-        texts = (f"Km = {float(gain):.6g} rad/s/{ranges.command}", f"tau = {float(tau):.6g} s")
+        texts: tuple[str, ...] = (
+            f"Km = {float(gain):.6g} rad/s/{ranges.command}",
+            f"tau = {float(tau):.6g} s",
+        )
         motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
     for (motor, texts), age in product(motors.items(), range(ages[0], ages[1] + 1)):
         late = () if ages[0] == ages[1] else (f"delay {age}",)

@@ -25,7 +25,7 @@ Rows = list[LinearForm]
 
 
 @dataclass(frozen=True, slots=True)
-class Cut:
+class ForceShare:
     """How much of the force of a contact acts, where the loop is cut to look at what it is made of.
 
     Parameters
@@ -41,7 +41,7 @@ class Cut:
 
 
 # Nothing is cut: the loop of a proof.
-WHOLE = Cut()
+WHOLE = ForceShare()
 
 
 def velocity_mode(
@@ -49,7 +49,7 @@ def velocity_mode(
     law: CompliantLaw,
     contact: AbstractLinearLaw,
     low_pass: LowPass | None = None,
-    cut: Cut = WHOLE,
+    cut: ForceShare = WHOLE,
 ) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
@@ -65,7 +65,7 @@ def velocity_mode(
         Of the environment, at fixed parameters.
     low_pass : LowPass, optional
         Through which the law gets the force; its states stand between those of law and contact.
-    cut : Cut
+    cut : ForceShare
         How much of the force acts; by default all of it.
     """
     own = motion.order + len(law.states)
@@ -77,9 +77,11 @@ def velocity_mode(
         force, reaction = contact.react_accelerated(velocity, acceleration, state[touch:])
     else:
         force, reaction = contact.react(velocity, state[touch:])
-    felt, sensed = combine((cut.sensed, force)), list[LinearForm]()
+    heard = combine((cut.sensed, force))
+    felt: LinearForm = heard
+    sensed: list[LinearForm] = []
     if low_pass is not None:
-        felt, sensed = low_pass.respond(felt, state[own:touch])
+        felt, sensed = low_pass.respond(heard, state[own:touch])
     if law.spring:
         # What the command adds up to moves the robot against the contact: no state of its own.
         felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
@@ -165,7 +167,7 @@ def position_mode(
     contact: AbstractLinearLaw | None = None,
     environment: str = "",
     bleeding: Fraction | None = None,
-    cut: Cut = WHOLE,
+    cut: ForceShare = WHOLE,
 ) -> Rows:
     """Return A where the motion loop follows a position: for force control, thesis 6.46.
 
@@ -185,7 +187,7 @@ def position_mode(
         Its name, for errors.
     bleeding : Fraction, optional
         Rate in 1/s at which the integral of another controller decays; by default there is none.
-    cut : Cut
+    cut : ForceShare
         How much of the force acts; by default all of it.
 
     Raises

@@ -157,9 +157,7 @@ def test_over_ranges_against_the_response(J, filtered, spring):
     omega = np.linspace(1e-3, end, 300)
     nominal = NOMINAL | {"Kt": Fraction(spring)}
     for _ in range(40):
-        values = {
-            n: float(r.low) + draw.random() * float(r.high - r.low) for n, r in ranges.items()
-        }
+        values = {n: draw.uniform(float(r.low), float(r.high)) for n, r in ranges.items()}
         real = response(omega, nominal | values, J, lags).real
         assert real.min() > -1e-9
     if band.broken is not None:

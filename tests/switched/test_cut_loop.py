@@ -12,7 +12,8 @@ from nrs_design.design.loop_family import LoopFamily
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.pipeline import assemble_spec, run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.cut_loop import SampledAxis, axis_of, characteristic
+from nrs_design.switched.cut_loop import ProcessorAxis, axis_of, characteristic
+from tests.support import thinned
 
 # Plants by what they have; every random draw fills in its numbers.
 FEATURES = {
@@ -89,9 +90,7 @@ def z_plane(polynomial, period):
 
 # Sampled, ranges of the motor make a triangle, which has corners that no motor is at.
 @pytest.mark.parametrize("features", [f for f in FEATURES.values() if "sampled motor" not in f])
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(i, marks=pytest.mark.slow) for i in range(1, 6))]
-)
+@pytest.mark.parametrize("seed", thinned(range(6), 1))
 def test_the_closed_loop_is_a_mode_of_the_proof(tmp_path, features, seed):
     """Every corner of the assembled system has the roots of a closed loop that is looked at."""
     loaded, designed, axis = one(tmp_path, features, seed)
@@ -116,9 +115,7 @@ def test_the_closed_loop_is_a_mode_of_the_proof(tmp_path, features, seed):
 
 
 @pytest.mark.parametrize("features", FEATURES.values(), ids=FEATURES)
-@pytest.mark.parametrize(
-    "seed", [7, *(pytest.param(i, marks=pytest.mark.slow) for i in range(8, 13))]
-)
+@pytest.mark.parametrize("seed", thinned(range(7, 13), 1))
 def test_margins_and_limit_against_python_control_and_eigenvalues(tmp_path, features, seed):
     """The open loop is that of python-control, by state space; the limit by the spectrum."""
     _, designed, axis = one(tmp_path, features, seed)
@@ -159,7 +156,7 @@ def test_margins_and_limit_against_python_control_and_eigenvalues(tmp_path, feat
 @pytest.mark.parametrize("late", ["sampled", "sampled damping", "sampled filter"])
 def test_a_force_that_is_older_by_the_delay_margin_is_stable_and_by_more_is_not(tmp_path, late):
     _, designed, axis = one(tmp_path, late, 3)
-    assert isinstance(axis, SampledAxis)
+    assert isinstance(axis, ProcessorAxis)
     (controller,), soft = designed.design.controllers, designed.plant.environment("soft")
     gains = controller.law.gains
     family = LoopFamily(axis, soft.nominal, Fraction(0), axis.places[0])

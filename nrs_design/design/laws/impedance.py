@@ -21,7 +21,6 @@ from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
-    optimize_impedance,
 )
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
@@ -152,10 +151,10 @@ def analyze(
     DesignError
         If the nominal loop is unstable.
     """
-    problem = impedance_problem(task, given)
     shipped = controller.law.gains
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
     requirement = _requirement(task, given)
+    problem = impedance_problem(task, given, requirement)
     with naming(controller.name):
         _check_stable(requirement, Mt, Bt)
     limit, limit_at = min(
@@ -173,7 +172,7 @@ def analyze(
         given=given,
         problem=problem,
         # Gains that the spec gives are their own optimum.
-        optimum=controller.optimum or optimize_impedance(problem),
+        optimum=controller.optimum or _given_optimum(problem, given),
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
@@ -181,12 +180,17 @@ def analyze(
         highest_stiffness=float(_highest_stiffness(task, given)),
         lowest_limit=limit,
         limit_at=limit_at,
-        stiff=tuple(too_stiff(task, given, controller)),
+        stiff=tuple(doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)),
         creep=creep,
         band=_band(task, given, controller),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
     )
+
+
+def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:
+    Mt, Bt = given.Mt.min.si, given.Bt.min.si
+    return ImpedanceOptimum(Mt, Bt, float(impedance_cost(problem, Mt, Bt)), 1)
 
 
 def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:
@@ -280,7 +284,9 @@ def too_stiff(
 DESIGN = LawDesign(choose, analyze, too_stiff)
 
 
-def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedanceProblem:
+def impedance_problem(
+    task: Task, given: ImpedanceControllerSpec, requirement: Requirement
+) -> ImpedanceProblem:
     """State the choice of one controller's virtual mass and damping as an optimization.
 
     Parameters
@@ -289,6 +295,8 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
         With the environment and the limits of torque, velocity and frequency.
     given : ImpedanceControllerSpec
         With bounds and weights.
+    requirement : Requirement
+        Which tells what is stable.
     """
     return ImpedanceProblem(
         loop=ImpedanceLoop(
@@ -303,6 +311,7 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
         damping_bounds=(given.Bt.min.si, given.Bt.max.si),
         weight_displayed=float(given.weights.displayed),
         weight_sensitivity=float(given.weights.sensitivity),
+        stable=None if requirement.axis is None else requirement.stable,
     )
 
 
@@ -359,7 +368,8 @@ def _ends(gain: GainSpec) -> tuple[Fraction, ...]:
 
 def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:
     """Optimize an admittance under its goals, and round it so that they are still met."""
-    problem, requirement = impedance_problem(task, given), _requirement(task, given)
+    requirement = _requirement(task, given)
+    problem = impedance_problem(task, given, requirement)
     optimum = optimize_with_goals(problem, requirement)
     law = Admittance(
         Mt=_shipped(optimum.Mt, given.Mt, task.digits),

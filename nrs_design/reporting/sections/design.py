@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 _NOMINAL = (
     "Design values in floating point, for contact at the nominal stiffness, in continuous time; no "
-    "part of the proof. Design goals below has the worst margins over all corners, of the loop that "
-    "is proved; warnings are about those."
+    "part of the proof. Design goals below has the worst margins over all corners, of the loop "
+    "that is proved; warnings are about those."
 )
 _OFFSET = (
     "Steady error and peak torque with an offset: for an axis that arrives at the largest velocity "

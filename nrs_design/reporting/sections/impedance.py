@@ -35,9 +35,9 @@ CURVES = 6
 
 _PASSIVE = (
     "Passive: the admittance from the torque of a hand to the velocity of the tool, as it is "
-    "assembled: with the load of the motor, the filter and the spring, wherever gains and motor are "
-    "in their ranges, each of them constant. Decided exactly, by Sturm's theorem. At the frequency "
-    "at which it is said not to be passive, it is not at a corner of the ranges."
+    "assembled: with the load of the motor, the filter and the spring, wherever gains and motor "
+    "are in their ranges, each of them constant. Decided exactly, by Sturm's theorem. At the "
+    "frequency at which it is said not to be passive, it is not at a corner of the ranges."
 )
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
@@ -161,18 +161,18 @@ def _figures(drawn: Sequence[ImpedanceAnalysis], rest: str) -> tuple[Illustratio
     displayed = Illustration(
         "displayed-impedance",
         "Displayed and desired impedance",
-        "Magnitude of the impedance that the operator feels in nominal contact, of the loop that is "
-        "proved at its nominal values (solid; a sampled law with a spring has no curve), and the "
-        "desired one (dashed); the dotted line is the bandwidth of the motion. Shaded: what the "
-        f"goal allows up to there, or what is usual.{rest}",
+        "Magnitude of the impedance that the operator feels in nominal contact, of the loop that "
+        "is proved at its nominal values (solid; a sampled law with a spring has no curve), and "
+        "the desired one (dashed); the dotted line is the bandwidth of the motion. Shaded: what "
+        f"the goal allows up to there, or what is usual.{rest}",
         draw_displayed_impedance(drawn),
     )
     sensitivity = Illustration(
         "sensitivity",
         "Sensitivity",
-        "Magnitude of 1/(1 + L) with the open loop L, at the corner of the ranges where its peak is "
-        "largest; the marker is that peak Ms. A value above 1 (gray line) amplifies disturbances of "
-        f"that frequency.{rest}",
+        "Magnitude of 1/(1 + L) with the open loop L, at the corner of the ranges where its peak "
+        "is largest; the marker is that peak Ms. A value above 1 (gray line) amplifies "
+        f"disturbances of that frequency.{rest}",
         draw_sensitivity(drawn),
     )
     return displayed, sensitivity

@@ -21,9 +21,9 @@ _GAINS = ("Mt", "Bt")
 _TEXT = (
     "The cost weighs how far the displayed impedance is from the desired one against the mean "
     "sensitivity, up to the bandwidth. Where gains may be chosen, each row of a table is the best "
-    "for something else: what it gains there, it gives up in the other columns. The cost is that of "
-    "the thesis: its loop G Ze H Y at nominal values, in continuous time and without a load of the "
-    "motor. Floating point, goals left out; no part of the proof."
+    "for something else: what it gains there, it gives up in the other columns. The cost is that "
+    "of the thesis: its loop G Ze H Y at nominal values, in continuous time and without a load "
+    "of the motor. Floating point, goals left out; no part of the proof."
 )
 _MAP = (
     "Lines of equal cost, with the values of some. Shaded: the loop that is proved is unstable at "
@@ -35,9 +35,9 @@ _BOX = (
 )
 _DELAY = (
     "A curve ends at zero where the loop is unstable without any dead time. Below its curve, a "
-    "controller bears that dead time in contact of that stiffness, constant and by itself, at every "
-    "corner of the other ranges of its contact and of the motor; a sampled one bears it beside the "
-    "age of its force sample, in whole samples. Dotted: "
+    "controller bears that dead time in contact of that stiffness, constant and by itself, at "
+    "every corner of the other ranges of its contact and of the motor; a sampled one bears it "
+    "beside the age of its force sample, in whole samples. Dotted: "
     "the stiffest contact that it is designed for."
 )
 

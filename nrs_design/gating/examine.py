@@ -196,9 +196,10 @@ class Examiner:
                 if found.goal is None:
                     continue
                 measure = found.measure
+                reached = f"{measure.text(found.value)} at worst, in {found.where}"
                 message = (
                     f"design goal: {measure.title} of controller {item.name} is "
-                    f"{measure.text(found.value)} at worst, in {found.where}; "
+                    f"{found.where if isnan(found.value) else reached}; "
                     f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
                 )
                 status = Status.MET if found.met else Status.MISSED

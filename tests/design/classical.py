@@ -1,4 +1,4 @@
-"""What the thesis's loop G Ze H Y bears, by python-control: an oracle for margins."""
+"""The thesis's loop G Ze H Y by its formulas, and what it bears by python-control: an oracle."""
 
 import math
 from types import SimpleNamespace
@@ -6,8 +6,12 @@ from types import SimpleNamespace
 import control
 import numpy as np
 
-from nrs_design.design.impedance import open_loop
-from nrs_design.design.transfer import frequency_response, to_control
+from nrs_design.design.impedance import (
+    characteristic_basis,
+    characteristic_polynomials,
+    check_admittance,
+)
+from nrs_design.design.transfer import TransferFunction, frequency_response, to_control, trim
 
 
 def loop_margins(loop, Mt, Bt):
@@ -30,3 +34,40 @@ def loop_margins(loop, Mt, Bt):
         delay_margin=min((phase % (2 * math.pi) / w for phase, w in phases), default=math.inf),
         disk_margin=min(2.0, 1 / np.abs(S - 0.5).max()),
     )
+
+
+def open_loop(loop, Mt, Bt):
+    """``G Ze H Y``."""
+    check_admittance(Mt, Bt)
+    numerator, _ = loop.forward
+    return TransferFunction(tuple(numerator.tolist()), tuple(_free(loop, Mt, Bt).tolist()))
+
+
+def displayed_impedance_at(loop, Mt, Bt, omega):
+    """``Zdisp = G Ze / (1 + G Ze H Y)`` (thesis 6.3)."""
+    forward = np.convolve(loop.forward[0], loop.lags)
+    if not loop.Kt:
+        return _over(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
+    numerator = np.convolve(forward, trim((Mt, Bt, loop.Kt)))
+    return _over(loop, Mt, Bt, numerator, omega) / (1j * np.asarray(omega))
+
+
+def sensitivity(loop, Mt, Bt, omega):
+    """``L = 1 / (1 + G Ze H Y)`` (thesis 6.5)."""
+    return _over(loop, Mt, Bt, _free(loop, Mt, Bt), omega)
+
+
+def closed_loop_polynomial(loop, Mt, Bt):
+    """The characteristic polynomial, highest power first."""
+    check_admittance(Mt, Bt)
+    rows = characteristic_polynomials(characteristic_basis(loop), np.array(Mt), np.array(Bt))
+    return np.asarray(trim(rows.tolist()))
+
+
+def _over(loop, Mt, Bt, numerator, omega):
+    closed = closed_loop_polynomial(loop, Mt, Bt)
+    return frequency_response(TransferFunction(tuple(numerator), tuple(closed)), omega)
+
+
+def _free(loop, Mt, Bt):
+    return np.polyadd(np.convolve(loop.forward[1], trim((Mt, Bt))), loop.drawn)

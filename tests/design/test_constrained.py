@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.goals import Requirement, corners_of
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at, stabilizes
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
@@ -28,7 +28,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec.interval import Interval
-from tests.design.classical import loop_margins
+from tests.design.classical import displayed_impedance_at, loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
 
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.

@@ -15,7 +15,7 @@ from nrs_design.design.goals import (
     achieve_impedance,
     corners_of,
 )
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at
+from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     FORCE_ERROR,
@@ -28,7 +28,7 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec.interval import Interval
-from tests.design.classical import loop_margins
+from tests.design.classical import displayed_impedance_at, loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
 
 

@@ -11,16 +11,12 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
-    closed_loop_polynomial,
-    open_loop,
-    stabilizes,
-)
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
+from tests.design.classical import closed_loop_polynomial, open_loop
 from tests.design.motion_loops import EXACT, PLACE, axis_with
 
 SOFT = ImpedanceLoop(EXACT, Elastic(43.0356))

@@ -78,7 +78,8 @@ def _summary(found: Achieved) -> dict[str, Any]:
     return {
         "goal": measure.goal,
         "wanted": found.goal,
-        # JSON has no infinity: null is a margin that nothing limits, or an error without bound.
+        # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
+        # what is not computed, as `at` then says.
         "worst": found.value if math.isfinite(found.value) else None,
         "unit": {"deg": "rad", "deg/s": "rad/s", "ms": "s"}.get(measure.unit, measure.unit),
         "at": found.where,

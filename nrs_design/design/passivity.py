@@ -23,7 +23,7 @@ from fractions import Fraction
 from itertools import pairwise, product
 from math import gcd, isqrt, lcm
 
-from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.proof.matrix import RationalMatrix
@@ -58,7 +58,7 @@ class PassiveBand:
 
 
 def passive_band(
-    axis: ContinuousAxis, law: Admittance, ranges: Mapping[str, Interval]
+    axis: ContinuousAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
 ) -> PassiveBand:
     """Find the frequency up to which the displayed admittance is passive, and one where it is not.
 
@@ -66,8 +66,8 @@ def passive_band(
     ----------
     axis : ContinuousAxis
         From which the modes follow.
-    law : Admittance
-        With its gains; Bt is positive.
+    law : CompliantLaw
+        An admittance with its gains Mt, Bt and, with a spring, Kt; Bt is positive.
     ranges : mapping of str to Interval
         Where ``Mt``, ``Bt``, ``Kt``, and ``Km``, ``tau`` of the motor are, if they have ranges.
     """
@@ -93,7 +93,9 @@ def passive_band(
     return PassiveBand(passive, min(broken, default=None))
 
 
-def real_part(axis: ContinuousAxis, law: Admittance, values: Mapping[str, Fraction]) -> Polynomial:
+def real_part(
+    axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
+) -> Polynomial:
     """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first.
 
     Parameters
@@ -106,11 +108,11 @@ def real_part(axis: ContinuousAxis, law: Admittance, values: Mapping[str, Fracti
     nominal = axis.places[0].motor
     gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
     place = Place(replace(nominal, gain=gain, time_constant=tau))
-    held = Admittance.of({**law.gains, **values})
+    held = law.of({**law.gains, **values})
     D, damped = (
         axis.cut(held, KelvinVoigt(Fraction(0), Fraction(b)), place).closed for b in (0, 1)
     )
-    factor = tau * (held.Mt or held.Bt)
+    factor = tau * (held.gains["Mt"] or held.gains["Bt"])
     N = [factor * (b - a) for a, b in zip(D, damped, strict=True)]
     mirrored = [factor * c * (-1) ** k for k, c in enumerate(reversed(D))][::-1]
     even = list(reversed(_times(N, mirrored)))[::2]

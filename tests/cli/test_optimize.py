@@ -131,6 +131,7 @@ def test_what_is_not_computed_is_said(tmp_path):
     fast = fast.replace(", load_inertia: 0.3 kg*m^2", "")
     result = run("optimize", write(tmp_path, fast), cwd=tmp_path)
     assert result.returncode == 0, result.stderr
+    assert "warning: a: margins and k limit are not computed" in result.stderr
     assert "not computed" in next(line for line in result.stdout.splitlines() if " a " in line)
     wanted = fast.replace("switching:", "goals: {min_gain_margin: 2}\nswitching:")
     result = run("optimize", write(tmp_path, wanted), cwd=tmp_path)

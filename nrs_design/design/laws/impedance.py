@@ -16,7 +16,7 @@ from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
-from nrs_design.design.goals import Achieved, Requirement, achieve_impedance
+from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement, achieve_impedance
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
@@ -117,6 +117,9 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
         yield from super().doubts()
+        if self.requirement.axis is None:
+            text = f"{self.name}: margins and k limit are {NOT_COMPUTED}"
+            yield Doubt(("controllers", self.name), text)
         yield from self.stiff
         yield from doubt_bounds(self.name, self.given, self.optimum)
 
@@ -225,14 +228,13 @@ def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
 
 def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:
     """Return where the displayed admittance is passive, over the ranges of gains and motor."""
-    law = controller.law
     if not isinstance(task.axis, ContinuousAxis):
         return None
-    assert isinstance(law, Admittance)
     motor = task.plant.actuator_ranges
     ranges = {} if motor is None else {"Km": motor.gain, "tau": motor.time_constant}
     ranges |= _gain_ranges(given, controller)
-    return passive_band(task.axis, law, {n: r for n, r in ranges.items() if r.low != r.high})
+    moving = {name: r for name, r in ranges.items() if r.low != r.high}
+    return passive_band(task.axis, controller.law, moving)
 
 
 def _gain_ranges(given: ImpedanceControllerSpec, controller: Controller) -> dict[str, Interval]:

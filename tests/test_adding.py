@@ -47,8 +47,13 @@ def test_adding_is_cheap():
 @pytest.mark.parametrize(
     ("law", "file", "also"),
     [
-        # The target of impedance control is listed, and doubted, by name.
-        ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
+        # The target of impedance control is listed, and doubted, by name; its gains are searched,
+        # and the loops of all of them follow from a few.
+        (
+            "Admittance",
+            "impedance",
+            {"spec/describe.py", "design/doubts.py", "switched/cut_loop.py"},
+        ),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
         ("IntegralForce", "integral", set()),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -170,15 +171,15 @@ class Examiner:
         """Yield NRS103 for every impedance controller."""
         for item in analysis.impedance:
             highest, limit = item.highest_stiffness, item.lowest_limit
+            if isnan(limit):
+                continue
             held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
-            ranged = any(gain.ranged for gain in item.given.gains().values())
-            where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
             reached = highest < limit
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
-                "(floating point, not a proof)"
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name}{held}, "
+                "at the worst corner of the other ranges (floating point, not a proof)"
             )
             yield self.obligation(
                 STIFFNESS_RANGE,
@@ -195,9 +196,10 @@ class Examiner:
                 if found.goal is None:
                     continue
                 measure = found.measure
+                reached = f"{measure.text(found.value)} at worst, in {found.where}"
                 message = (
                     f"design goal: {measure.title} of controller {item.name} is "
-                    f"{measure.text(found.value)} at worst, in {found.where}; "
+                    f"{found.where if isnan(found.value) else reached}; "
                     f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
                 )
                 status = Status.MET if found.met else Status.MISSED

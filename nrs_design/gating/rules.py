@@ -145,9 +145,10 @@ STIFFNESS_RANGE = Rule(
     "NRS103",
     "The declared stiffness is below the stiffness limit",
     "For every impedance controller, the whole declared stiffness range of the environment that "
-    "it is designed for lies below the stiffness at which its loop first becomes unstable (at "
-    "nominal damping, or in viscoelastic contact with all parameters in proportion; with the "
-    "designed gains and in the corners of their declared ranges). A "
+    "it is designed for lies below the stiffness at which the loop that is proved first becomes "
+    "unstable, that stiffness being constant (damping held, or in viscoelastic contact all "
+    "parameters in proportion), at every corner of the ranges of damping, gains and motor and at "
+    "every age of a force sample. A "
     "design goal, computed in floating point: not a proof. What is proved about the ranges is "
     "NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
@@ -155,8 +156,9 @@ STIFFNESS_RANGE = Rule(
 GOAL = Rule(
     "NRS106",
     "The design meets its goal",
-    "Every goal that the spec sets for a controller is met by the gains that ship: a margin at the "
-    "nominal values and at every corner of the ranges of all contacts and gains; the error of the "
+    "Every goal that the spec sets for a controller is met by the gains that ship: a margin of the "
+    "loop that is proved at the nominal values and at every corner of the ranges of all contacts, "
+    "gains and motor, sampled at every age of the force sample; the error of the "
     "displayed impedance or of the steady force at the nominal values and at every corner of the "
     "ranges of the environment that it is designed for; the creep in free motion at the worst "
     "gains. Values between corners are not looked at. Computed in floating point: not a proof. "

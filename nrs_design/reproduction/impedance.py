@@ -6,7 +6,6 @@ from math import log, pi
 
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import ImpedanceProblem, optimize_impedance
-from nrs_design.design.margins import stiffness_limit
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
@@ -156,7 +155,7 @@ def _limits() -> tuple[ReproducedValue, ...]:
 
 
 def _limit(Bt: float, used: str, section: str, right: str, tolerance: float) -> ReproducedValue:
-    limit = stiffness_limit(ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(used))), 0.01, Bt)
+    limit = thesis.stiffness_limit(0.01, Bt)
     hand = (
         f" A surgeon's hand, {HAND[0]:.1f} to {HAND[1]:.1f} N m/rad by the thesis's own figures, "
         "reaches beyond it."

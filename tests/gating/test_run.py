@@ -215,7 +215,7 @@ class TestStiffnessRange:
             (spec,) = run_gate([path], Files(tmp_path, html=False)).specs
             (goal,) = [item for item in spec.obligations if item.rule.id == "NRS103"]
             assert goal.status is status
-            assert "in the corners of its gain ranges" in goal.message
+            assert "at the worst corner of the other ranges" in goal.message
             assert ("the limit 75.9" in goal.message) is (status is Status.MISSED)
 
 

@@ -168,15 +168,19 @@ class AbstractLinearLaw(AbstractContactLaw):
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``Ze = F/v``: numerator and denominator in s, highest power first, of equal length."""
 
-    @property
-    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Numerator of `impedance` as ``held + stiffness grown``.
+    def at_stiffness(self, value: Fraction) -> Self:
+        """Return the law with another stiffness that a sudden motion meets.
 
-        Which parameters grow with the stiffness that a sudden motion meets is for the law to say;
-        by default all do, in proportion.
+        Which parameters grow with it is for the law to say; by default all do, in proportion. In
+        either way the characteristic polynomial of a loop is affine in the stiffness.
+
+        Parameters
+        ----------
+        value : Fraction
+            In N/m (N m/rad).
         """
-        numerator, _ = self.impedance
-        return (0.0,) * len(numerator), tuple(c / self.stiffness for c in numerator)
+        share = value / Fraction(getattr(self, self.front))
+        return type(self)(*(share * parameter for parameter in self.exact))
 
     @abstractmethod
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:

@@ -324,7 +324,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     DataError
         If the record shows dynamics and no mere delay, or a delay that no spec takes.
     """
-    sampling = check_delay(loaded)
+    sampling = check_delay_place(loaded)
     if found.is_lag:
         sent, seen = found.record.names
         raise DataError(
@@ -347,7 +347,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     return document.text()
 
 
-def check_delay(loaded: LoadedSpec) -> SamplingSpec:
+def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
     """Refuse, before a fit, a spec that no delay can go into.
 
     Raises
@@ -400,7 +400,7 @@ def check_tool(loaded: LoadedSpec) -> InteractionDesignSpec:
     return _interaction(loaded)
 
 
-def changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return what a new text of a spec changes, and what it has no longer, a line each."""
     old, new = (
         {row.name: row.written for row in describe(spec)}

@@ -12,11 +12,11 @@ from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.tissue import identify_tissue
 from nrs_design.identification.write_spec import (
-    changes,
     law_to_write,
     merge_actuator,
     merge_delay,
     merge_tissue,
+    spec_changes,
 )
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
@@ -187,11 +187,11 @@ def test_what_changes_and_what_is_lost(tmp_path, silicone):
     )
     loaded = merged(tmp_path, text)
     new = merge_tissue(loaded, silicone, None, None)
-    changed, lost = changes(loaded, new)
+    changed, lost = spec_changes(loaded, new)
     assert lost == ("environments.soft.damping: 5 N*s/m",)
     assert "environments.soft.model: kelvin-voigt -> elastic" in changed
     assert any(line.startswith("environments.soft.stiffness: 747.1461 N/m -> ") for line in changed)
-    assert changes(loaded, text) == ((), ())
+    assert spec_changes(loaded, text) == ((), ())
 
 
 def test_the_declared_law_is_kept(tmp_path):

@@ -230,10 +230,10 @@ def _write_page(path: Path, report: Report, date: datetime | None) -> None:
 
 
 def _write_spec(spec: LoadedSpec, text: str, *, quiet: bool) -> None:
-    from nrs_design.identification.write_spec import changes
+    from nrs_design.identification.write_spec import spec_changes
     from nrs_design.output import write_output
 
-    changed, lost = changes(spec, text)
+    changed, lost = spec_changes(spec, text)
     write_output(spec.path, text)
     for line in changed:
         note(f"changed: {line}", quiet=quiet)

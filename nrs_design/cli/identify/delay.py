@@ -56,7 +56,7 @@ def delay(
     """
     from nrs_design.identification.datasets import read_signals
     from nrs_design.identification.delay import identify_delay
-    from nrs_design.identification.write_spec import check_delay, merge_delay
+    from nrs_design.identification.write_spec import check_delay_place, merge_delay
 
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
@@ -69,7 +69,7 @@ def delay(
         )
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     if outputs.spec is not None:
-        check_delay(outputs.spec)
+        check_delay_place(outputs.spec)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]

@@ -207,7 +207,9 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     value = chosen.delay / step
     told = _interval(record, chosen)
     half = (told.high - told.low) / 2
-    samples = Estimate(*(max(end, 0.0) for end in (value, told.low, told.high)))
+    # A delay is not negative; what is left of an interval is a sample where one is the least.
+    low = max(told.low, 0.0)
+    samples = Estimate(max(value, 0.0), low, max(told.high, low + _unknown(chosen), 0.0))
     parts = tuple(_parts(record, chosen, value))
     held = [samples, *(part for _, part in parts)]
     one_frequency = _other_than_one_frequency(record) < _OTHER

@@ -215,3 +215,12 @@ def test_coverage(kind):
         hits.append(identify_delay(record).samples.covers(truth))
     # Beside a lag, an interval has a sample more: nobody knows when a logged command began.
     assert 0.92 <= np.mean(hits) <= (0.98 if kind == "copy" else 1.0), np.mean(hits)
+
+
+def test_milliseconds_that_pass_for_seconds_are_no_success():
+    record = signals.held(1, 2.0)
+    found = identify_delay(replace(record, time=1e3 * record.time))
+    step, delay = found.slips
+    assert "the steps of time are 2 s: is that their unit? did you mean 2 ms?" in step
+    assert "the delay is 4 s: is that its unit? did you mean 4 ms?" in delay
+    assert set(found.slips) <= set(found.caveats)

@@ -87,7 +87,8 @@ def certify(
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
     # Lost contact, what the arithmetic rounds and other axes are matters of the whole state.
-    simple = simple and system.contact is None and not (system.roundings or system.couplings)
+    simple = simple and system.contact is None and system.flights is None
+    simple = simple and not (system.roundings or system.couplings)
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)
@@ -266,7 +267,7 @@ def _climb(
         )
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, search in steps(system, method, limits, allowance, lambda: bool(remarks)):
+    for name, search in steps(system, method, limits, allowance, lambda: _known(system, remarks)):
         start = perf_counter()
         if attempts and allowance.left <= 0:
             spent = f"not begun: the budget of {allowance.total:g} s is used up (--budget)"
@@ -277,11 +278,16 @@ def _climb(
         attempts.append(Attempt(name, outcome, perf_counter() - start))
         if evidence is None:
             continue
-        if evidence.shows is Shows.NO_COMMON_QUADRATIC:
+        # Growth that the environment would have to pull for is none that ends the search.
+        if evidence.shown(system) in (Shows.NO_COMMON_QUADRATIC, Shows.INSTABILITY_IN_CONTACT):
             remarks.append(evidence)
             continue
         return _conclude(system, name, (evidence, *remarks), tuple(attempts))
     return _conclude(system, str(method), tuple(remarks), tuple(attempts))
+
+
+def _known(system: SwitchedSystem, remarks: Sequence[AbstractEvidence]) -> frozenset[Shows]:
+    return frozenset(evidence.shown(system) for evidence in remarks)
 
 
 def _take(
@@ -332,7 +338,7 @@ def _conclude(
     attempts: tuple[Attempt, ...],
 ) -> Certification:
     status = common_quadratic_of(system, statements)
-    return Certification(system, verdict_of(statements), status, method, statements, attempts)
+    return Certification(system, verdict_of(system, statements), status, method, statements, attempts)
 
 
 def _spread(

@@ -86,6 +86,11 @@ class Certificate:
         return refuted_in(self.system, self.statements)
 
     @property
+    def granted(self) -> tuple[str, ...]:
+        """What the statements take for granted."""
+        return granted(self.system, self.statements)
+
+    @property
     def common_quadratic(self) -> CommonQuadraticStatus:
         """What the statements say about a common quadratic function."""
         return common_quadratic_of(self.system, self.statements)
@@ -117,11 +122,20 @@ def refuted_in(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -
 
     That is kept contact, where its loss must be covered: the environment would have to pull.
     """
-    statements = tuple(statements)
-    kept = any(item.shown(system) is Shows.INSTABILITY_IN_CONTACT for item in statements)
-    if not kept or deciding(system, statements) is not None:
+    if refutes_in_contact(system, statements) is None:
         return None
     return IN_KEPT_CONTACT if system.flights is None else AT_ANY_DEFLECTION
+
+
+def refutes_in_contact(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> AbstractEvidence | None:
+    """Return the statement that shows growth, where none decides and this one does not, or None."""
+    statements = tuple(statements)
+    if deciding(system, statements) is not None:
+        return None
+    growing = (s for s in statements if s.shown(system) is Shows.INSTABILITY_IN_CONTACT)
+    return next(growing, None)
 
 
 def granted(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from numpy.linalg import LinAlgError
 from nrs_design.certificates.certificate import (
     Verdict,
     common_quadratic_of,
+    refuted_in,
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
@@ -115,8 +116,10 @@ def certify(
     return replace(result, system=system, statements=statements, rate_limit=limit)
 
 
-def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> bool:
-    """Tell whether a mode, or a round of two, grows: of those that floating point suspects.
+def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str | None:
+    """Tell in which contact a mode, or a round of two, grows: of those that are suspected.
+
+    Floating point suspects. Empty for any contact, None if none grows.
 
     Parameters
     ----------
@@ -132,7 +135,8 @@ def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> 
     with floats_in_silence():
         family = Family.of(system, Allowance(limits.budget, limits.memory))
     search = examine_suspicious_modes if system.clock is None else search_rounds
-    return _take(partial(search, family), system)[0] is not None
+    evidence, _ = _take(partial(search, family), system)
+    return None if evidence is None else refuted_in(system, (evidence,)) or ""
 
 
 def _bounds(
@@ -338,7 +342,9 @@ def _conclude(
     attempts: tuple[Attempt, ...],
 ) -> Certification:
     status = common_quadratic_of(system, statements)
-    return Certification(system, verdict_of(system, statements), status, method, statements, attempts)
+    return Certification(
+        system, verdict_of(system, statements), status, method, statements, attempts
+    )
 
 
 def _spread(

@@ -171,9 +171,7 @@ class Rung:
             What has been shown.
         """
         without_quadratic = self.only_quadratic and Shows.NO_COMMON_QUADRATIC in known
-        return without_quadratic or (
-            self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known
-        )
+        return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:
         """Return how many steps are made before the rungs below: of the first degrees, the quick.

@@ -34,9 +34,7 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     flights = system.flights
     if flights is not None:
         flights = flights.among(mode.name for mode in modes)
-    return replace(
-        system, modes=modes, channels=(), outputs=(), saturation=None, flights=flights
-    )
+    return replace(system, modes=modes, channels=(), outputs=(), saturation=None, flights=flights)
 
 
 def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:

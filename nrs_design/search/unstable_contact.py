@@ -204,9 +204,7 @@ class _Loop:
                 continue
             v = vector.real
             if any(self._keeps_signs(sequence, x) for x in (v, -v)):
-                steps = tuple(
-                    (self.names[mode], len([*same])) for mode, same in groupby(sequence)
-                )
+                steps = tuple((self.names[mode], len([*same])) for mode, same in groupby(sequence))
                 factor = _bracket(self.system, steps, float(value.real))
                 if factor is not None:
                     yield Candidate(UnstableContact(steps, factor))

@@ -104,9 +104,7 @@ def close_sampled_loop(
     losable = None
     if free:
         flying = tuple(item.mode for item in free)
-        losable = Contact(
-            flying, pulls, required=spec.contact == "losable", loss=LOST_CONTACT
-        )
+        losable = Contact(flying, pulls, required=spec.contact == "losable", loss=LOST_CONTACT)
     flights = None
     if loss.startswith("anywhere"):
         flights = _flights(frame, plant, design, motions, pulls)

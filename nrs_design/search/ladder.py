@@ -105,7 +105,7 @@ LADDER: tuple[Rung, ...] = (
     ),
     *(
         Rung(
-            "growth with loss of contact",
+            name,
             Method.PERIOD,
             lambda f: f.is_losable,
             _in("unstable_contact", "search_contact"),
@@ -113,7 +113,10 @@ LADDER: tuple[Rung, ...] = (
             clocked=clocked,
             in_kept_contact=False,
         )
-        for clocked in (False, True)
+        for clocked, name in (
+            (False, "growth with loss of contact"),
+            (True, "rounds with loss of contact"),
+        )
     ),
     Rung(
         "lmi",

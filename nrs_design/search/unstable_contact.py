@@ -14,7 +14,7 @@ from itertools import groupby, islice, product
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.enclosure import precision
+from nrs_design.proof.enclosure import characteristic_sign, precision
 from nrs_design.proof.evidence import UnstableContact, UnstableMode
 from nrs_design.proof.evidence.unstable_contact import product as product_of
 from nrs_design.proof.evidence.unstable_mode import free_motions
@@ -105,18 +105,22 @@ class _Loop:
     def of(cls, family: Family) -> _Loop:
         system, contact, flights = family.system, family.system.contact, family.system.flights
         free: Sequence[Mode] = () if contact is None else contact.free
-        groups = [_distinct(system.modes), _distinct(free)] if free else [_distinct(system.modes)]
-        modes = [mode for group in groups for mode in group]
-        names = tuple(mode.name for mode in modes)
         touching = {m.name for m in system.modes} if flights is None else {*flights.touching}
         flying = {m.name for m in free} if flights is None else {*flights.flying}
+        first = frozenset(() if system.clock is None else system.clock.first)
+        kinds: dict[tuple[bool, ...], list[Mode]] = {}
+        for mode in (*system.modes, *free):
+            kind = tuple(mode.name in part for part in (touching, flying, first))
+            kinds.setdefault(kind, []).append(mode)
+        modes = [mode for group in kinds.values() for mode in _distinct(group)]
+        names = tuple(mode.name for mode in modes)
         rows = [] if contact is None else contact.pulls
         rows = rows if flights is None else flights.pulls
         pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
         turns = np.ones((1, len(names)), dtype=bool)
         if system.clock is not None:
-            first = np.array([name in system.clock.first for name in names])
-            turns = np.array([first, *[~first] * (system.clock.length - 1)])
+            begins = np.array([name in first for name in names])
+            turns = np.array([begins, *[~begins] * (system.clock.length - 1)])
         return cls(
             system,
             names,
@@ -152,7 +156,7 @@ class _Loop:
             for place in order:
                 k, motion = np.unravel_index(place, growth.shape)
                 if growth[k, motion] > 0:
-                    yield [int(i) for i in chosen[end - lengths[k] : end, motion]]
+                    yield _once([int(i) for i in chosen[end - lengths[k] : end, motion]])
 
     def _simulated(self) -> tuple[NDArray[np.int64], Array, Array]:
         """Return chosen modes, shape (steps, motions), directions and logarithms of sizes."""
@@ -218,6 +222,16 @@ class _Loop:
         return True
 
 
+def _once(sequence: list[int]) -> list[int]:
+    """Return what a sequence repeats."""
+    count = len(sequence)
+    return next(
+        sequence[:k]
+        for k in range(1, count + 1)
+        if count % k == 0 and sequence[:k] * (count // k) == sequence
+    )
+
+
 def _distinct(modes: Sequence[Mode]) -> list[Mode]:
     """Return modes without those that differ by an enclosed number."""
     named = stand_ins([mode.name for mode in modes], to_floats([mode.A for mode in modes]))
@@ -228,27 +242,16 @@ def _bracket(
     system: SwitchedSystem, steps: Steps, value: float
 ) -> tuple[Fraction, Fraction] | None:
     """Enclose an eigenvalue between two near numbers; None if it is not where it was seen."""
-    from flint import arb, fmpq
-
     limit = Fraction(system.time is Time.DISCRETE)
     low = max(Fraction(value * (1 - AROUND)), limit)
     high = Fraction(value * (1 + AROUND))
     with precision():
-        polynomial = product_of(system, steps).charpoly()
-
-        def at(number: Fraction) -> object:
-            return polynomial(arb(fmpq(number.numerator, number.denominator)))
-
-        below = at(low)
-        if not below * at(high) < 0:  # type: ignore[operator]
+        M = product_of(system, steps)
+        below = characteristic_sign(M, low)
+        if below * characteristic_sign(M, high) >= 0:
             return None
         for _ in range(HALVINGS):
             middle = (low + high) / 2
-            found = at(middle) * below  # type: ignore[operator]
-            if found > 0:
-                low = middle
-            elif found < 0:
-                high = middle
-            else:
-                break
+            sign = characteristic_sign(M, middle)
+            low, high = (middle, high) if sign == below else (low, middle) if sign else (low, high)
     return low, high

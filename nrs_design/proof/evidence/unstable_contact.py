@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.bounds import at_least
 from nrs_design.proof.clock import keeps_turns
 from nrs_design.proof.contact import Flights
-from nrs_design.proof.enclosure import balls, precision
+from nrs_design.proof.enclosure import balls, eigenvector, precision
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.proof.evidence.unstable_mode import UnstableMode
@@ -164,7 +164,7 @@ def grows(
     """
     with precision():
         matrices = _matrices(system, steps)
-        v = _eigenvector(product(system, steps), factor)
+        v = eigenvector(product(system, steps), *factor)
         turned = set() if v is None else {False, True}
         for name, count in steps:
             for _ in range(count if turned else 0):
@@ -191,24 +191,6 @@ def product(system: SwitchedSystem, steps: tuple[tuple[str, int], ...]) -> Any:
 def _matrices(system: SwitchedSystem, steps: tuple[tuple[str, int], ...]) -> dict[str, Any]:
     used = {name for name, _ in steps}
     return {mode.name: balls(mode.A) for mode in all_modes(system) if mode.name in used}
-
-
-def _eigenvector(M: Any, factor: tuple[Fraction, Fraction]) -> Any:
-    """Enclose an eigenvector for a root of the characteristic polynomial between two numbers."""
-    from flint import arb, arb_mat, fmpq
-
-    low, high = (arb(fmpq(end.numerator, end.denominator)) for end in factor)
-    polynomial = M.charpoly()
-    if not polynomial(low) * polynomial(high) < 0:
-        return None
-    z, n = low.union(high), M.nrows()
-    u = arb_mat(n, 1, [1] * n)
-    # Horner's scheme for adj(z I - M) u, with w_(n-1) = u and w_(j-1) = M w_j + c_j u.
-    v = w = u
-    for c in polynomial.coeffs()[n - 1 : 0 : -1]:
-        w = M * w + u * c
-        v = v * z + w
-    return v
 
 
 def _signs(system: SwitchedSystem, mode: str, v: Any) -> set[bool]:

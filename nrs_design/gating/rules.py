@@ -121,8 +121,8 @@ SWITCHING_STABLE = Rule(
     "where switching is constrained, or one that depends on a constant parameter. Refuted by an "
     "unstable mode, by an average of modes that is not stable, or by a periodic switching signal "
     "that makes a motion grow, also at one value of a constant parameter; where contact may be "
-    "lost, by a motion that grows and is in contact and free as it says itself. Whatever it is, it has "
-    "passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
+    "lost, by a motion that grows and is in contact and free as it says itself. Whatever it is, it "
+    "has passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
     "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
     "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
@@ -283,10 +283,10 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "The statement is false, and a witness shows it, checked exactly: a mode that is "
                 "not stable by itself, an average of modes that is not, a periodic switching "
                 "signal along which a motion grows, or a value of a constant parameter with one of "
-                "these. Where `contact: losable` is asked for, it is a sequence of contact and flight that "
-                "a growing motion makes by itself; growth for which the environment would have to "
-                "pull is no such witness. Modes of a sampled loop enclose what the motor does, as closely as the "
-                "assumptions say: a witness there may be of no motor in the range.",
+                "these. Where `contact: losable` is asked for, it is a sequence of contact and "
+                "flight that a growing motion makes by itself; growth for which the environment "
+                "would have to pull is no such witness. Modes of a sampled loop enclose what the "
+                "motor does, as closely as the assumptions say: a witness there may be of no motor in the range.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",

@@ -151,7 +151,7 @@ def all_modes(system: SwitchedSystem) -> tuple[Mode, ...]:
 def grows(
     system: SwitchedSystem, steps: tuple[tuple[str, int], ...], factor: tuple[Fraction, Fraction]
 ) -> bool:
-    """TRUSTED: decide whether an eigenvector with such a factor and the signs of contact is certain.
+    """TRUSTED: decide whether an eigenvector with such a factor and the signs is certain.
 
     Parameters
     ----------

@@ -106,7 +106,7 @@ def characteristic_sign(M: Any, number: Fraction) -> int:
     from flint import arb, fmpq
 
     value = M.charpoly()(arb(fmpq(number.numerator, number.denominator)))
-    return (value > 0) - (value < 0)
+    return 1 if value > 0 else -1 if value < 0 else 0
 
 
 def eigenvector(M: Any, low: Fraction, high: Fraction) -> Any:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from nrs_design.proof.bounds import lower
 from nrs_design.proof.evidence import UnstableContact
 from nrs_design.proof.evidence.unstable_contact import all_modes
@@ -62,7 +64,7 @@ class UnstableContactPage(AbstractKindPage[UnstableContact]):
         run = periodic_run(system, steps, eigenvalue=factor)
         response = run.response
         growth = math.log(factor) * response.time / run.period
-        line = (f"factor {number(factor, 4)} each time", [math.exp(g) for g in growth])
+        line = (f"factor {number(factor, 4)} each time", np.exp(growth))
         rows = tuple((str(k), *map(str, step)) for k, step in enumerate(evidence.steps, 1))
         title = "The sequence" + (f", its first {_LISTED} parts" if len(rows) > _LISTED else "")
         unit = "1/s" if continuous else "each time"

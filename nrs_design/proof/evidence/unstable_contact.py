@@ -85,7 +85,7 @@ class UnstableContact(AbstractEvidence):
             return "the sequence is empty or too long"
         if self.length * system.order**3 > MAX_WORK:
             return "the sequence is too long for so many states"
-        if not self.used <= {mode.name for mode in all_modes(system)}:
+        if not self.used <= {mode.name for mode in in_contact_and_free(system)}:
             return "the sequence uses modes that do not exist"
         if system.time is Time.CONTINUOUS and self.length != 1:
             return "in continuous time the sequence is one mode"
@@ -143,7 +143,7 @@ class UnstableContact(AbstractEvidence):
         return cls(steps, (low, high))
 
 
-def all_modes(system: SwitchedSystem) -> tuple[Mode, ...]:
+def in_contact_and_free(system: SwitchedSystem) -> tuple[Mode, ...]:
     """Return the modes of a system in contact and free."""
     return (*system.modes, *(() if system.contact is None else system.contact.free))
 
@@ -190,7 +190,7 @@ def product(system: SwitchedSystem, steps: tuple[tuple[str, int], ...]) -> Any:
 
 def _matrices(system: SwitchedSystem, steps: tuple[tuple[str, int], ...]) -> dict[str, Any]:
     used = {name for name, _ in steps}
-    return {mode.name: balls(mode.A) for mode in all_modes(system) if mode.name in used}
+    return {mode.name: balls(mode.A) for mode in in_contact_and_free(system) if mode.name in used}
 
 
 def _signs(system: SwitchedSystem, mode: str, v: Any) -> set[bool]:

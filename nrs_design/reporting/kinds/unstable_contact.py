@@ -8,7 +8,7 @@ import numpy as np
 
 from nrs_design.proof.bounds import lower
 from nrs_design.proof.evidence import UnstableContact
-from nrs_design.proof.evidence.unstable_contact import all_modes
+from nrs_design.proof.evidence.unstable_contact import in_contact_and_free
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY
 from nrs_design.reporting.document import Illustration, Section, Table
@@ -54,7 +54,7 @@ class UnstableContactPage(AbstractKindPage[UnstableContact]):
 
     def run(self) -> Section:
         """Repeat the sequence, along the motion that grows."""
-        evidence, modes = self.evidence, all_modes(self.system)
+        evidence, modes = self.evidence, in_contact_and_free(self.system)
         system = self.system.with_modes(modes, self.system.states, ARBITRARY)
         index = {mode.name: k for k, mode in enumerate(modes)}
         low = float(evidence.factor[0])

@@ -35,8 +35,8 @@ from nrs_design.proof.bounds import upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.unstable_mode import (
-    UnstableMode,
     affordable,
+    decides,
     is_stable,
     worst_eigenvalue,
 )
@@ -146,8 +146,7 @@ class Examiner:
             status = Status.REFUTED
             eigenvalue = worst_eigenvalue(mode.A, time)
             message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
-            alone = UnstableMode(mode.name, eigenvalue)
-            if alone.shown(system) is not Shows.INSTABILITY:
+            if not decides(system, mode.name):
                 status = Status.INCONCLUSIVE
                 message += ", which is growth for which the environment would have to pull"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))

@@ -286,7 +286,8 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "these. Where `contact: losable` is asked for, it is a sequence of contact and "
                 "flight that a growing motion makes by itself; growth for which the environment "
                 "would have to pull is no such witness. Modes of a sampled loop enclose what the "
-                "motor does, as closely as the assumptions say: a witness there may be of no motor in the range.",
+                "motor does, as closely as the assumptions say: a witness there may be of no motor "
+                "in the range.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",
@@ -297,8 +298,8 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "stability, nor of instability, even where it is shown that no common quadratic "
                 "function exists. `refuted in kept contact` beside it says that there is growth, "
                 "but only with an environment that pulls as it pushes, which none does: where "
-                "contact may be lost, that decides nothing. Near the rest position under a constant "
-                "force that pushes in, it is how motions grow until contact is lost.",
+                "contact may be lost, that decides nothing. Near the rest position under a "
+                "constant force that pushes in, it is how motions grow until contact is lost.",
                 "Search longer: with a larger --budget, more --memory or a higher --max-degree "
                 "(of certify-switching, report and gate), whichever the message says has ended "
                 "the search. Or ask for less: a longer dwell time, narrower ranges "

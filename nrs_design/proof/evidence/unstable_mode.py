@@ -126,6 +126,19 @@ def free_motions(system: SwitchedSystem) -> tuple[Mode, ...]:
     )
 
 
+def decides(system: SwitchedSystem, mode: str) -> bool:
+    """Tell whether a mode that is not stable refutes the system, and not in kept contact alone.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the mode.
+    mode : str
+        Its name.
+    """
+    return UnstableMode(mode, "").shown(system) is Shows.INSTABILITY
+
+
 def matrix_of(system: SwitchedSystem, name: str) -> RationalMatrix | None:
     """TRUSTED: return the matrix of a mode, of free motion without the deflection; None if unclear.
 

@@ -18,7 +18,7 @@ from nrs_design.certificates.certificate import (
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import Shows, UnstableContact, UnstableMode, UnstablePeriod
 from nrs_design.proof.evidence.unstable_contact import MAX_DENOMINATOR, MAX_STEPS
-from nrs_design.proof.evidence.unstable_mode import free_motions
+from nrs_design.proof.evidence.unstable_mode import decides, free_motions
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from tests.proof.systems import (
@@ -258,3 +258,12 @@ def test_free_motion_that_is_not_stable_refutes():
     assert "is stable" in UnstableMode("free", "1").find_fault(
         replace(bouncing_in_steps(), contact=replace(bouncing_in_steps().contact, required=True))
     )
+
+
+def test_a_mode_decides_where_contact_is_kept_and_in_the_air():
+    for system, mode, expected in (
+        (juggling(), "m0", False),
+        (replace(juggling(), contact=None), "m0", True),
+        (drifting(), "free", True),
+    ):
+        assert decides(system, mode) is expected

@@ -23,6 +23,7 @@ def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
         "spec": result.loaded.spec.name,
         "spec_sha256": result.loaded.sha256,
         "verdict": str(certification.verdict),
+        "refuted_in": certification.refuted_in,
         "common_quadratic": str(certification.common_quadratic),
         "claim": evidence.claim(certification.system) if evidence else None,
         "statements": [
@@ -50,7 +51,7 @@ def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
             }
             for a in certification.attempts
         ],
-        "assumptions": list(certification.system.assumptions),
+        "assumptions": list(certification.granted),
         "certificate": None if path is None else str(path),
         "certificate_id": result.certificate.id if result.certificate else None,
     }

@@ -148,13 +148,14 @@ def _print_json(
         "verify",
         {
             "verdict": checked.verdict if checked else "rejected",
+            "refuted_in": checked.refuted_in if checked else None,
             "fault": outcome.fault,
             "claims": [item.claim(checked.system) for item in checked.statements]
             if checked
             else None,
             "gains": dict(checked.gains) if checked else None,
             "gain_units": gain_units(checked) if checked else None,
-            "assumptions": list(checked.system.assumptions) if checked else None,
+            "assumptions": list(checked.granted) if checked else None,
             "certificate": files["certificate"],
             "certificate_id": checked.id if checked else None,
             "spec": files["spec"],
@@ -232,15 +233,19 @@ def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -
 def _print(certificate: Certificate, spec: Spec | None) -> None:
     from nrs_design.certificates.units import gain_units
 
-    verdict = certificate.verdict
+    verdict, where = certificate.verdict, certificate.refuted_in
+    refuted = "" if where is None else f" (refuted {where})"
     if spec is None:
-        say(f"{verdict.upper()} for the modes in the file, checked exactly.", verdict=verdict)
+        say(
+            f"{verdict.upper()}{refuted} for the modes in the file, checked exactly.",
+            verdict=verdict,
+        )
         say(
             "  not compared with a spec: name it to check that these are its modes, gains and "
             "assumptions"
         )
     else:
-        say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
+        say(f"{verdict.upper()}{refuted}: the certificate holds, checked exactly.", verdict=verdict)
     for statement in certificate.statements:
         say(f"  {statement.claim(certificate.system)}")
     if certificate.coordinates:

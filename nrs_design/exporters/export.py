@@ -136,7 +136,9 @@ def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
     verdict = str(result.certification.verdict)
     assert result.designed is not None, "an interaction design"
     if result.certificate is None or verdict != "proved":
-        reason = f"the design is not proved: {verdict}"
+        where = result.certification.refuted_in
+        aside = "" if where is None else f", and refuted {where}"
+        reason = f"the design is not proved: {verdict}{aside}"
         return Export(verdict, None, result.certificate, reason, result.design)
     return _proved(result.designed, result.certificate)
 
@@ -153,7 +155,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)
     if found.verdict != "proved":
-        return Export("inconclusive", None, found, f"{file} proves nothing", design)
+        aside = "" if found.refuted_in is None else f": it is refuted {found.refuted_in}"
+        return Export("inconclusive", None, found, f"{file} proves nothing{aside}", design)
     fault = find_mismatch(design, found)
     if fault is None and found.coordinates != designed.spec.coordinates:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"

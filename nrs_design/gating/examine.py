@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.certificates.certificate import (
+    Certificate,
+    Verdict,
+    deciding,
+    refuted_in,
+    refutes_in_contact,
+)
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
@@ -31,6 +37,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.unstable_mode import (
     affordable,
+    decides,
     is_stable,
     worst_eigenvalue,
 )
@@ -90,7 +97,7 @@ class Examiner:
         return Obligation(rule, path, subject, status, message, place.line, place.column)
 
     def stability(
-        self, system: SwitchedSystem, evidence: AbstractEvidence | None, searched: str
+        self, system: SwitchedSystem, statements: Sequence[AbstractEvidence], searched: str
     ) -> tuple[Obligation, ...]:
         """Return NRS101 for every mode, and NRS102 for the system.
 
@@ -98,15 +105,16 @@ class Examiner:
         ----------
         system : SwitchedSystem
             Assembled from the spec.
-        evidence : AbstractEvidence or None
-            Checked; None if the verdict is inconclusive.
+        statements : sequence of AbstractEvidence
+            Checked.
         searched : str
             What was tried, for the message of an inconclusive verdict.
         """
+        evidence = deciding(system, statements)
         proved = evidence is not None and evidence.shows is Shows.STABILITY
         lasting = {mode.name for mode in system.lasting_modes()}
         modes = tuple(
-            self._mode(mode, system.time, proved=proved, affordable=fits)
+            self._mode(mode, system, proved=proved, affordable=fits)
             if mode.name in lasting
             else self._left_mode(mode, system.time, affordable=fits)
             for mode, fits in affordable(system.modes)
@@ -114,13 +122,20 @@ class Examiner:
         if evidence is None:
             status = Status.INCONCLUSIVE
             message = f"neither a proof nor a refutation was found ({searched})"
+            if (growing := refutes_in_contact(system, statements)) is not None:
+                where = refuted_in(system, statements)
+                message = f"refuted {where}, which decides nothing where contact may be lost: "
+                message += growing.claim(system)
         else:
             status = Status.PROVED if proved else Status.REFUTED
             message = evidence.claim(system)
         place = self.places.at("switching")
         return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
 
-    def _mode(self, mode: Mode, time: Time, *, proved: bool, affordable: bool) -> Obligation:
+    def _mode(
+        self, mode: Mode, system: SwitchedSystem, *, proved: bool, affordable: bool
+    ) -> Obligation:
+        time = system.time
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
         # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
         if not (proved or affordable):
@@ -132,6 +147,9 @@ class Examiner:
             status = Status.REFUTED
             eigenvalue = worst_eigenvalue(mode.A, time)
             message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
+            if not decides(system, mode.name):
+                status = Status.INCONCLUSIVE
+                message += ", which is growth for which the environment would have to pull"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def _left_mode(self, mode: Mode, time: Time, *, affordable: bool) -> Obligation:

@@ -134,7 +134,7 @@ def _confirmed(
     return SpecOutcome(
         path=examiner.loaded.path,
         obligations=(
-            *examiner.stability(certificate.system, certificate.evidence, ""),
+            *examiner.stability(certificate.system, certificate.statements, "as locked"),
             examiner.certificate(place, None),
             *examiner.certified_goals(certificate),
             *_goals(examiner, entry),
@@ -143,6 +143,7 @@ def _confirmed(
         ),
         sha256=examiner.loaded.sha256,
         verdict=certificate.verdict,
+        refuted_in=certificate.refuted_in,
         common_quadratic=str(certificate.common_quadratic),
         rate=rate,
         rate_name=rate_name,

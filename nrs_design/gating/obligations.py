@@ -112,6 +112,8 @@ class SpecOutcome:
         Hash of the spec, if it could be read.
     verdict, common_quadratic : str or None
         Of the certification; None if there was none.
+    refuted_in : str or None
+        In which contact alone it is refuted, where that leaves its loss open.
     rate : str or None
         Certified rate with six digits, rounded to its safe side.
     rate_name : str or None
@@ -143,6 +145,7 @@ class SpecOutcome:
     sha256: str | None = None
     verdict: str | None = None
     common_quadratic: str | None = None
+    refuted_in: str | None = None
     rate: str | None = None
     rate_name: str | None = None
     modes: int | None = None

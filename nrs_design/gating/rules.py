@@ -129,8 +129,9 @@ SWITCHING_STABLE = Rule(
     "where none exists a polynomial of higher degree, or one quadratic function for each mode "
     "where switching is constrained, or one that depends on a constant parameter. Refuted by an "
     "unstable mode, by an average of modes that is not stable, or by a periodic switching signal "
-    "that makes a motion grow, also at one value of a constant parameter. Whatever it is, it has "
-    "passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
+    "that makes a motion grow, also at one value of a constant parameter; where contact may be "
+    "lost, by a motion that grows and is in contact and free as it says itself. Whatever it is, it "
+    "has passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
     "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
     "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
@@ -316,8 +317,11 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "The statement is false, and a witness shows it, checked exactly: a mode that is "
                 "not stable by itself, an average of modes that is not, a periodic switching "
                 "signal along which a motion grows, or a value of a constant parameter with one of "
-                "these. Modes of a sampled loop enclose what the motor does, as closely as the "
-                "assumptions say: a witness there may be of no motor in the range.",
+                "these. Where `contact: losable` is asked for, it is a sequence of contact and "
+                "flight that a growing motion makes by itself; growth for which the environment "
+                "would have to pull is no such witness. Modes of a sampled loop enclose what the "
+                "motor does, as closely as the assumptions say: a witness there may be of no motor "
+                "in the range.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",
@@ -326,7 +330,10 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "inconclusive",
                 "Neither a proof nor a refutation was found. This is not a statement of "
                 "stability, nor of instability, even where it is shown that no common quadratic "
-                "function exists.",
+                "function exists. `refuted in kept contact` beside it says that there is growth, "
+                "but only with an environment that pulls as it pushes, which none does: where "
+                "contact may be lost, that decides nothing. Near the rest position under a "
+                "constant force that pushes in, it is how motions grow until contact is lost.",
                 "Search longer: with a larger --budget, more --memory or a higher --max-degree "
                 "(of certify-switching, report and gate), whichever the message says has ended "
                 "the search. Or ask for less: a longer dwell time, narrower ranges "

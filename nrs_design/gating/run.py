@@ -184,7 +184,7 @@ def _examine(
     subsets = find_subsets(result, limits, progress)
     tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
     searched = "; ".join((*tried, *(() if subsets is None else subset_lines(subsets))))
-    obligations = examiner.stability(certification.system, certification.evidence, searched)
+    obligations = examiner.stability(certification.system, certification.statements, searched)
     file = None
     if certificate is not None:
         file = files.certificate(loaded.spec.name)
@@ -207,6 +207,7 @@ def _examine(
         ),
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
+        refuted_in=certification.refuted_in,
         common_quadratic=str(certification.common_quadratic),
         rate=rate,
         rate_name=rate_name,

@@ -203,7 +203,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
         limit = rate_limit(kept.system)
     certification = Certification(
         kept.system,
-        verdict_of(kept.statements),
+        verdict_of(kept.system, kept.statements),
         kept.common_quadratic,
         "certificate",
         kept.statements,
@@ -314,9 +314,14 @@ def run_verification(file: Path, result: Result) -> Verification:
 
 
 def find_relief(result: Result) -> tuple[str, ...]:
-    """Return what would hold of a refuted design whose contacts are too stiff for its gains."""
+    """Return what would hold of a refuted design whose contacts are too stiff for its gains.
+
+    It may be refuted in kept contact alone.
+    """
     designed = result.designed
-    if designed is None or result.certification.verdict is not Verdict.REFUTED:
+    certification = result.certification
+    refuted = certification.verdict is Verdict.REFUTED or certification.refuted_in is not None
+    if designed is None or not refuted:
         return ()
     from nrs_design.design.analysis import too_stiff
 

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from dataclasses import field
 
-from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict, deciding
+from nrs_design.certificates.certificate import (
+    CommonQuadraticStatus,
+    Verdict,
+    deciding,
+    granted,
+    refuted_in,
+)
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
@@ -87,4 +93,14 @@ class Certification:
     @property
     def evidence(self) -> AbstractEvidence | None:
         """The statement that decides the verdict, or None."""
-        return deciding(self.statements)
+        return deciding(self.system, self.statements)
+
+    @property
+    def refuted_in(self) -> str | None:
+        """Of what it is refuted, if that leaves the loss of contact open; None elsewhere."""
+        return refuted_in(self.system, self.statements)
+
+    @property
+    def granted(self) -> tuple[str, ...]:
+        """What the statements take for granted."""
+        return granted(self.system, self.statements)

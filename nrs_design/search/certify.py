@@ -12,6 +12,7 @@ from numpy.linalg import LinAlgError
 from nrs_design.certificates.certificate import (
     Verdict,
     common_quadratic_of,
+    refuted_in,
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
@@ -89,7 +90,8 @@ def certify(
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
     # Lost contact, what the arithmetic rounds and other axes are matters of the whole state.
-    simple = simple and system.contact is None and not (system.roundings or system.couplings)
+    simple = simple and system.contact is None and system.flights is None
+    simple = simple and not (system.roundings or system.couplings)
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)
@@ -116,8 +118,10 @@ def certify(
     return replace(result, system=system, statements=statements, rate_limit=limit)
 
 
-def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> bool:
-    """Tell whether a mode, or a round of two, grows: of those that floating point suspects.
+def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str | None:
+    """Tell in which contact a mode, or a round of two, grows: of those that are suspected.
+
+    Floating point suspects. Empty for any contact, None if none grows.
 
     Parameters
     ----------
@@ -138,7 +142,8 @@ def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> 
     with floats_in_silence():
         family = Family.of(system, _allowance(limits))
     search = examine_suspicious_modes if system.clock is None else search_rounds
-    return _take(partial(search, family), system, family.allowance)[0] is not None
+    evidence, _ = _take(partial(search, family), system, family.allowance)
+    return None if evidence is None else refuted_in(system, (evidence,)) or ""
 
 
 def _allowance(limits: Limits) -> Allowance:
@@ -282,7 +287,7 @@ def _climb(
         )
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, search in steps(system, method, limits, allowance, lambda: bool(remarks)):
+    for name, search in steps(system, method, limits, allowance, lambda: _known(system, remarks)):
         if attempts and allowance.left <= 0:
             spent = f"not begun: the budget of {allowance.total:g} is used up (--budget)"
             attempts.append(Attempt(name, spent, 0.0))
@@ -293,11 +298,16 @@ def _climb(
         if not found:
             continue
         (evidence,) = found
-        if evidence.shows is Shows.NO_COMMON_QUADRATIC:
+        # Growth that the environment would have to pull for is none that ends the search.
+        if evidence.shown(system) in (Shows.NO_COMMON_QUADRATIC, Shows.INSTABILITY_IN_CONTACT):
             remarks.append(evidence)
             continue
         return _conclude(system, name, (evidence, *remarks), tuple(attempts))
     return _conclude(system, str(method), tuple(remarks), tuple(attempts))
+
+
+def _known(system: SwitchedSystem, remarks: Sequence[AbstractEvidence]) -> frozenset[Shows]:
+    return frozenset(evidence.shown(system) for evidence in remarks)
 
 
 def _take(
@@ -355,7 +365,9 @@ def _conclude(
     attempts: tuple[Attempt, ...],
 ) -> Certification:
     status = common_quadratic_of(system, statements)
-    return Certification(system, verdict_of(statements), status, method, statements, attempts)
+    return Certification(
+        system, verdict_of(system, statements), status, method, statements, attempts
+    )
 
 
 def _spread(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from math import inf
 
-from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
@@ -70,6 +70,11 @@ class Facts:
     def may_lose_contact(self) -> bool:
         """Whether the system says how contact is lost."""
         return self.system.contact is not None
+
+    @property
+    def is_losable(self) -> bool:
+        """Whether the loss of contact must be covered."""
+        return self.system.is_losable
 
     @property
     def rounds(self) -> bool:
@@ -141,6 +146,8 @@ class Rung:
         are not tried where they do.
     clocked : bool
         It is for modes that take turns, and for no others.
+    in_kept_contact : bool
+        What it finds is refuted by growth in kept contact, or is such growth itself.
     """
 
     name: str
@@ -153,6 +160,18 @@ class Rung:
     first: float = inf
     coupled: bool = False
     clocked: bool = False
+    in_kept_contact: bool = True
+
+    def is_idle(self, known: frozenset[Shows]) -> bool:
+        """Tell whether it can find nothing more.
+
+        Parameters
+        ----------
+        known : frozenset of Shows
+            What has been shown.
+        """
+        without_quadratic = self.only_quadratic and Shows.NO_COMMON_QUADRATIC in known
+        return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:
         """Return how many steps are made before the rungs below: of the first degrees, the quick.

@@ -33,20 +33,28 @@ def examine_suspicious_modes(family: Family) -> Candidates[UnstableMode]:
         for mode, ok in zip(family.system.modes, seems_stable(family), strict=True)
         if not ok and mode.name in lasting
     ]
-    return (yield from _unstable_modes(suspicious, family))
+    return (yield from unstable_modes(suspicious, family))
 
 
 def examine_every_mode(family: Family) -> Candidates[UnstableMode]:
     """Test exactly every mode that need never be left."""
     lasting = family.system.lasting_modes()
-    outcome = yield from _unstable_modes(lasting, family)
+    outcome = yield from unstable_modes(lasting, family)
     if outcome and (left := len(family.system.modes) - len(lasting)):
         outcome += f"; {left} not tested, they must be left and may be unstable"
     return outcome
 
 
-def _unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[UnstableMode]:
-    """Decide exactly, mode by mode; in the end say how many are stable, if all are."""
+def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[UnstableMode]:
+    """Decide exactly, mode by mode; in the end say how many are stable, if all are.
+
+    Parameters
+    ----------
+    modes : iterable of Mode
+        Each may be in force for ever.
+    family : Family
+        With the time and what is left of the budget.
+    """
     time, count, skipped, found = family.system.time, 0, 0, False
     for mode, fits in affordable(modes):
         if not fits:

@@ -44,6 +44,7 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "path": from_here(spec.path),
         "spec_sha256": spec.sha256,
         "verdict": spec.verdict,
+        "refuted_in": spec.refuted_in,
         "common_quadratic": spec.common_quadratic,
         "rate": spec.rate,
         "rate_name": spec.rate_name,

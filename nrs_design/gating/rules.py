@@ -210,6 +210,16 @@ LOCKED = Rule(
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
     "together with its certificates; with --prune for specs that were removed.",
 )
+ROBOT_BOUNDS = Rule(
+    "NRS110",
+    "The bounds of the robot hold",
+    "A spec that names a robot is certified with bounds on its links from a file beside the "
+    "robot, which the certificate takes on trust. The gate computes every one of them again from "
+    "the spec of the robot, by interval arithmetic, in minutes: a file that was edited does not "
+    "pass. With --locked they are not computed again: they end as they are locked, unless a pose "
+    "that is tried exceeds them, and a warning says that they are on trust.",
+    "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it.",
+)
 ROS_PARAMETERS = Rule(
     "NRS201",
     "The parameters of a ROS 2 controller are read as they are meant",
@@ -259,6 +269,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             NOT_DOUBTED,
             CERTIFIED_GOAL,
             SCENARIO_LIMIT,
+            ROBOT_BOUNDS,
             ROS_PARAMETERS,
             ROS_AXIS,
             INTERNAL,

@@ -110,6 +110,7 @@ __all__ = [
     "build_robot",
     "compute_bounds",
     "confirm_bounds",
+    "contradict_bounds",
     "coriolis_matrix",
     "correct_separately",
     "correction_coefficients",

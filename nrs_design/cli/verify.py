@@ -63,7 +63,8 @@ def verify(
 
     With --deployed, the numbers in an exported file are compared with the certificate: the gains of
     a record; coefficients, limits and modes of a header; limits, ranges and code of a monitor; all
-    sources and variables of an FMU. Comments and compiled libraries are not compared.
+    sources and variables of an FMU, and its library with what the compiler here makes of them. The
+    answer says first what was compared and what was not, such as the code beside a header.
 
     Where the spec names a robot, the bounds on its links are taken on trust from the file beside
     it, and the answer says so; a file that a pose contradicts is rejected. --bounds computes them
@@ -223,9 +224,14 @@ def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -
         for line in differences:
             say(f"  {line}")
     elif not quiet:
-        say(f"deployed: {file} holds the numbers of the certificate, bit for bit")
-        if file is not None and file.suffix == ".fmu":
-            say("  not compared: a compiled library inside; only its sources are")
+        from nrs_design.exporters.deployed import scope_of
+
+        assert file is not None, "it was compared"
+        compared, left_out = scope_of(file)
+        say(
+            f"deployed: {compared} of {file}: those of the certificate, bit for bit; not compared: "
+            f"{left_out}"
+        )
 
 
 def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -> None:

@@ -84,9 +84,7 @@ def check_robot_bounds(
     """
     from nrs_design.models.robot import confirm_bounds
 
-    return _checked(
-        path, lambda robot, document: confirm_bounds(robot, document, budget, progress)
-    )
+    return _checked(path, lambda robot, document: confirm_bounds(robot, document, budget, progress))
 
 
 def contradict_robot_bounds(

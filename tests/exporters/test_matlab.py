@@ -18,11 +18,15 @@ def export(request):
     return request.getfixturevalue(request.param)
 
 
+def loaded_mat(content, folder):
+    file = folder / "design.mat"
+    file.write_bytes(content)
+    return scipy.io.loadmat(file, simplify_cells=True)
+
+
 @pytest.fixture
 def read(export, tmp_path):
-    file = tmp_path / "design.mat"
-    file.write_bytes(render(export)[".mat"])
-    return scipy.io.loadmat(file, simplify_cells=True)
+    return loaded_mat(render(export)[".mat"], tmp_path)
 
 
 def test_modes_are_the_doubles_next_to_the_exact_ones(export, read):

@@ -274,9 +274,7 @@ def pose_text(item: Enclosed) -> str:
     return _pose_words(item.quantity, item.found, item.pose)
 
 
-def _pose_words(
-    quantity: AbstractQuantity, found: float, pose: tuple[float, float, float]
-) -> str:
+def _pose_words(quantity: AbstractQuantity, found: float, pose: tuple[float, float, float]) -> str:
     phi, psi, d = pose
     value = f"{found:.6g} {quantity.unit}"
     return (

@@ -1,4 +1,4 @@
-"""Modes, gains, plant, loops and certificate as a MAT-file (level 5), for MATLAB, GNU Octave and SciPy.
+"""Plant, loops, modes and certificate as a MAT-file (level 5), for MATLAB, GNU Octave and SciPy.
 
 Numbers are the doubles next to the exact ones. What decides is the exact certificate, which is in
 the file as text: `nrs-design verify` checks it.

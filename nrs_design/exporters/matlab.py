@@ -8,32 +8,26 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.io
 
 from nrs_design.certificates.certificate import Certificate, dump
-from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
-from nrs_design.exporters.linear_parts import (
-    LinearPart,
-    contact_part,
-    controller_part,
-    filter_part,
-    loop_parts,
-    plant_parts,
-)
 from nrs_design.exporters.record import ExportRecord, Gain
-from nrs_design.models.plant import Plant, build_plant
 from nrs_design.output import MAT
+from nrs_design.pipeline.design import run_linear_parts
 from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.design.linear_parts import LinearPart
 
 # The text at the beginning of a MAT-file; SciPy writes the time and the system into it.
 _TEXT_BYTES = 116
@@ -47,18 +41,15 @@ def render(export: Export) -> dict[str, bytes]:
     """Return the file of an export, by its ending."""
     record, certificate = export.shipped(), export.certificate
     assert certificate is not None, "what is proved has a certificate"
-    assert export.spec is not None
-    assert export.design is not None
-    plant, design = build_plant(export.spec), export.design
-    low_pass, loops = design.sensor.filter, list(loop_parts(plant, design))
+    assert export.designed is not None, "it was designed"
+    parts = run_linear_parts(export.designed)
     variables = {
-        "info": _info(record, certificate)
-        | {"loops_left_out": _cells(_left_out(plant, design, loops))},
-        "plant": _parts(plant_parts(plant, design)),
-        "controllers": _parts(controller_part(item) for item in design.controllers),
-        "force_filter": _parts(() if low_pass is None else (filter_part(low_pass),)),
-        "contacts": _parts(_contacts(plant, design)),
-        "loops": _parts(loops),
+        "info": _info(record, certificate) | {"loops_left_out": _cells(parts.left_out)},
+        "plant": _parts((parts.actuator, parts.motion_loop)),
+        "controllers": _parts(parts.controllers),
+        "force_filter": _parts(() if parts.force_filter is None else (parts.force_filter,)),
+        "contacts": _parts(parts.contacts),
+        "loops": _parts(parts.loops),
         "states": _cells(certificate.system.states),
         "modes": _modes(certificate.system.modes),
         "free_modes": _modes(certificate.system.contact.free if certificate.system.contact else ()),
@@ -93,26 +84,6 @@ def _parts(parts: Iterable[LinearPart]) -> Any:
         for part in parts
     ]
     return _structs(rows, _PART)
-
-
-def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
-    """Yield each environment that is touched, by what the controllers at it command."""
-    for environment in plant.environments:
-        kinds = {c.law.commands: None for c in design.controllers if environment.name in c.contacts}
-        parts = (contact_part(environment.name, environment.nominal, kind) for kind in kinds)
-        yield from (part for part in parts if part is not None)
-
-
-def _left_out(plant: Plant, design: ControllerDesign, loops: Sequence[LinearPart]) -> Iterator[str]:
-    """Yield why a closed loop is not there."""
-    if plant.load_inertia is not None:
-        yield "all: what is touched acts on the motor, which the motion loop here does not know"
-        return
-    there = {loop.name for loop in loops}
-    for controller in design.controllers:
-        for environment in plant.among(controller.contacts):
-            if (name := f"{controller.name}/{environment.name}") not in there:
-                yield f"{name}: its force takes more than the motion that is commanded"
 
 
 def _info(record: ExportRecord, certificate: Certificate) -> dict[str, Any]:

@@ -5,15 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.exporters.linear_parts import LinearPart, controller_part, plant_parts
 from nrs_design.pipeline import Designed
+from nrs_design.pipeline.design import run_linear_parts
 from nrs_design.plotting import load_matplotlib
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.design.linear_parts import LinearPart
 
 Rows = Sequence[Sequence[Fraction]]
 
@@ -40,11 +43,11 @@ class StateSpaces:
 
 def design_state_spaces(designed: Designed) -> StateSpaces:
     """Return the parts of a design; a filter of the force sensor is in none of them."""
-    actuator, motion = plant_parts(designed.plant, designed.design)
+    parts = run_linear_parts(designed)
     return StateSpaces(
-        _of_part(actuator),
-        _of_part(motion),
-        {item.name: _of_part(controller_part(item)) for item in designed.design.controllers},
+        _of_part(parts.actuator),
+        _of_part(parts.motion_loop),
+        {part.name: _of_part(part) for part in parts.controllers},
     )
 
 

@@ -102,7 +102,17 @@ class Robots:
     checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
 
     def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:
-        """Return NRS110: nothing in the tree is evidence of bounds but their own computation."""
+        """Return NRS110: nothing in the tree is evidence of bounds but their own computation.
+
+        Parameters
+        ----------
+        robot : Path
+            Its spec.
+        examiner : Examiner
+            Of the spec that names it.
+        progress : callable
+            Told the name of each step.
+        """
         key = Path(os.path.realpath(robot))
         if key not in self.checked:
             try:

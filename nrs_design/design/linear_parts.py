@@ -50,7 +50,61 @@ class LinearPart:
     outputs: tuple[tuple[str, str], ...]
 
 
-def plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, LinearPart]:
+@dataclass(frozen=True, slots=True)
+class LinearParts:
+    """All of one axis.
+
+    Parameters
+    ----------
+    actuator, motion_loop : LinearPart
+        From the command of the motor to the position, and from commanded to measured motion.
+    controllers : tuple of LinearPart
+        From the force that a law gets to what it adds to the command.
+    force_filter : LinearPart or None
+        Through which the laws get the force.
+    contacts : tuple of LinearPart
+        What is touched, from motion to force.
+    loops : tuple of LinearPart
+        Of each controller at each contact: a torque that acts on the sensor beside that of the
+        contact makes a motion and a torque of the contact. States are those of the motion loop, the
+        contact, the filter and the controller.
+    left_out : tuple of str
+        Which loops are not there, and why.
+    """
+
+    actuator: LinearPart
+    motion_loop: LinearPart
+    controllers: tuple[LinearPart, ...]
+    force_filter: LinearPart | None
+    contacts: tuple[LinearPart, ...]
+    loops: tuple[LinearPart, ...]
+    left_out: tuple[str, ...]
+
+
+def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
+    """Return plant, controllers, contacts and closed loops at nominal values.
+
+    Parameters
+    ----------
+    plant : Plant
+        One whose motor what is touched acts on (`load_inertia`) has no loops made of these parts.
+    design : ControllerDesign
+        The gains that ship.
+    """
+    actuator, motion = _plant_parts(plant, design)
+    low_pass, loops = design.sensor.filter, tuple(_loops(plant, design))
+    return LinearParts(
+        actuator,
+        motion,
+        tuple(_controller_part(item) for item in design.controllers),
+        None if low_pass is None else _filter_part(low_pass),
+        tuple(_contacts(plant, design)),
+        loops,
+        tuple(_left_out(plant, design, {loop.name for loop in loops})),
+    )
+
+
+def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, LinearPart]:
     """Return the actuator, and the closed motion loop from commands to motions.
 
     Parameters
@@ -82,7 +136,7 @@ def plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, Lin
     )
 
 
-def controller_part(controller: Controller) -> LinearPart:
+def _controller_part(controller: Controller) -> LinearPart:
     """Return a law, from the force that it gets to what it adds to the command.
 
     Where it has a spring, the offset q that the spring acts on is a state.
@@ -102,14 +156,14 @@ def controller_part(controller: Controller) -> LinearPart:
     )
 
 
-def filter_part(low_pass: LowPass) -> LinearPart:
+def _filter_part(low_pass: LowPass) -> LinearPart:
     """Return the filter of the force, from the force to what the laws get."""
     forms = coordinates(low_pass.order + 1)
     felt, rates = low_pass.respond(forms[-1], forms[:-1])
     return _of_rows("force_filter", rates, felt, ("force", FORCE), ("filtered_force", FORCE))
 
 
-def contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPart | None:
+def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPart | None:
     """Return what is touched, from motion to force; None if that is not proper.
 
     Parameters
@@ -136,7 +190,7 @@ def contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPa
     return _of_rows(name, [], force, ("position", "rad"), output)
 
 
-def loop_parts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
+def _loops(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
     """Yield the closed loop of each controller at each contact, as far as it is made of the parts.
 
     The input is a torque that acts on the sensor beside that of the contact; outputs are the motion
@@ -152,17 +206,36 @@ def loop_parts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
     """
     if plant.load_inertia is not None:
         return
-    motion, low_pass = plant_parts(plant, design)[1], design.sensor.filter
+    motion, low_pass = _plant_parts(plant, design)[1], design.sensor.filter
     for controller in design.controllers:
-        law = controller_part(controller)
+        law = _controller_part(controller)
         kind = law.outputs[0][0]
         if low_pass is not None:
-            law = _in_series(filter_part(low_pass), law)
+            law = _in_series(_filter_part(low_pass), law)
         for environment in plant.among(controller.contacts):
-            contact = contact_part(environment.name, environment.nominal, kind)
+            contact = _contact_part(environment.name, environment.nominal, kind)
             if contact is not None:
                 name = f"{controller.name}/{environment.name}"
                 yield _closed(name, motion, contact, law, kind)
+
+
+def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
+    """Yield each environment that is touched, by what the controllers at it command."""
+    for environment in plant.environments:
+        kinds = {c.law.commands: None for c in design.controllers if environment.name in c.contacts}
+        parts = (_contact_part(environment.name, environment.nominal, kind) for kind in kinds)
+        yield from (part for part in parts if part is not None)
+
+
+def _left_out(plant: Plant, design: ControllerDesign, there: set[str]) -> Iterator[str]:
+    """Yield why a closed loop is not there."""
+    if plant.load_inertia is not None:
+        yield "all: what is touched acts on the motor, which the motion loop here does not know"
+        return
+    for controller in design.controllers:
+        for environment in plant.among(controller.contacts):
+            if (name := f"{controller.name}/{environment.name}") not in there:
+                yield f"{name}: its force takes more than the motion that is commanded"
 
 
 def _closed(

@@ -36,6 +36,7 @@ DOORS = {
 PRINTED = {
     "nrs_design.design.analysis",
     "nrs_design.design.goals",
+    "nrs_design.design.linear_parts",
     "nrs_design.design.sampled_passivity",
     "nrs_design.search.loop_margin",
     "nrs_design.search.method_run",

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nrs_design.exporters.compiled import compiler
 from nrs_design.exporters.deployed_archive import Archive, Element, elements
 from nrs_design.exporters.deployed_c import code_differences
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.fmu import LIBRARIES, contents
-from nrs_design.exporters.program import program_of
+from nrs_design.exporters.fmu import contents, library_of
+from nrs_design.exporters.program import Program, program_of
 
 
 def model_differences(archive: Archive | None, export: Export) -> Iterator[str]:
-    """Yield in what a model differs; a compiled library and the documentation are not compared.
+    """Yield in what a model differs; its documentation is not compared.
+
+    What a simulator runs is the library, if there is one: it must be, byte for byte, what the
+    compiler of this system makes of the sources.
 
     Parameters
     ----------
@@ -26,10 +30,11 @@ def model_differences(archive: Archive | None, export: Export) -> Iterator[str]:
     if archive is None:
         yield "it is no archive that was exported"
         return
-    entries = archive.entries
-    for name in entries.keys() - wanted.keys():
-        if not name.startswith(f"{LIBRARIES}/"):
-            yield f"{name[:80]} is not in an export"
+    entries, library = archive.entries, library_of(program)
+    for name in entries.keys() - wanted.keys() - {library}:
+        yield f"{name[:80]} is not in an export"
+    if library in entries:
+        yield from _library_differences(program, entries[library])
     for name, exported in wanted.items():
         found = entries.get(name)
         if found is None:
@@ -38,6 +43,17 @@ def model_differences(archive: Archive | None, export: Export) -> Iterator[str]:
             yield from _in(name, code_differences(_text(found), exported.decode()))
         elif name.endswith(".xml"):
             yield from _in(name, _description_differences(archive.documents[name], exported))
+
+
+def _library_differences(program: Program, found: bytes) -> Iterator[str]:
+    compile_with, name = compiler(), library_of(program)
+    if compile_with is None:
+        yield f"{name}: there is no compiler cc for 64-bit Linux on x86 here to compare it with"
+    elif found != contents(program, compile_with)[name]:
+        yield (
+            f"{name} is not what {compile_with} makes of the sources here: it is of another "
+            "compiler, or of other code (export it here, or take the library out)"
+        )
 
 
 def _text(content: bytes) -> str:

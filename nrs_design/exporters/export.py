@@ -37,6 +37,8 @@ class Export:
         The gains of the record.
     spec : InteractionDesignSpec or None
         What the record is of.
+    designed : Designed or None
+        The plant and the gains of a proved design.
     """
 
     verdict: str
@@ -45,6 +47,7 @@ class Export:
     reason: str = ""
     design: ControllerDesign | None = None
     spec: InteractionDesignSpec | None = None
+    designed: Designed | None = None
 
     def shipped(self) -> ExportRecord:
         """Return the record.
@@ -169,7 +172,7 @@ def _proved(designed: Designed, certificate: Certificate) -> Export:
     spec, design = designed.spec, designed.design
     delay = None if spec.sampling is None else spec.sampling.delay
     record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
-    return Export("proved", record, certificate, design=design)
+    return Export("proved", record, certificate, design=design, designed=designed)
 
 
 def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | None) -> Fraction:

@@ -26,6 +26,7 @@ from nrs_design.gating.rules import (
     GOAL,
     MODE_STABLE,
     NOT_DOUBTED,
+    ROBOT_BOUNDS,
     SCENARIO_LIMIT,
     SPEC,
     STIFFNESS_RANGE,
@@ -49,6 +50,7 @@ from nrs_design.spec.document import Position
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.gating.lock import LockedGoal
     from nrs_design.pipeline.scenarios import Simulated
 
 
@@ -257,6 +259,41 @@ class Examiner:
         message = f"simulated: {error.message} (no run, so no limit is met)"
         place = self.places.at("scenarios", name)
         return self.obligation(SCENARIO_LIMIT, name, Status.MISSED, message, place)
+
+    def robot_bounds(self, file: Path, faults: Sequence[str]) -> Obligation:
+        """Return NRS111 from what is wrong with the bounds, all of which were computed again."""
+        status, message = Status.MET, f"{file.as_posix()} holds: every bound was computed again"
+        if faults:
+            status = Status.MISSED
+            message = f"{file.as_posix()} claims what does not hold: {'; '.join(faults)}"
+        return self._of_bounds(status, message)
+
+    def undecided_bounds(self, error: DesignError) -> Obligation:
+        """Return NRS111 for bounds that were neither shown nor refuted."""
+        return self._of_bounds(Status.INCONCLUSIVE, error.message)
+
+    def locked_bounds(self, locked: LockedGoal | None, faults: Sequence[str]) -> Obligation:
+        """Return NRS111 as it is locked, but for poses that exceed a bound."""
+        if faults:
+            return self._of_bounds(Status.MISSED, "; ".join(faults))
+        if locked is None:
+            message = "the lock file does not say that the bounds were computed again"
+            return self._of_bounds(Status.MISSED, f"{message} (run nrs-design gate)")
+        message = f"{locked.message} (as locked; not computed again, on trust)"
+        return self._of_bounds(Status(locked.status), message)
+
+    def bounds_on_trust(self, file: Path) -> Caution:
+        """Return that bounds were not computed again."""
+        place = self.places.at("coupling", "robot")
+        message = (
+            f"taken on trust: the bounds of {file.as_posix()}; --locked does not compute them "
+            "again, nrs-design gate does"
+        )
+        return Caution(self.loaded.path, message, place.line, place.column)
+
+    def _of_bounds(self, status: Status, message: str) -> Obligation:
+        place = self.places.at("coupling", "robot")
+        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, place)
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""

@@ -233,6 +233,16 @@ NOT_WEAKER = Rule(
     "If it is meant, let somebody who may decide that say so where the change is reviewed: there "
     "is no option for it, because the change itself could set it. Otherwise, take it back.",
 )
+ROBOT_BOUNDS = Rule(
+    "NRS111",
+    "The bounds of the robot hold",
+    "A spec that names a robot is certified with bounds on its links from a file beside the "
+    "robot, which the certificate takes on trust. The gate computes every one of them again from "
+    "the spec of the robot, by interval arithmetic, in minutes: a file that was edited does not "
+    "pass. With --locked they are not computed again: they end as they are locked, unless a pose "
+    "that is tried exceeds them, and a warning says that they are on trust.",
+    "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it.",
+)
 ROS_PARAMETERS = Rule(
     "NRS201",
     "The parameters of a ROS 2 controller are read as they are meant",
@@ -293,6 +303,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             CERTIFIED_GOAL,
             SCENARIO_LIMIT,
             NOT_WEAKER,
+            ROBOT_BOUNDS,
             ROS_PARAMETERS,
             ROS_AXIS,
             ROS_OTHERS,

@@ -34,12 +34,17 @@ from nrs_design.pipeline import (
     run_verification,
     search_limits,
 )
+from nrs_design.pipeline.robots import check_robot_bounds
 from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+
+
+# For each of the bounds of a robot, in s.
+BUDGET = 1800.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +88,43 @@ class Files:
             raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
 
 
+@dataclass(frozen=True, slots=True)
+class Robots:
+    """Whose bounds this run has computed again: once for all specs that name a robot.
+
+    Parameters
+    ----------
+    checked : dict
+        The file of the bounds and what is wrong with them, or the error that kept them undecided,
+        by the real path of the robot.
+    """
+
+    checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
+
+    def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:
+        """Return NRS111: nothing in the tree is evidence of bounds but their own computation.
+
+        Parameters
+        ----------
+        robot : Path
+            Its spec.
+        examiner : Examiner
+            Of the spec that names it.
+        progress : callable
+            Told the name of each step.
+        """
+        key = Path(os.path.realpath(robot))
+        if key not in self.checked:
+            try:
+                self.checked[key] = check_robot_bounds(robot, BUDGET, progress)
+            except DesignError as error:
+                self.checked[key] = error
+        found = self.checked[key]
+        if isinstance(found, DesignError):
+            return examiner.undecided_bounds(found)
+        return examiner.robot_bounds(*found)
+
+
 def run_gate(
     specs: Sequence[Path],
     files: Files,
@@ -108,12 +150,13 @@ def run_gate(
         A spec that fails is part of it, and does not keep the others from being examined.
     """
     read = [_read(path) for path in specs]
+    robots = Robots()
     namesakes = _namesakes(item for item in read if isinstance(item, LoadedSpec))
     return GateOutcome(
         tuple(
             item
             if isinstance(item, SpecOutcome)
-            else _examine_safely(item, namesakes.get(item.path), files, progress, overrides)
+            else _examine_safely(item, namesakes.get(item.path), files, progress, overrides, robots)
             for item in read
         )
     )
@@ -144,12 +187,13 @@ def _examine_safely(
     files: Files,
     progress: Progress,
     overrides: Overrides | None,
+    robots: Robots,
 ) -> SpecOutcome:
     try:
         if namesake is not None:
             raise _shared_name(loaded, namesake)
         return _examine(
-            loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides
+            loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides, robots
         )
     except Exception as error:
         # One spec must not keep the others from being examined, whatever goes wrong with it.
@@ -168,7 +212,11 @@ def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
 
 
 def _examine(
-    loaded: LoadedSpec, files: Files, progress: Progress, overrides: Overrides | None
+    loaded: LoadedSpec,
+    files: Files,
+    progress: Progress,
+    overrides: Overrides | None,
+    robots: Robots,
 ) -> SpecOutcome:
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
@@ -192,6 +240,9 @@ def _examine(
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
+    robot = loaded.robot
+    if robot is not None:
+        obligations += (robots.bounds(robot, examiner, progress),)
     recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)

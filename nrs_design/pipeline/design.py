@@ -13,6 +13,7 @@ from nrs_design.spec import LoadedSpec
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.design.linear_parts import LinearParts
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
 
@@ -120,3 +121,10 @@ def run_analysis(designed: Designed) -> DesignAnalysis:
 
     with placed(designed.loaded):
         return analyze_design(designed.spec, designed.plant, designed.design)
+
+
+def run_linear_parts(designed: Designed) -> LinearParts:
+    """Return plant, controllers, contacts and closed loops of a design, at nominal values."""
+    from nrs_design.design.linear_parts import linear_parts
+
+    return linear_parts(designed.plant, designed.design)

@@ -21,11 +21,11 @@ from nrs_design.proof.evidence.unstable_mode import free_motions
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Cost
 from nrs_design.search.balance import scale_states
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.unstable_mode import unstable_modes
+from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 Steps = tuple[tuple[str, int], ...]

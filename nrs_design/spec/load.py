@@ -75,6 +75,13 @@ class LoadedSpec:
         """The text as a tree, in which everything has its line and column."""
         return self.parsed or parse_document(self.text, self.path)
 
+    @property
+    def robot(self) -> Path | None:
+        """The file of the robot whose bounds it names; None if it names none."""
+        coupling = self.spec.coupling if self.spec.kind == "interaction-design" else None
+        named = None if coupling is None else coupling.robot
+        return None if named is None else self.path.parent / named
+
     def place(self, *at: str | int) -> Position:
         """Line and column of a key or an item, or of what holds it if it is not written out."""
         return place_of(self.root, at, at_key=True)

@@ -122,6 +122,19 @@ def test_every_gain_of_a_record_counts(differences, sampled_export):
     assert len(differences(json.dumps(document), "x.json")) == 5
 
 
+def test_what_a_record_says_of_its_proof_counts(differences, sampled_export):
+    document = json.loads(render_json(sampled_export)[".export.json"])
+    rate = document["proof"]["decay_rate"]
+    for proof in ({"claim": "everything"}, {"decay_rate": rate | {"exact": "1/9"}}):
+        said = document | {"proof": document["proof"] | proof}
+        message = "its field 'proof' is not what the certificate says"
+        assert differences(json.dumps(said), "x.json") == [message]
+    said = document | {"outside": []}
+    assert differences(json.dumps(said), "x.json") == [
+        "its field 'outside' is not what the certificate says"
+    ]
+
+
 def test_units_laws_and_contacts_of_a_record_count(differences, sampled_export):
     text = render_json(sampled_export)[".export.json"].decode()
     for old, new, said in (

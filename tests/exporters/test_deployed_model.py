@@ -6,9 +6,10 @@ import zipfile
 
 import pytest
 
+from nrs_design.exporters.compiled import compiler
 from nrs_design.exporters.deployed_archive import Archive, unpack_archive
 from nrs_design.exporters.deployed_model import model_differences
-from nrs_design.exporters.fmu import contents, packed
+from nrs_design.exporters.fmu import contents, library_of, packed
 from nrs_design.exporters.program import program_of
 
 XML = "modelDescription.xml"
@@ -44,12 +45,28 @@ def replaced(old, new):
 
 def test_what_was_exported_has_no_difference(differences, entries):
     assert differences() == []
-    assert differences(**{"binaries/linux64/x.so": b"anything"}) == []
     assert differences("documentation/index.html", lambda text: text + "more") == []
     assert differences(XML, lambda text: re.sub(r'Tool="[^"]*"', 'Tool="another"', text)) == []
     for name in entries:
         if name.endswith((".h", ".c")):
             assert differences(name, replaced("*/", "or so */")) == []
+
+
+def test_a_library_is_what_the_sources_make_here(differences, sampled_export, monkeypatch):
+    """A simulator runs it, and not the sources beside it."""
+    program = program_of(sampled_export)
+    name = library_of(program)
+    compile_with = compiler()
+    assert compile_with is not None
+    own = contents(program, compile_with)[name]
+    assert differences(**{name: own}) == []
+    (found,) = differences(**{name: own[:-1] + bytes([own[-1] ^ 1])})
+    assert found.startswith(f"{name} is not what ")
+    for other in ("binaries/linux64/x.so", "binaries/win64/x.dll", f"{name}.so"):
+        assert differences(**{other: own}) == [f"{other} is not in an export"]
+    monkeypatch.setattr("nrs_design.exporters.deployed_model.compiler", lambda: None)
+    (found,) = differences(**{name: own})
+    assert "no compiler cc" in found
 
 
 def test_one_bit(differences, entries):

@@ -13,6 +13,7 @@ from tests.support import ROOT, run
 PUBLISHED = [
     *(f"NRS00{i}" for i in range(9)),
     *(f"NRS10{i}" for i in range(1, 10)),
+    "NRS110",
     "NRS201",
     "NRS202",
     "NRS203",

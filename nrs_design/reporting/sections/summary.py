@@ -94,7 +94,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
         _rate(system, evidence),
     ]
     if system.couplings and evidence.covers_coupling:
-        parts.insert(1, "for axes that act on each other within the stated bounds")
+        parts.insert(1, "for axes that act on each other within the stated bounds, taken on trust")
     if system.roundings:
         parts.append(
             "with what the processor rounds"

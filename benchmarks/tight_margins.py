@@ -42,7 +42,8 @@ def _compare(name: str, matrices: Matrices, repeats: int, cap: float) -> tuple[C
         f"t* = {solution.t:.3g}; peer: {solution.status} in floating point; "
         f"ours: {found.verdict}, checked exactly"
     )
-    work = f"tight, n = {N}, m = {M}, {name}"
+    m, n = matrices.shape[:2]
+    work = f"tight, n = {n}, m = {m}, {name}"
     return (
         Comparison(work, "cvxpy, all modes", at_once, ours, TARGET, note),
         Comparison(work, "cvxpy, always lazy", lazily, ours, TARGET),

@@ -206,8 +206,8 @@ class _Raw:
         self._left -= length
         if length < 0 or self._left < 0:
             raise ValueError
-        found = bytearray(self._stream.read(length))
-        if len(found) < length:
+        found = bytearray(length)
+        if self._stream.readinto(found) < length:
             raise ValueError
         return found
 

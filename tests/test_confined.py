@@ -81,13 +81,15 @@ def test_a_file_that_does_harm_is_one_message(read, tmp_path, reader, said):
 @LINUX
 def test_time_of_a_processor_and_time_that_passes_are_limited(read, monkeypatch):
     monkeypatch.setattr(confined, "SECONDS", 1)
+    # On a machine that does other work, too.
+    monkeypatch.setattr(confined, "PATIENCE", 60)
     start = time.monotonic()
     with pytest.raises(DataError, match="more than 1 s of a processor"):
         read("processor")
     monkeypatch.setattr(confined, "PATIENCE", 2)
     with pytest.raises(DataError, match="more than 2 s"):
         read("sleep")
-    assert time.monotonic() - start < 30
+    assert time.monotonic() - start < 60
 
 
 def test_an_answer_has_a_limit(read, monkeypatch):

@@ -110,7 +110,7 @@ def compare_with_base(
 
 def find_specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
     """List the specs of files and folders; a folder may have none."""
-    found = []
+    found: list[Path] = []
     for path in paths:
         try:
             found += find_specs([path])

@@ -70,6 +70,8 @@ def _read(stream: BinaryIO, path: Path, head: Mapping[str, Any]) -> list[Outcome
         message = "is cut off within its first line, so it keeps no runs"
         raise DataError(message, path=path, remedy="delete it, or name another file")
     first = json.loads(line)
+    if not isinstance(first, dict) or not _header(head).keys() <= first.keys():
+        raise ValueError("its first line does not say of what they are")
     for key, value in _header(head).items():
         if first.get(key) != value:
             message = f"was begun with {_difference(key, first.get(key), value)}"

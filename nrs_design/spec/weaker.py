@@ -130,7 +130,9 @@ def _of_lists(
 
 def _named(items: tuple[Data, ...]) -> dict[str, Data]:
     """Return items by their names; nothing if one has none."""
-    found = {str(item["name"]): item for item in items if isinstance(item, dict) and "name" in item}
+    found: dict[str, Data] = {
+        str(item["name"]): item for item in items if isinstance(item, dict) and "name" in item
+    }
     return found if len(found) == len(items) else {}
 
 

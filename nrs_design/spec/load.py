@@ -7,7 +7,7 @@ from dataclasses import field
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.robot import RobotSpec
     from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-    Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
+    Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
 SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 

@@ -112,7 +112,7 @@ PRELOAD = AssumptionKind(
     "the deflection stays within its preload",
     "the preload of the environment",
     "Beyond the preload the force is not that of the ranges; nothing is said.",
-    "log the deflection: nrs-design audit LOG SPEC",
+    "log the deflection, counted from the surface: its least and its largest value",
 )
 LINEARIZED = AssumptionKind(
     "motions about a linearization are small",

@@ -98,7 +98,7 @@ def estimate_contact(
 
 def _rests_at_zero(force: Array) -> NDArray[np.bool_]:
     """Tell in which rows a sensor reads exactly zero: free motion, and no stiffness of zero."""
-    zero = force == 0.0
+    zero: NDArray[np.bool_] = np.asarray(force == 0.0)
     edges = np.flatnonzero(np.diff(zero, prepend=False, append=False))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         zero[first:last] = last - first >= _ZEROS

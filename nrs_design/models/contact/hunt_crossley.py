@@ -90,7 +90,15 @@ class HuntCrossley(AbstractNonlinearLaw):
 
     @classmethod
     def preload_text(cls, environment: str, low: str, high: str) -> str:
-        """Say that chords from any rest stay in the box of `nrs_design.spec.preload`."""
+        """Say that chords from any rest stay in the box of `nrs_design.spec.preload`.
+
+        Parameters
+        ----------
+        environment : str
+            Its name.
+        low, high : str
+            Least and largest deflection of the preload, with their units.
+        """
         return (
             f"{environment} is {cls.title} whose deflection stays between {low} and {high}. About "
             f"a rest anywhere from its surface to {high}, at which the commands hold every mode "

@@ -210,7 +210,7 @@ def _certify(
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
-    from nrs_design.gating.renew import certificates_of, check_folder, write_lock
+    from nrs_design.gating.renew import bounds_of, certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
     from nrs_design.output import LOCK, check_place
     from nrs_design.pipeline import Overrides
@@ -218,9 +218,9 @@ def _certify(
     specs = find_specs(paths)
     check_folder(reports, lock)
     check_place(lock, LOCK)
-    locked = certificates_of(read_lock_if_any(lock), lock)
+    known = read_lock_if_any(lock)
     with progress("gate", quiet=quiet) as step:
-        files = Files(reports, html=html, locked=locked)
+        files = Files(reports, html, certificates_of(known, lock), bounds_of(known))
         outcome = run_gate(specs, files, step, Overrides(*search))
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 

@@ -272,24 +272,36 @@ class Examiner:
         """Return NRS111 for bounds that were neither shown nor refuted."""
         return self._of_bounds(Status.INCONCLUSIVE, error.message)
 
-    def locked_bounds(self, locked: LockedGoal | None, faults: Sequence[str]) -> Obligation:
-        """Return NRS111 as it is locked, but for poses that exceed a bound."""
+    def known_bounds(
+        self, robot: Path, locked: LockedGoal | None
+    ) -> tuple[Obligation, tuple[Caution]]:
+        """Return NRS111 as it is locked, unless a pose exceeds a bound; and that it is on trust.
+
+        Parameters
+        ----------
+        robot : Path
+            Its spec.
+        locked : LockedGoal, optional
+            What the lock file says of its bounds.
+        """
+        # Poses are tried with NumPy, which nothing else of `--locked` needs.
+        from nrs_design.pipeline.robots import contradict_robot_bounds
+
+        file, faults = contradict_robot_bounds(robot)
+        place = self.places.at("coupling", "robot")
+        caution = Caution(
+            self.loaded.path,
+            f"taken on trust: the bounds of {file.as_posix()}; the lock file says that a gate "
+            "computed them again (nrs-design robot bounds --check does)",
+            place.line,
+            place.column,
+        )
         if faults:
-            return self._of_bounds(Status.MISSED, "; ".join(faults))
+            return self._of_bounds(Status.MISSED, "; ".join(faults)), (caution,)
         if locked is None:
             message = "the lock file does not say that the bounds were computed again"
-            return self._of_bounds(Status.MISSED, f"{message} (run nrs-design gate)")
-        message = f"{locked.message} (as locked; not computed again, on trust)"
-        return self._of_bounds(Status(locked.status), message)
-
-    def bounds_on_trust(self, file: Path) -> Caution:
-        """Return that bounds were not computed again."""
-        place = self.places.at("coupling", "robot")
-        message = (
-            f"taken on trust: the bounds of {file.as_posix()}; --locked does not compute them "
-            "again, nrs-design gate does"
-        )
-        return Caution(self.loaded.path, message, place.line, place.column)
+            return self._of_bounds(Status.MISSED, f"{message} (run nrs-design gate)"), (caution,)
+        return self._of_bounds(Status(locked.status), locked.message), (caution,)
 
     def _of_bounds(self, status: Status, message: str) -> Obligation:
         place = self.places.at("coupling", "robot")

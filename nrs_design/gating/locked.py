@@ -193,12 +193,8 @@ def _bounds(
     robot = examiner.loaded.robot
     if robot is None:
         return (), ()
-    # Poses are tried with NumPy, which nothing else of this needs.
-    from nrs_design.pipeline.robots import contradict_robot_bounds
-
-    file, faults = contradict_robot_bounds(robot)
-    locked = next((goal for goal in entry.goals if goal.rule == ROBOT_BOUNDS.id), None)
-    return (examiner.locked_bounds(locked, faults),), (examiner.bounds_on_trust(file),)
+    bounds, cautions = examiner.known_bounds(robot, entry.goal_of(ROBOT_BOUNDS))
+    return (bounds,), cautions
 
 
 def _place(examiner: Examiner, goal: LockedGoal) -> Position:

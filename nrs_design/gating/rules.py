@@ -237,10 +237,10 @@ ROBOT_BOUNDS = Rule(
     "NRS111",
     "The bounds of the robot hold",
     "A spec that names a robot is certified with bounds on its links from a file beside the "
-    "robot, which the certificate takes on trust. The gate computes every one of them again from "
-    "the spec of the robot, by interval arithmetic, in minutes: a file that was edited does not "
-    "pass. With --locked they are not computed again: they end as they are locked, unless a pose "
-    "that is tried exceeds them, and a warning says that they are on trust.",
+    "robot, which the certificate takes on trust. When their hash is not in the lock file, the "
+    "gate computes every one of them again from the spec of the robot, by interval arithmetic, in "
+    "minutes. Otherwise it tries poses, and a warning says that they are on trust in the lock "
+    "file.",
     "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it.",
 )
 ROS_PARAMETERS = Rule(

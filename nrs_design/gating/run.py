@@ -41,6 +41,7 @@ from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.gating.lock import LockedGoal
 
 
 # For each of the bounds of a robot, in s.
@@ -59,11 +60,15 @@ class Files:
         Whether reports are asked for.
     locked : mapping of Path to Path
         Which spec a certificate file is locked for, as real paths.
+    bounds : mapping of str to LockedGoal
+        What a gate of this release locked of the bounds of a robot that it computed again, by the
+        hash of the spec, which holds theirs.
     """
 
     folder: Path
     html: bool = True
     locked: Mapping[Path, Path] = field(default_factory=dict)
+    bounds: Mapping[str, LockedGoal] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -102,7 +107,7 @@ class Robots:
     checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
 
     def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:
-        """Return NRS111: nothing in the tree is evidence of bounds but their own computation.
+        """Return NRS111 of bounds that are new: nothing is evidence of them but to compute them.
 
         Parameters
         ----------
@@ -241,8 +246,12 @@ def _examine(
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
     robot = loaded.robot
-    if robot is not None:
+    on_trust: tuple[Caution, ...] = ()
+    if robot is not None and loaded.sha256 not in files.bounds:
         obligations += (robots.bounds(robot, examiner, progress),)
+    elif robot is not None:
+        bounds, on_trust = examiner.known_bounds(robot, files.bounds[loaded.sha256])
+        obligations += (bounds,)
     recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)
@@ -268,7 +277,7 @@ def _examine(
         gains=gains_of(result.design) if result.design else {},
         units=result.design.units if result.design else {},
         bounds=bounds_summary(certification.system, certification.statements),
-        cautions=cautions,
+        cautions=(*on_trust, *cautions),
         recorded=recorded,
     )
 

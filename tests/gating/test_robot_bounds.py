@@ -5,10 +5,11 @@ import shutil
 
 import pytest
 
+from nrs_design import __version__
 from nrs_design.errors import DesignError
-from nrs_design.gating.lock import read_lock
+from nrs_design.gating.lock import read_lock, read_lock_if_any
 from nrs_design.gating.locked import run_locked
-from nrs_design.gating.renew import write_lock
+from nrs_design.gating.renew import bounds_of, write_lock
 from nrs_design.gating.run import Files, run_gate
 from nrs_design.models.robot import Space, bounds_document, compute_bounds
 from nrs_design.pipeline.robots import run_robot
@@ -33,8 +34,10 @@ def root(tmp_path, monkeypatch):
 
 def gate(root, *names):
     specs = [root / name for name in names or ("axes.nrs.yaml",)]
-    outcome = run_gate(specs, Files(root / "reports", html=False))
-    write_lock(outcome, root / "nrs.lock")
+    lock = root / "nrs.lock"
+    known = bounds_of(read_lock_if_any(lock))
+    outcome = run_gate(specs, Files(root / "reports", html=False, bounds=known))
+    write_lock(outcome, lock)
     return outcome
 
 
@@ -78,10 +81,28 @@ def test_what_was_computed_again_is_met_and_on_trust_when_locked(root, monkeypat
     tried(monkeypatch, ())
     outcome = locked(root)
     assert outcome.severity == 0
-    assert "(as locked; not computed again, on trust)" in of_bounds(outcome).message
     (caution,) = (c for c in outcome.specs[0].cautions if "on trust" in c.message)
-    assert "robots/arm.bounds.json; --locked does not compute them again" in caution.message
+    assert "robots/arm.bounds.json; the lock file says that a gate" in caution.message
     assert len(asked) == 1
+
+
+def test_bounds_are_computed_again_when_their_hash_is_new(root, monkeypatch):
+    asked = computed(monkeypatch, ())
+    tried(monkeypatch, ())
+    gate(root)
+    outcome = gate(root)
+    assert len(asked) == 1
+    assert any("on trust" in c.message for c in outcome.specs[0].cautions)
+    before = (root / "nrs.lock").read_text()
+    gate(root)
+    assert (root / "nrs.lock").read_text() == before
+    write(root / "robots/arm.nrs.yaml", {"heaviest": "0.3"})
+    gate(root)
+    assert len(asked) == 2
+    text = (root / "nrs.lock").read_text()
+    (root / "nrs.lock").write_text(text.replace(__version__, "0.0.1"))
+    gate(root)
+    assert len(asked) == 3
 
 
 def test_bounds_that_do_not_hold_fail(root, monkeypatch):

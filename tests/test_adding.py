@@ -93,7 +93,6 @@ KINDS_OF_SPECS = {
     ("nrs_design.cli.mode_logic", "interaction-design"),
     ("nrs_design.cli.report", "robot"),
     ("nrs_design.cli.simulate", "interaction-design"),
-    ("nrs_design.cli.verify", "interaction-design"),
     ("nrs_design.gating.examine", "interaction-design"),
     ("nrs_design.pipeline.certification", "robot"),
     ("nrs_design.pipeline.certification", "switched-system"),

@@ -183,9 +183,20 @@ class Examiner:
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
-        message = f"design goal: {error.message} (floating point, not a proof)"
+        message = f"design goal: {error.message}{self._in_contact} (floating point, not a proof)"
         place = self.places.at("controllers")
-        return self.obligation(STIFFNESS_RANGE, "controllers", Status.MISSED, message, place)
+        return self.obligation(STIFFNESS_RANGE, "controllers", self._missed, message, place)
+
+    @property
+    def _missed(self) -> Status:
+        """What a loop that is unstable in kept contact decides: where it may be lost, nothing."""
+        return Status.INCONCLUSIVE if self._in_contact else Status.MISSED
+
+    @property
+    def _in_contact(self) -> str:
+        spec = self.loaded.spec
+        losable = spec.kind == "interaction-design" and spec.contact == "losable"
+        return ", in kept contact" if losable else ""
 
     def stiffness_ranges(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS103 for every impedance controller."""
@@ -193,8 +204,9 @@ class Examiner:
             highest, limit = item.highest_stiffness, item.lowest_limit
             if isnan(limit):
                 continue
-            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
             reached = highest < limit
+            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
+            held += "" if reached else self._in_contact
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
@@ -204,7 +216,7 @@ class Examiner:
             yield self.obligation(
                 STIFFNESS_RANGE,
                 item.name,
-                Status.MET if reached else Status.MISSED,
+                Status.MET if reached else self._missed,
                 message,
                 self.places.at("controllers", item.name),
             )

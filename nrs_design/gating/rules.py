@@ -150,8 +150,9 @@ STIFFNESS_RANGE = Rule(
     "unstable, that stiffness being constant (damping held, or in viscoelastic contact all "
     "parameters in proportion), at every corner of the ranges of damping, gains and motor and at "
     "every age of a force sample. A "
-    "design goal, computed in floating point: not a proof. What is proved about the ranges is "
-    "NRS102, at every corner of the parameter box and so inside it.",
+    "design goal, computed in floating point: not a proof. It is of contact that is kept: with "
+    "`contact: losable` a range that reaches the limit is inconclusive. What is proved about the "
+    "ranges is NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
 )
 GOAL = Rule(

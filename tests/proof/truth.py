@@ -167,7 +167,8 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether what the numbers say is true for this system."""
-    if system.clock is not None and not isinstance(evidence, PeriodicQuadratic | UnstablePeriod):
+    clocked = PeriodicQuadratic | UnstableContact | UnstablePeriod
+    if system.clock is not None and not isinstance(evidence, clocked):
         return False
     return _ORACLES[type(evidence)](system, evidence)
 

@@ -134,5 +134,5 @@ def docs(session: nox.Session) -> None:
 @nox.session
 def benchmarks(session: nox.Session) -> None:
     """Measure our speed beside the peers', as ratios in one run."""
-    session.install(".[crosscheck]", *CONSTRAINTS)
+    session.install(".[crosscheck,mujoco]", *CONSTRAINTS)
     session.run("python", "-m", "benchmarks", *session.posargs)

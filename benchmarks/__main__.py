@@ -1,15 +1,17 @@
-"""``python -m benchmarks``: run them and print the ratios."""
+"""``python -m benchmarks``: run them and print the ratios, each when it is there."""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib import import_module
+from time import perf_counter
 
-from benchmarks.measure import Comparison, Finding, machine_facts
+from benchmarks.measure import Comparison, Failure, Finding, Size, machine_facts
 
 BENCHMARKS = (
     "cold_pair",
@@ -29,67 +31,87 @@ BENCHMARKS = (
     "instruction_counts",
     "scenario_runs",
 )
+Result = Comparison | Finding | Failure
+HEADS = {
+    Comparison: "| work | peer | peer s | ours s | ratio | aim | met | circumstances |",
+    Finding: "| work | result | aim | met | s |",
+    Failure: "| benchmark | result | s |",
+}
 MET = {True: "yes", False: "NO", None: "-"}
 
 
-def main() -> None:
+def main() -> int:
+    """Run them; each result is printed when it is there. One that fails is a result, too."""
     options = _parse()
-    results: list[Comparison | Finding] = []
-    facts = machine_facts()
+    results: list[Result] = []
+    date, facts = f"{datetime.now(UTC):%Y-%m-%d}", machine_facts()
+    if not options.json:
+        print(f"{date}, {facts}")
     for name in options.only or BENCHMARKS:
         print(f"running {name}", file=sys.stderr)
-        results += import_module(f"benchmarks.{name}").run(options.quick)
-    date = f"{datetime.now(UTC):%Y-%m-%d}"
+        for result in results_of(name, _size(options)):
+            if not options.json:
+                print_row(result, results[-1] if results else None)
+            results.append(result)
     if options.json:
-        print(
-            json.dumps({"date": date, "machine": facts, "results": _documents(results)}, indent=2)
-        )
-        return
-    print(f"{date}, {facts}\n")
-    _print_comparisons([r for r in results if isinstance(r, Comparison)])
-    _print_findings([r for r in results if isinstance(r, Finding)])
+        document = {"date": date, "machine": facts, "results": _documents(results)}
+        print(json.dumps(document, indent=2))
+    return int(any(isinstance(result, Failure) for result in results))
+
+
+def results_of(name: str, size: Size) -> Sequence[Result]:
+    """Run a benchmark; whatever keeps it from its results is its result."""
+    start = perf_counter()
+    try:
+        found: Sequence[Result] = import_module(f"benchmarks.{name}").run(size)
+        return found
+    except Exception as error:
+        return (Failure(name, f"{type(error).__name__}: {error}", perf_counter() - start),)
+
+
+def _size(options: argparse.Namespace) -> Size:
+    if options.smoke:
+        return Size.SMOKE
+    return Size.QUICK if options.quick else Size.FULL
 
 
 def _parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="fewer repeats and sizes")
+    parser.add_argument("--smoke", action="store_true", help="tiny: only whether each one runs")
     parser.add_argument("--json", action="store_true", help="print one JSON document")
     parser.add_argument("--only", action="append", choices=BENCHMARKS, help="run this one")
     return parser.parse_args()
 
 
-def _documents(results: list[Comparison | Finding]) -> list[dict[str, object]]:
+def _documents(results: Sequence[Result]) -> list[dict[str, object]]:
     return [
         {**asdict(r), **({"ratio": r.ratio} if isinstance(r, Comparison) else {}), "met": r.met}
         for r in results
     ]
 
 
-def _print_comparisons(results: list[Comparison]) -> None:
-    """Print ratios as a Markdown table."""
-    if not results:
-        return
-    print("| work | peer | peer s | ours s | ratio | aim | met | circumstances |")
-    print("|---|---|---|---|---|---|---|---|")
-    for r in results:
-        stopped = f"> {r.at_least_seconds:.0f}" if r.peer_seconds is None else ""
-        peer = stopped or f"{r.peer_seconds:.3g}"
-        ratio = f"{'> ' if stopped else ''}{r.ratio:.3g}"
-        aim = "-" if r.target is None else f"{r.target:.3g}"
-        print(
-            f"| {r.work} | {r.peer} | {peer} | {r.our_seconds:.3g} | {ratio} | "
-            f"{aim} | {MET[r.met]} | {r.note} |"
-        )
+def print_row(result: Result, above: Result | None) -> None:
+    """Print a row of a Markdown table, and the head of the table if the row above is of another."""
+    if type(result) is not type(above):
+        print(f"\n{HEADS[type(result)]}")
+        print("|---" * (HEADS[type(result)].count("|") - 1) + "|")
+    print(f"| {' | '.join(_cells(result))} |", flush=True)
 
 
-def _print_findings(results: list[Finding]) -> None:
-    """Print what is not a ratio of two times as a Markdown table."""
-    if not results:
-        return
-    print("\n| work | result | aim | met | s |")
-    print("|---|---|---|---|---|")
-    for r in results:
-        print(f"| {r.work} | {r.result} | {r.aim} | {MET[r.met]} | {r.seconds:.3g} |")
+def _cells(result: Result) -> tuple[str, ...]:
+    if isinstance(result, Failure):
+        error = " ".join(result.error.split()).replace("|", "/")
+        return result.work, f"FAILED: {error}", f"{result.seconds:.3g}"
+    if isinstance(result, Finding):
+        return result.work, result.result, result.aim, MET[result.met], f"{result.seconds:.3g}"
+    r = result
+    stopped = f"> {r.at_least_seconds:.0f}" if r.peer_seconds is None else ""
+    peer = stopped or f"{r.peer_seconds:.3g}"
+    ratio = f"{'> ' if stopped else ''}{r.ratio:.3g}"
+    aim = "-" if r.target is None else f"{r.target:.3g}"
+    return r.work, r.peer, peer, f"{r.our_seconds:.3g}", ratio, aim, MET[r.met], r.note
 
 
-main()
+if __name__ == "__main__":
+    sys.exit(main())

@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
-from benchmarks.measure import Comparison, run_child
+from benchmarks.measure import Comparison, Size, run_child
 
 HERE = Path(__file__).parent
 TARGET = 4.0
@@ -23,7 +23,7 @@ IMPORTS = "import numpy, typer, pydantic, ruamel.yaml"
 MOST_IMPORTS = 1.4
 
 
-def run(quick: bool) -> tuple[Comparison, ...]:
+def run(size: Size) -> tuple[Comparison, ...]:
     """Measure whole processes, in turn."""
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "pair.cert.json")
@@ -39,7 +39,7 @@ def run(quick: bool) -> tuple[Comparison, ...]:
         )
         # The first round compiles all modules and does not count.
         rounds = [
-            [run_child(command, folder) for command in commands] for _ in range(4 if quick else 10)
+            [run_child(command, folder) for command in commands] for _ in range(size.pick(10, 4, 2))
         ][1:]
     script, imports, empty, proof, check = (
         median(children[k].seconds for children in rounds) for k in range(len(commands))

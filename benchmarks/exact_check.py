@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from statistics import median
 from time import perf_counter
 
-from benchmarks.measure import Comparison, Finding, time_side_by_side
+from benchmarks.measure import Comparison, Finding, Size, time_side_by_side
 from benchmarks.sylvester import check_apart, proved_family
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.system import SwitchedSystem
@@ -20,11 +20,12 @@ PEERS = {"python": "SymPy alone", "flint": "SymPy on python-flint"}
 FAMILY_ORDER, FAMILY_MODES, FAMILY_SECONDS = 20, 1000, 0.7
 
 
-def run(quick: bool) -> tuple[Comparison | Finding, ...]:
+def run(size: Size) -> tuple[Comparison | Finding, ...]:
     """Check two modes at several orders, then a large family."""
-    orders = QUICK_ORDERS if quick else ORDERS
+    orders = size.pick(ORDERS, QUICK_ORDERS, QUICK_ORDERS[:1])
+    modes = size.pick(FAMILY_MODES, FAMILY_MODES, 10)
     pairs = [comparison for n in orders for comparison in _check_pair(n)]
-    return (*pairs, _check_family(1 if quick else 5))
+    return (*pairs, _check_family(modes, size.pick(5, 1, 1)))
 
 
 def _check_pair(n: int) -> list[Comparison]:
@@ -40,11 +41,11 @@ def _check_pair(n: int) -> list[Comparison]:
     return comparisons
 
 
-def _check_family(repeats: int) -> Finding:
-    system, evidence = proved_family(FAMILY_ORDER, FAMILY_MODES)
+def _check_family(modes: int, repeats: int) -> Finding:
+    system, evidence = proved_family(FAMILY_ORDER, modes)
     times: Sequence[float] = [_time_check(system, evidence) for _ in range(repeats)]
     seconds = median(times)
-    work = f"exact check, n = {FAMILY_ORDER}, m = {FAMILY_MODES}"
+    work = f"exact check, n = {FAMILY_ORDER}, m = {modes}"
     result = f"{len(system.modes) + 1} forms in {seconds:.2f} s"
     return Finding(work, result, f"below {FAMILY_SECONDS} s", seconds < FAMILY_SECONDS, seconds)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from time import perf_counter
 
 from benchmarks.families import to_system
-from benchmarks.measure import Finding
-from benchmarks.random_families import COUNT, DECIMALS, QUICK_COUNT, draw_families
+from benchmarks.measure import Finding, Size
+from benchmarks.random_families import COUNT, DECIMALS, QUICK_COUNT, SMOKE_COUNT, draw_families
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
@@ -19,12 +19,12 @@ MAX_UPDATES, QUICK_MAX_UPDATES = 5000, 1000
 AIM = 0.9
 
 
-def run(quick: bool) -> tuple[Finding, ...]:
+def run(size: Size) -> tuple[Finding, ...]:
     """Take the families that the LMI proves, and run the iteration on each."""
-    families = draw_families(QUICK_COUNT if quick else COUNT)
+    families = draw_families(size.pick(COUNT, QUICK_COUNT, SMOKE_COUNT))
     systems = [to_system(matrices, DECIMALS) for matrices in families]
     proved = [system for system in systems if _is_proved(system, Method.LMI, Gradient())]
-    updates = QUICK_MAX_UPDATES if quick else MAX_UPDATES
+    updates = size.pick(MAX_UPDATES, QUICK_MAX_UPDATES, 10)
     default, balanced, printed = (
         Gradient(coordinates=coordinates, max_updates=updates) for coordinates in Coordinates
     )

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from benchmarks.families import stable_family, to_system
-from benchmarks.measure import Comparison, Finding, prove, time_side_by_side
+from benchmarks.measure import Comparison, Finding, Size, prove, time_side_by_side
 from benchmarks.peers import Solution, solve_all_at_once
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.search.certification import Certification
 
-N, M, DECIMALS = 20, 32, 3
+SIZE, DECIMALS = (20, 32), 3
 
 
-def run(quick: bool) -> tuple[Comparison | Finding, ...]:
+def run(size: Size) -> tuple[Comparison | Finding, ...]:
     """Measure inside this process, with all imports done."""
+    N, M = size.pick(SIZE, SIZE, (4, 3))
     matrices = stable_family(N, M, seed=N * M)
     system = to_system(matrices, DECIMALS)
     prove(to_system(matrices[:1, :4, :4], DECIMALS))
     (theirs, ours), (solution, found) = time_side_by_side(
-        1 if quick else 3,
+        size.pick(3, 1, 1),
         lambda: solve_all_at_once(matrices),
         lambda: prove(system),
     )

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import Bounds, differential_evolution
 
-from benchmarks.measure import Comparison, time_side_by_side
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
+from benchmarks.measure import Comparison, Size, time_side_by_side
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
+from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
-    is_stable,
     optimize_impedance,
 )
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.contact import Elastic
 
 MOTION = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
 DESIRED = 0.3 / radians(8)
@@ -30,11 +30,11 @@ TARGET = 20.0
 UNSTABLE = 1e3
 
 
-def run(quick: bool) -> tuple[Comparison, ...]:
+def run(size: Size) -> tuple[Comparison, ...]:
     """Measure all four designs together."""
     problems = [_problem(*design) for design in DESIGNS]
     (theirs, ours), (evolved, found) = time_side_by_side(
-        3 if quick else 21,
+        size.pick(21, 3, 1),
         lambda: [_evolve(problem) for problem in problems],
         lambda: [optimize_impedance(problem).cost for problem in problems],
     )
@@ -49,7 +49,7 @@ def run(quick: bool) -> tuple[Comparison, ...]:
 
 def _problem(stiffness: float, desired: float, least: float) -> ImpedanceProblem:
     return ImpedanceProblem(
-        loop=ImpedanceLoop(MOTION, stiffness),
+        loop=ImpedanceLoop(MOTION, Elastic(stiffness)),
         desired=desired,
         bandwidth=4 * pi,
         mass_bounds=(least, 1.0),
@@ -60,7 +60,7 @@ def _problem(stiffness: float, desired: float, least: float) -> ImpedanceProblem
 def _evolve(problem: ImpedanceProblem) -> float:
     def cost(x: NDArray[np.float64], /) -> float:
         Mt, Bt = x
-        stable = bool(is_stable(problem.loop, Mt, Bt))
+        stable = bool(stabilizes(problem.loop, Mt, Bt))
         return float(impedance_cost(problem, Mt, Bt)) if stable else UNSTABLE
 
     low, high = np.array([problem.mass_bounds, problem.damping_bounds]).T

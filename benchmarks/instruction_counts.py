@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.cortex import Compiled, Counts, measure, versions
-from benchmarks.measure import Finding
+from benchmarks.measure import Finding, Size
 from nrs_design.controllers.axes_law import build_axes_law
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.shipped import shipped_law
@@ -33,7 +33,7 @@ HERE = Path(__file__).parent
 SPECS = HERE.parent / "specs" / "neuroboscope"
 ROBOT = HERE.parent / "specs" / "robots" / "neuroboscope.nrs.yaml"
 PERIOD = Fraction(1, 500)
-COUNT, FEW = 1000, 100
+COUNT, FEW, FEWEST = 1000, 100, 20
 
 
 @dataclass(frozen=True)
@@ -121,12 +121,12 @@ LAWS: dict[str, tuple[Callable[[], Exported], int | None]] = {
 }
 
 
-def run(quick: bool) -> tuple[Finding, ...]:
+def run(size: Size) -> tuple[Finding, ...]:
     """Count every law; one more line says whether both ways of counting agree."""
-    alike, findings = [], []
+    count, alike, findings = size.pick(COUNT, FEW, FEWEST), [], []
     for name, (make, goal) in LAWS.items():
         begin = perf_counter()
-        found, valid = _count(make(), FEW if quick else COUNT)
+        found, valid = _count(make(), count)
         seconds = perf_counter() - begin
         alike.append(bool((found.instructions == found.by_clock).all()))
         most = int(found.instructions.max())
@@ -134,7 +134,6 @@ def run(quick: bool) -> tuple[Finding, ...]:
         findings.append(
             Finding(name, _words(found, valid), aim, goal is None or most <= goal, seconds)
         )
-    count = FEW if quick else COUNT
     result = f"{sum(alike)} of {len(alike)} laws alike in each of {count} cases; {versions()}"
     aim = "both ways to count agree"
     return (*findings, Finding("instructions, counted twice", result, aim, all(alike), 0.0))

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from benchmarks.families import stable_family, to_system
-from benchmarks.measure import Comparison, prove, time_side_by_side
+from benchmarks.measure import Comparison, Size, prove, time_side_by_side
 from benchmarks.peers import Solution, solve_all_at_once
 from nrs_design.search.certification import Certification
 
 SIZES = ((6, 512), (6, 2048), (4, 1024))
-QUICK_SIZES = ((6, 512),)
+QUICK_SIZES, SMOKE_SIZES = ((6, 512),), ((3, 4),)
 TARGET = 20.0
 
 
-def run(quick: bool) -> tuple[Comparison, ...]:
+def run(size: Size) -> tuple[Comparison, ...]:
     """Measure inside this process, with all imports done."""
-    return tuple(_compare(n, m, 1 if quick else 3) for n, m in (QUICK_SIZES if quick else SIZES))
+    sizes = size.pick(SIZES, QUICK_SIZES, SMOKE_SIZES)
+    return tuple(_compare(n, m, size.pick(3, 1, 1)) for n, m in sizes)
 
 
 def _compare(n: int, m: int, repeats: int) -> Comparison:

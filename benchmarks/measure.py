@@ -9,15 +9,18 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from importlib.metadata import version
 from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
+from typing import TypeVar
 
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Certification, Limits, certify
 from nrs_design.search.method import Method
 
+T = TypeVar("T")
 LAUNCHER = Path(__file__).with_name("launcher.py")
 LIBRARIES = ("nrs-design", "numpy", "scipy", "clarabel", "cvxpy", "sympy")
 
@@ -86,6 +89,38 @@ class Finding:
     aim: str
     met: bool
     seconds: float
+
+
+@dataclass(frozen=True)
+class Failure:
+    """One line about a benchmark that gave no results.
+
+    Parameters
+    ----------
+    work : str
+        Its name.
+    error : str
+        What was raised.
+    seconds : float
+        Time until then.
+    """
+
+    work: str
+    error: str
+    seconds: float
+    met: bool = False
+
+
+class Size(Enum):
+    """How much a benchmark does: all; fewer repeats and sizes; or so little that it only runs."""
+
+    FULL = 0
+    QUICK = 1
+    SMOKE = 2
+
+    def pick(self, full: T, quick: T, smoke: T) -> T:
+        """Return the one of three that is for this size."""
+        return (full, quick, smoke)[self.value]
 
 
 @dataclass(frozen=True)

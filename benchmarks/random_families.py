@@ -8,21 +8,21 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.families import Matrices, hurwitz_family, to_system
-from benchmarks.measure import Comparison, Finding
+from benchmarks.measure import Comparison, Finding, Size
 from benchmarks.peers import solve_all_at_once
 from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 
-COUNT, QUICK_COUNT = 400, 60
+COUNT, QUICK_COUNT, SMOKE_COUNT = 400, 60, 6
 SEED, DECIMALS = 2026, 4
 ORDERS, MODES = (2, 12), (2, 5)
 
 
-def run(quick: bool) -> tuple[Comparison | Finding, ...]:
+def run(size: Size) -> tuple[Comparison | Finding, ...]:
     """Decide all of them, and let a solver script give its opinion on the same ones."""
-    families = draw_families(QUICK_COUNT if quick else COUNT)
+    families = draw_families(size.pick(COUNT, QUICK_COUNT, SMOKE_COUNT))
     theirs = ours = 0.0
     counts: Counter[str] = Counter()
     for matrices in families:

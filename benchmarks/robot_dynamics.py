@@ -7,30 +7,30 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from benchmarks.measure import Comparison, time_side_by_side
+from benchmarks.measure import Comparison, Size, time_side_by_side
 from benchmarks.pinocchio_tree import Array, Tree
 from nrs_design.models.robot import build_robot, inverse_dynamics, posture
 from nrs_design.models.robot.motion import joint_driven
 from nrs_design.spec import RobotSpec, load_spec
 
 SPEC = Path(__file__).parents[1] / "specs" / "robots" / "neuroboscope.nrs.yaml"
-POSES = 100_000
+POSES, FEWEST = 100_000, 1_000
 # What takes a millisecond for each pose is measured on so many, and scaled.
 FEW = 1_000
 TARGET = 20.0
 
 
-def run(quick: bool) -> tuple[Comparison, ...]:
+def run(size: Size) -> tuple[Comparison, ...]:
     """Measure 100,000 poses against three loops."""
     spec = load_spec(SPEC)
     assert isinstance(spec, RobotSpec)
-    robot = build_robot(spec)
+    robot, poses = build_robot(spec), size.pick(POSES, POSES, FEWEST)
     tree = Tree(robot)
-    pose, velocity, acceleration = _motions()
+    pose, velocity, acceleration = _motions(poses)
     few = (pose[:FEW], velocity[:FEW], acceleration[:FEW])
     q, v, a = _tree_motions(tree, pose, velocity, acceleration)
     (rnea, closed, single, ours), results = time_side_by_side(
-        1 if quick else 5,
+        size.pick(5, 1, 1),
         lambda: _loop_over_rnea(tree, q, v, a),
         lambda: [tree.torque(*each) for each in zip(*few, strict=True)],
         lambda: [inverse_dynamics(robot, *each) for each in zip(*few, strict=True)],
@@ -39,8 +39,8 @@ def run(quick: bool) -> tuple[Comparison, ...]:
     theirs, alone, torque = (np.asarray(result) for result in results[1:])
     from_pin = f"torques differ by at most {np.abs(theirs - torque[:FEW]).max():.1e} N m"
     from_one = f"torques differ by at most {np.abs(alone - torque[:FEW]).max():.1e} N m"
-    scaled = POSES / FEW
-    work = "inverse dynamics, 100,000 poses"
+    scaled = poses / FEW
+    work = f"inverse dynamics, {poses:,} poses"
     given = "the angles and rates of all 12 joints are given, the loops stay cut"
     return (
         Comparison(work, "loop: pin.rnea of the tree alone", rnea, ours, TARGET, given),
@@ -51,10 +51,10 @@ def run(quick: bool) -> tuple[Comparison, ...]:
     )
 
 
-def _motions() -> tuple[Array, Array, Array]:
+def _motions(poses: int) -> tuple[Array, Array, Array]:
     rng = np.random.default_rng(1)
-    pose = rng.uniform((-0.24, -0.33, 0.155), (0.24, 0.33, 0.24), (POSES, 3))
-    return pose, rng.normal(0, 1, (POSES, 3)), rng.normal(0, 5, (POSES, 3))
+    pose = rng.uniform((-0.24, -0.33, 0.155), (0.24, 0.33, 0.24), (poses, 3))
+    return pose, rng.normal(0, 1, (poses, 3)), rng.normal(0, 5, (poses, 3))
 
 
 def _tree_motions(

@@ -6,10 +6,10 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.measure import Finding, run_child
+from benchmarks.measure import Finding, Size, run_child
 
-MODES, QUICK_MODES = (16, 64, 256, 1024, 4096, 16384), (16, 64, 256)
-ORDERS, QUICK_ORDERS = (5, 10, 20, 30, 40), (5, 10)
+MODES, QUICK_MODES, SMOKE_MODES = (16, 64, 256, 1024, 4096, 16384), (16, 64, 256), (4,)
+ORDERS, QUICK_ORDERS, SMOKE_ORDERS = (5, 10, 20, 30, 40), (5, 10), (3,)
 MEGABYTES = (50, 100, 200, 400, 800)
 FIXED_ORDER, FIXED_MODES = 6, 2
 FIGURE = Path(__file__).parents[1] / "reports" / "scaling.png"
@@ -26,11 +26,13 @@ class Point:
     megabytes: float
 
 
-def run(quick: bool) -> tuple[Finding, ...]:
-    """Measure every size in a cold process; without --quick, draw the figure too."""
-    by_modes = [_measure(FIXED_ORDER, m) for m in (QUICK_MODES if quick else MODES)]
-    by_order = [_measure(n, FIXED_MODES) for n in (QUICK_ORDERS if quick else ORDERS)]
-    if not quick:
+def run(size: Size) -> tuple[Finding, ...]:
+    """Measure every size in a cold process; in full, draw the figure too."""
+    modes = size.pick(MODES, QUICK_MODES, SMOKE_MODES)
+    orders = size.pick(ORDERS, QUICK_ORDERS, SMOKE_ORDERS)
+    by_modes = [_measure(FIXED_ORDER, m) for m in modes]
+    by_order = [_measure(n, FIXED_MODES) for n in orders]
+    if size is Size.FULL:
         _draw(by_modes, by_order)
     return tuple(_report(point) for point in (*by_modes, *by_order))
 

@@ -16,7 +16,7 @@ from time import process_time
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.measure import Comparison, Finding, least_side_by_side, time_side_by_side
+from benchmarks.measure import Comparison, Finding, Size, least_side_by_side, time_side_by_side
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.plant import Plant
@@ -39,16 +39,17 @@ TARGET, REAL_TIME = 20.0, 100.0
 SWING, OMEGA, SURFACE = 0.1, 1.7, 0.01
 
 
-def run(quick: bool) -> tuple[Comparison | Finding, ...]:
+def run(size: Size) -> tuple[Comparison | Finding, ...]:
     """Measure both engines."""
     designed = run_design(read_spec(SPEC))
     assert designed is not None
     given = designed.spec, designed.plant, designed.design
-    exact, sampled = _scenario(*given[:2]), default_scenario(*given[:2])
+    length = size.pick(SECONDS, SECONDS, 1.0)
+    exact, sampled = _scenario(*given[:2], length), default_scenario(*given[:2])
     peer = _Peer(designed.plant, designed.design, exact)
-    simulate_exactly(*given, replace(exact, duration=1.0))  # Loads SciPy.
+    simulate_exactly(*given, replace(exact, duration=min(length, 1.0)))  # Loads SciPy.
     (theirs, ours), (end, found) = least_side_by_side(
-        2 if quick else 7, lambda: peer.end(1e-9), lambda: simulate_exactly(*given, exact)
+        size.pick(7, 2, 1), lambda: peer.end(1e-9), lambda: simulate_exactly(*given, exact)
     )
     truth = peer.end(1e-13)
     response = found.response
@@ -58,8 +59,8 @@ def run(quick: bool) -> tuple[Comparison | Finding, ...]:
     note = f"least processor time of several pairs; {len(found.switches)} switches, "
     note += f"{len(found.contacts)} changes of contact; error at "
     note += f"the end in rad and rad/s: peer {errors[0]:.1e}, ours {errors[1]:.1e}"
-    work = f"{SECONDS:.0f} s of the switched loop in tissue"
-    long = replace(sampled, profile=exact.profile, duration=20.0)
+    work = f"{length:.0f} s of the switched loop in tissue"
+    long = replace(sampled, profile=exact.profile, duration=size.pick(20.0, 20.0, 0.5))
     start = process_time()
     simulate_sampled(*given, long)
     seconds = process_time() - start
@@ -73,11 +74,11 @@ def run(quick: bool) -> tuple[Comparison | Finding, ...]:
             share >= REAL_TIME,
             seconds,
         ),
-        *_beside_mujoco(designed, long, quick),
+        *_beside_mujoco(designed, long, size),
     )
 
 
-def _beside_mujoco(designed: Designed, long: Scenario, quick: bool) -> tuple[Comparison, ...]:
+def _beside_mujoco(designed: Designed, long: Scenario, size: Size) -> tuple[Comparison, ...]:
     """Compare the mechanics of one axis, and of a robot, with MuJoCo's."""
     axes_spec = run_design(read_spec(AXES_SPEC))
     assert axes_spec is not None
@@ -87,7 +88,7 @@ def _beside_mujoco(designed: Designed, long: Scenario, quick: bool) -> tuple[Com
     _, _, robot = run_robot(AXES_SPEC.parent / coupling.robot)
     every = SamplingSpec.model_validate({"period": "2 ms", "delay": "0"})
     timed = replace(axes_spec, spec=axes_spec.spec.model_copy(update={"sampling": every}))
-    three = replace(default_scenario(timed.spec, timed.plant), duration=1.0 if quick else 4.0)
+    three = replace(default_scenario(timed.spec, timed.plant), duration=size.pick(4.0, 1.0, 0.1))
     cases = (
         ("one axis", designed, (long,), None),
         ("three axes, all links", timed, (three,) * 3, Arm(robot, robot.home)),
@@ -98,7 +99,7 @@ def _beside_mujoco(designed: Designed, long: Scenario, quick: bool) -> tuple[Com
             partial(simulate_on_body, one.spec, one.plant, one.design, scenarios, engine, arm)
             for engine in ("sampled", "mujoco")
         )
-        (both, mine), (runs, _) = time_side_by_side(1 if quick else 3, theirs, ours)
+        (both, mine), (runs, _) = time_side_by_side(size.pick(3, 1, 1), theirs, ours)
         assert isinstance(runs, tuple)
         apart = max(run.deviation.angle for run in runs)
         work = f"{scenarios[0].duration:.0f} s, {what}, the law in single precision, 2 ms"
@@ -108,15 +109,15 @@ def _beside_mujoco(designed: Designed, long: Scenario, quick: bool) -> tuple[Com
     return tuple(found)
 
 
-def _scenario(spec: InteractionDesignSpec, plant: Plant) -> Scenario:
+def _scenario(spec: InteractionDesignSpec, plant: Plant, length: float) -> Scenario:
     usual = default_scenario(spec, plant)
-    times = SECONDS * np.arange(1, SWITCHES + 1) / (SWITCHES + 1)
+    times = length * np.arange(1, SWITCHES + 1) / (SWITCHES + 1)
     names = ("withdrawal", "insertion")
     schedule = tuple((float(t), names[i % 2]) for i, t in enumerate(times))
     return replace(
         usual,
         profile=Profile.sinusoid(SWING, OMEGA),
-        duration=SECONDS,
+        duration=length,
         control=Control("insertion", schedule=schedule),
         surfaces=tuple(replace(s, at=SURFACE) for s in usual.surfaces),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.families import Matrices, crowded_family, narrow_family, to_system
-from benchmarks.measure import Comparison, prove, time_side_by_side
+from benchmarks.measure import Comparison, Size, prove, time_side_by_side
 from benchmarks.peers import Solution, gradient_ends_within, solve_all_at_once, solve_lazily
 from nrs_design.search.certification import Certification
 
@@ -12,14 +12,15 @@ N, M, SEED, DECIMALS = 12, 64, 7, 4
 NARROWNESS, SPREAD = 0.008, 0.6719
 # Never slower than the better strategy by more than this factor.
 TARGET = 1 / 1.3
-CAP, QUICK_CAP = 30.0, 10.0
+CAP, QUICK_CAP, SMOKE_CAP = 30.0, 10.0, 0.1
 
 
-def run(quick: bool) -> tuple[Comparison, ...]:
+def run(size: Size) -> tuple[Comparison, ...]:
     """Compare with both ways to use a solver, and with the gradient iteration."""
-    repeats, cap = (1, QUICK_CAP) if quick else (5, CAP)
-    crowded = crowded_family(N, M, SEED, SPREAD)
-    narrow = narrow_family(N, M, SEED, NARROWNESS)
+    repeats, cap = size.pick((5, CAP), (1, QUICK_CAP), (1, SMOKE_CAP))
+    n, m = size.pick((N, M), (N, M), (4, 4))
+    crowded = crowded_family(n, m, SEED, SPREAD)
+    narrow = narrow_family(n, m, SEED, NARROWNESS)
     return (
         *_compare("many modes bind", crowded, repeats, cap),
         *_compare("few modes bind", narrow, repeats, cap),
@@ -41,7 +42,8 @@ def _compare(name: str, matrices: Matrices, repeats: int, cap: float) -> tuple[C
         f"t* = {solution.t:.3g}; peer: {solution.status} in floating point; "
         f"ours: {found.verdict}, checked exactly"
     )
-    work = f"tight, n = {N}, m = {M}, {name}"
+    m, n = matrices.shape[:2]
+    work = f"tight, n = {n}, m = {m}, {name}"
     return (
         Comparison(work, "cvxpy, all modes", at_once, ours, TARGET, note),
         Comparison(work, "cvxpy, always lazy", lazily, ours, TARGET),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares
 
-from benchmarks.measure import Comparison
+from benchmarks.measure import Comparison, Size
 from nrs_design.identification.datasets import Source, TissueRecord
 from nrs_design.identification.tissue.offsets import offset_columns, offset_names
 from nrs_design.identification.tissue.output_error import RecordFit, fit_record, rmse
@@ -25,11 +25,13 @@ from nrs_design.models.contact import (
     Maxwell,
     Motion,
 )
+from nrs_design.proof.text import counted
 from tests.identification.synthetic import CONCHA, pressing, tissue_record
 from tests.identification.unilateral import push
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
+Kinds = Sequence[type[AbstractContactLaw]]
 
 RECORDS, SAMPLES = 10, 10_000
 # Beside the peer in contact from the beginning, and beside the peer that fits offsets, too.
@@ -39,24 +41,28 @@ ZERO, AIR, TARE = 0.1, 0.03, -0.05
 NOISE = 0.008
 
 
-def run(quick: bool) -> tuple[Comparison, ...]:
+def run(size: Size) -> tuple[Comparison, ...]:
     """Measure all fits in one run; quick: the peer does one record, its time counts ten times."""
-    work = f"five laws, ten records of {SAMPLES:,} samples"
     return (
-        _compare(work, _in_contact, TARGET, quick),
-        _compare(f"{work}, with air: zero and tare too", _with_air, TARGET_OF_OFFSETS, quick),
+        _compare("", _in_contact, TARGET, size),
+        _compare(", with air: zero and tare too", _with_air, TARGET_OF_OFFSETS, size),
     )
 
 
 def _compare(
-    work: str, make: Callable[[int], TissueRecord], target: float, quick: bool
+    what: str, make: Callable[[int, int], TissueRecord], target: float, size: Size
 ) -> Comparison:
-    records = [make(seed) for seed in range(RECORDS)]
+    every = tuple(LAWS.values())
+    kinds = size.pick(every, every, every[:1])
+    count, samples = size.pick((RECORDS, SAMPLES), (RECORDS, SAMPLES), (1, 300))
+    quick = size is Size.QUICK
+    work = f"{counted(len(kinds), 'law')}, {counted(count, 'record')} of {samples:,} samples{what}"
+    records = [make(seed, samples) for seed in range(count)]
     # Imports are not what is measured.
     fit_record(KelvinBoltzmann, records[0])
-    ours, fits = _timed(lambda: [_fit_all(record) for record in records])
+    ours, fits = _timed(lambda: [_fit_all(record, kinds) for record in records])
     used = records[:1] if quick else records
-    theirs, peers = _timed(lambda: [_peer_all(record) for record in used])
+    theirs, peers = _timed(lambda: [_peer_all(record, kinds) for record in used])
     excess = max(
         peer / fit.rmse - 1
         for row, other in zip(fits, peers, strict=False)
@@ -69,21 +75,21 @@ def _compare(
     return Comparison(work, "least_squares + solve_ivp", theirs * scale, ours, target, note)
 
 
-def _in_contact(seed: int) -> TissueRecord:
-    motion, force = tissue_record(CONCHA, _presses(seed), NOISE, seed)
+def _in_contact(seed: int, samples: int) -> TissueRecord:
+    motion, force = tissue_record(CONCHA, _presses(seed, samples), NOISE, seed)
     return _named(seed, motion, force)
 
 
-def _with_air(seed: int) -> TissueRecord:
+def _with_air(seed: int, samples: int) -> TissueRecord:
     """Presses from above the surface, in coordinates of the robot, with a sensor not tared."""
-    presses = _presses(seed)
+    presses = _presses(seed, samples)
     force = push(CONCHA, Motion(presses.time, presses.deflection - AIR))
     force += np.random.default_rng([seed, 3]).normal(scale=NOISE, size=len(force))
     return _named(seed, Motion(presses.time, presses.deflection - AIR + ZERO), force + TARE)
 
 
-def _presses(seed: int) -> Motion:
-    return pressing(100.0, (SAMPLES - 1) / 100.0, 0.3, 20.0, seed)
+def _presses(seed: int, samples: int) -> Motion:
+    return pressing(100.0, (samples - 1) / 100.0, 0.3, 20.0, seed)
 
 
 def _named(seed: int, motion: Motion, force: Array) -> TissueRecord:
@@ -97,14 +103,14 @@ def _timed(function: Callable[[], T]) -> tuple[float, T]:
     return process_time() - start, result
 
 
-def _fit_all(record: TissueRecord) -> Sequence[RecordFit]:
+def _fit_all(record: TissueRecord, kinds: Kinds) -> Sequence[RecordFit]:
     """Fit as `identify` does: what is in contact is found once for all laws."""
     trial = prepare(record)
-    return [fit_record(kind, trial) for kind in LAWS.values()]
+    return [fit_record(kind, trial) for kind in kinds]
 
 
-def _peer_all(record: TissueRecord) -> Sequence[float]:
-    return [_peer(kind, record) for kind in LAWS.values()]
+def _peer_all(record: TissueRecord, kinds: Kinds) -> Sequence[float]:
+    return [_peer(kind, record) for kind in kinds]
 
 
 def _peer(kind: type[AbstractContactLaw], record: TissueRecord) -> float:

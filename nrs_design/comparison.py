@@ -199,6 +199,8 @@ def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
     system, evidence = certificate.system, certificate.evidence
     rate = None if evidence is None else evidence.proved_rate(system)
     verdict = {"verdict": certificate.verdict, "modes": str(len(system.modes))}
+    if certificate.refuted_in is not None:
+        verdict["refuted"] = certificate.refuted_in
     if rate is not None:
         verdict[_rate_name(system)] = f"{rate_text(rate, system.time)}{_rate_unit(system)}"
     for number, statement in enumerate(certificate.statements, 1):
@@ -210,7 +212,7 @@ def _proof_parts(certificate: Certificate) -> dict[Part, Mapping[str, str]]:
         for gain, value in values.items()
     }
     # Each assumption is its own name: it is there or it is not.
-    assumptions = {text: text for text in system.assumptions}
+    assumptions = {text: text for text in certificate.granted}
     return {Part.GAINS: gains, Part.VERDICT: verdict, Part.ASSUMPTIONS: assumptions}
 
 

@@ -184,6 +184,12 @@ class PoseError(NrsDesignError):
         self.pose = pose
 
 
+class ClockError(NrsDesignError):
+    """Work that the clock stopped before its budget was used up: nothing is decided."""
+
+    rule = "NRS008"
+
+
 DISAGREE = "the integer check and flint disagree about the same certificate"
 
 

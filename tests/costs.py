@@ -3,7 +3,8 @@
 ``python -m tests.costs`` runs all tests but the nightly ones in one process and writes `COSTS`, a
 line for each test that takes longer than `SLOW`. A test that is not there is in the default
 session; one of more than `NIGHTLY` seconds is in the nightly session only, beside those that mark
-themselves. Nothing is measured while tests run otherwise: how fast a machine is decides nothing.
+themselves, unless it is of what CI holds whatever that takes. Nothing is measured while tests run
+otherwise: how fast a machine is decides nothing.
 """
 
 import os
@@ -17,6 +18,8 @@ import pytest
 COSTS = Path(__file__).with_name("costs.tsv")
 # Processor seconds. The default session has thousands of tests; CI has all but studies.
 SLOW, NIGHTLY = 0.15, 4.0
+# What is published: every page prints what it shows, and every example of the literature.
+IN_CI = ("tests/docs/", "tests/literature/")
 
 
 @cache
@@ -26,15 +29,20 @@ def known_costs() -> dict[str, float]:
     return {name: float(seconds) for seconds, name in lines}
 
 
+def name_of(item: pytest.Item) -> str:
+    """Return the name of a test in pytest, on any machine."""
+    return item.nodeid.replace(f"{item.config.rootpath}/", "")
+
+
 def seconds_of(item: pytest.Item) -> float:
     """Return the measured seconds of a test, 0 where it is cheap or new."""
-    return known_costs().get(item.nodeid, 0.0)
+    return known_costs().get(name_of(item), 0.0)
 
 
 def mark_by_cost(items: Sequence[pytest.Item]) -> None:
     """Mark the tests that were measured as dear."""
     for item in items:
-        if seconds_of(item) > NIGHTLY:
+        if seconds_of(item) > NIGHTLY and not item.nodeid.startswith(IN_CI):
             item.add_marker(pytest.mark.nightly)
         if seconds_of(item) > SLOW or item.get_closest_marker("nightly"):
             item.add_marker(pytest.mark.slow)
@@ -56,7 +64,7 @@ class Measurement:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
         start = processor_seconds()
         yield
-        self.costs[item.nodeid] = processor_seconds() - start
+        self.costs[name_of(item)] = processor_seconds() - start
 
 
 def main() -> int:

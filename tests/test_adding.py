@@ -3,11 +3,20 @@
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
+from typing import get_args
 
 import pytest
+from pydantic import BaseModel
 
 from nrs_design.controllers.laws import LAWS as CONTROL
 from nrs_design.models.contact import LAWS as CONTACT
+from nrs_design.models.contact import LINEAR_LAWS
+from nrs_design.proof.evidence import KINDS as EVIDENCE
+from nrs_design.spec.environment_estimator import EstimatorSpec
+from nrs_design.spec.load import SPEC_KINDS
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec
+from nrs_design.spec.units import COMMAND_UNITS
 from tests.package import FILES, PACKAGE, names_in, nodes_of
 from tests.support import ROOT
 
@@ -38,8 +47,13 @@ def test_adding_is_cheap():
 @pytest.mark.parametrize(
     ("law", "file", "also"),
     [
-        # The target of impedance control is listed, and doubted, by name.
-        ("Admittance", "impedance", {"spec/describe.py", "design/doubts.py"}),
+        # The target of impedance control is listed, and doubted, by name; its gains are searched,
+        # and the loops of all of them follow from a few.
+        (
+            "Admittance",
+            "impedance",
+            {"spec/describe.py", "design/doubts.py", "switched/cut_loop.py"},
+        ),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
         ("IntegralForce", "integral", set()),
@@ -62,36 +76,108 @@ def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
     }
 
 
-# The target of impedance control is listed by name, and one law is not linear along runs.
-KNOWN_QUESTIONS = {
-    ("nrs_design.spec.describe", "impedance"),
-    ("nrs_design.simulation.build_scenario", "hunt-crossley"),
+# Who holds a law, or a kind of something, calls it so; a unit of command is one, too.
+HELD = {"type", "model", "linear_model", "kind", "law", "command"}
+# What an assumption is about may have no place in a spec; a file of no kind that is known begins
+# with nothing.
+ALLOWED = {
+    ("nrs_design.reporting.sections.places", "get"),
+    ("nrs_design.identification.datasets.arrays", "get"),
 }
+# Kinds of specs have nothing in common that could be asked for instead. A command refuses those
+# that it is not about, or does nothing for them.
+KINDS_OF_SPECS = {
+    ("nrs_design.certificates.goals", "interaction-design"),
+    ("nrs_design.cli.audit", "interaction-design"),
+    ("nrs_design.cli.check", "interaction-design"),
+    ("nrs_design.cli.mode_logic", "interaction-design"),
+    ("nrs_design.cli.report", "robot"),
+    ("nrs_design.cli.simulate", "interaction-design"),
+    ("nrs_design.gating.examine", "interaction-design"),
+    ("nrs_design.pipeline.certification", "robot"),
+    ("nrs_design.pipeline.certification", "switched-system"),
+    ("nrs_design.pipeline.design", "interaction-design"),
+    ("nrs_design.pipeline.design", "robot"),
+    ("nrs_design.pipeline.margins", "robot"),
+    ("nrs_design.pipeline.robots", "robot"),
+    ("nrs_design.spec.doubts", "interaction-design"),
+    ("nrs_design.spec.load", "interaction-design"),
+    ("nrs_design.switched.assemble", "robot"),
+    ("nrs_design.switched.assemble", "switched-system"),
+}
+
+
+@cache
+def law_names() -> frozenset[str]:
+    """Names of laws of control and contact, of motors' commands, of logic, specs and evidence."""
+    logic = {name for model in (ThresholdLogicSpec, EstimatorSpec) for name in literals(model)}
+    return frozenset({*CONTROL, *CONTACT, *LINEAR_LAWS, *COMMAND_UNITS, *logic, *EVIDENCE}) | {
+        *SPEC_KINDS
+    }
+
+
+def literals(model: type[BaseModel]) -> tuple[str, ...]:
+    return get_args(model.model_fields["type"].annotation)
+
+
+def held(node: ast.AST) -> bool:
+    """Whether an expression is what something is called: ``spec.model``, ``str(law.name)``."""
+    match node:
+        case ast.Call(func=ast.Name("str"), args=[inner]):
+            return held(inner)
+        case ast.Attribute(value=inner, attr="name" | "__name__"):
+            return held(inner)
+        case ast.Call(func=ast.Name("type"), args=[inner]):
+            return held(inner)
+    return getattr(node, "attr", getattr(node, "id", None)) in HELD
+
+
+def told(node: ast.AST, names: frozenset[str]) -> set[str]:
+    """The names, and the classes, that an expression holds."""
+    said = {p.value for p in ast.walk(node) if isinstance(p, ast.Constant)}
+    parts = {getattr(p, "id", getattr(p, "attr", None)) for p in ast.walk(node)}
+    return {part for part in said | parts if isinstance(part, str)} & names
 
 
 def law_questions(tree: ast.AST, classes: frozenset[str]) -> Iterator[str]:
     """What a file asks about a law, or about what a spec says of it: its class, or its name."""
-    names = {*CONTROL, *CONTACT, "hand"}
+    names = law_names()
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Name("isinstance" | "issubclass"), args=[_, asked]):
-                parts = {getattr(p, "id", getattr(p, "attr", None)) for p in ast.walk(asked)}
-                yield from parts & classes
+                yield from told(asked, classes)
             case ast.MatchClass(cls=asked):
                 yield from {ast.unparse(asked).rpartition(".")[2]} & classes
-            case ast.Compare(left=ast.Attribute(attr="type" | "model"), comparators=[told]):
-                said = {p.value for p in ast.walk(told) if isinstance(p, ast.Constant)}
-                yield from said & names
-            case ast.Match(subject=ast.Attribute(attr="type" | "model"), cases=cases):
-                parts = [part for case in cases for part in ast.walk(case.pattern)]
-                yield from {p.value for p in parts if isinstance(p, ast.Constant)} & names
+            case ast.Compare(left=left, comparators=others):
+                sides = [left, *others]
+                if any(map(held, sides)):
+                    yield from set().union(*(told(side, names | classes) for side in sides))
+                elif all(isinstance(op, ast.Is | ast.IsNot) for op in node.ops):
+                    yield from {getattr(side, "id", None) for side in sides} & classes
+            case ast.Match(subject=subject, cases=cases) if held(subject):
+                for part in cases:
+                    yield from told(part.pattern, names)
+            case ast.Call(func=ast.Attribute(value=owner, attr=asked)) if held(owner) and asked in {
+                "startswith",
+                "endswith",
+                "removeprefix",
+                "partition",
+            }:
+                yield from {p.value for a in node.args for p in ast.walk(a) if is_text(p)}
+            case ast.Call(func=ast.Attribute(attr="get"), args=[key, _]) if held(key):
+                yield "get"
+
+
+def is_text(node: ast.AST) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)
 
 
 def law_classes() -> frozenset[str]:
     specs = {name for name in names_in(FILES["nrs_design.spec.controllers"]) if "Spec" in name}
     specs |= {name for name in names_in(FILES["nrs_design.spec.environment"]) if "Spec" in name}
-    laws = {law.__name__ for law in (*CONTROL.values(), *CONTACT.values())}
-    others = {"SpecModel", "ProvenanceSpec", "GainSpec", "GoalsSpec"}
+    specs |= {"ThresholdLogicSpec", "EstimatorSpec"}
+    laws = {law.__name__ for law in (*CONTROL.values(), *CONTACT.values(), *LINEAR_LAWS.values())}
+    others = {"SpecModel", "ProvenanceSpec", "GainSpec", "GoalsSpec", "AbstractEnvironmentSpec"}
     return frozenset(specs - others | laws)
 
 
@@ -102,9 +188,24 @@ def law_classes() -> frozenset[str]:
         ("isinstance(law, laws.Admittance | Maxwell)", 2),
         ("match law:\n  case Admittance(): pass", 1),
         ("spec.type == 'impedance'", 1),
+        ("'impedance' != spec.type", 1),
+        ("model == 'hunt-crossley'", 1),
+        ("law.name == 'hand'", 1),
+        ("str(spec.model) in {'elastic'}", 1),
+        ("law is Maxwell", 1),
+        ("type(law) is Maxwell", 1),
         ("spec.model not in ('elastic', 'maxwell')", 2),
         ("match spec.type:\n  case 'force': pass", 1),
+        ("match kind:\n  case 'robot' | 'switched-system': pass", 2),
+        ("spec.model.startswith('kelvin')", 1),
+        ("TEXTS.get(spec.model, 'a spring')", 1),
+        ("logic.type == 'thresholds'", 1),
+        ("isinstance(logic, EstimatorSpec)", 1),
+        ("actuator.command != 'rpm'", 1),
+        ("evidence.kind == 'common-quadratic'", 1),
         ("spec.commands == 'velocity'", 0),
+        ("operation.kind == 'multiply'", 0),
+        ("OPINIONS.get(evidence.kind)", 0),
         ("LAWS[spec.type]", 0),
     ],
 )
@@ -112,15 +213,24 @@ def test_what_counts_as_a_question(text, count):
     assert len(list(law_questions(ast.parse(text), law_classes()))) == count
 
 
-def test_nobody_asks_which_law_it_is():
-    """Laws of control and of contact, and what a spec says of them, are told apart by tables."""
+@cache
+def questions() -> frozenset[tuple[str, str]]:
     classes = law_classes()
-    asked = {
+    return frozenset(
         (name, asked)
         for name, path in FILES.items()
         for asked in law_questions(nodes_of(path)[0], classes)
-    }
-    assert asked == KNOWN_QUESTIONS
+    )
+
+
+def test_nobody_asks_which_law_it_is():
+    """Laws of control and of contact, and what a spec says of them, are told apart by tables."""
+    assert {(name, asked) for name, asked in questions() if asked not in SPEC_KINDS} == ALLOWED
+
+
+def test_the_kind_of_a_spec_is_asked_for_in_these_places_only():
+    found = {(name, asked) for name, asked in questions() if asked in SPEC_KINDS}
+    assert found == KINDS_OF_SPECS
 
 
 @pytest.mark.parametrize(

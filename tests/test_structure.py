@@ -36,6 +36,7 @@ DOORS = {
 PRINTED = {
     "nrs_design.design.analysis",
     "nrs_design.design.goals",
+    "nrs_design.design.linear_parts",
     "nrs_design.design.sampled_passivity",
     "nrs_design.search.loop_margin",
     "nrs_design.search.method_run",
@@ -124,6 +125,22 @@ def test_no_module_imports_itself_by_way_of_others():
     ):
         graph = {name: after - ends for name, after in graph.items() if name not in ends}
     assert not graph
+
+
+def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
+    """What a search begins, and where it ends, is counted: a clock would differ under load."""
+    assert {item.source for item in imports() if item.target == "time"} == {
+        "nrs_design.work",
+        # What a file of another program may take.
+        "nrs_design.confined_child",
+        # How long something took, told beside what was found.
+        "nrs_design.search.certify",
+        "nrs_design.pipeline.certification",
+        "nrs_design.cli.printing",
+        "nrs_design.cli.gate",
+    }
+    limited = {name for name in FILES if "time_limit" in FILES[name].read_text(encoding="utf-8")}
+    assert limited == {"nrs_design.search.sdp", "nrs_design.search.raw"}
 
 
 def test_the_proof_stands_on_itself():

@@ -16,7 +16,6 @@ from nrs_design.design.impedance_optimum import (
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.plotting import load_matplotlib
 from nrs_design.spec import read_spec
 
 if TYPE_CHECKING:
@@ -43,7 +42,6 @@ def problem_of(spec: Path, controller: str) -> ImpedanceProblem:
 
 def cost_figures(spec: Path) -> dict[str, bytes]:
     """Draw the landscape and the two parts of the cost, as SVG by file name."""
-    load_matplotlib()
     problem = problem_of(spec, "insertion")
     return {
         "cost-landscape.svg": _svg(_landscape(problem)),
@@ -53,7 +51,7 @@ def cost_figures(spec: Path) -> dict[str, bytes]:
 
 
 def _figure() -> tuple[Figure, Any]:
-    from matplotlib.figure import Figure
+    from nrs_design.plotting import Figure
 
     figure = Figure(figsize=(6, 4), layout="constrained")
     return figure, figure.add_subplot()

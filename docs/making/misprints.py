@@ -1,20 +1,20 @@
-"""Rows of ``reproduce`` in which the dissertation's print is wrong, as a table."""
+"""Errors of the dissertation's print, each once, with the rows of ``reproduce`` that they touch."""
 
 from __future__ import annotations
 
 from making.tables import cell
-from nrs_design.reproduction.comparison import PrintVerdict
-from nrs_design.reproduction.table import reproduce
+from nrs_design.reproduction.table import printed_errors, reproduce
 
 
 def misprints_table() -> str:
-    """Recompute everything, and list what is printed wrongly with what is right."""
+    """Recompute everything, and list what is printed differently with what is right."""
     lines = [
-        "| where | quantity | printed | recomputed | unit | why |",
-        "|---|---|---|---|---|---|",
+        "| error | where | quantity | printed | recomputed | unit | why |",
+        "|---|---|---|---|---|---|---|",
     ]
-    for row in reproduce():
-        if row.verdict is PrintVerdict.PRINT_IS_WRONG:
-            texts = (row.section, row.name, row.printed, row.value or "", row.unit, row.note)
+    for error, touched in printed_errors(reproduce()):
+        for row in touched:
+            about = error.about if row is touched[0] else ""
+            texts = (about, row.section, row.name, row.printed, row.value or "", row.unit, row.note)
             lines.append(f"| {' | '.join(cell(text) for text in texts)} |")
     return "\n".join(lines)

@@ -41,6 +41,15 @@ class Decision:
         return str(self.result.certification.verdict)
 
     @property
+    def refuted_in(self) -> str | None:
+        """In which contact alone it is refuted, ``in kept contact``; None where that is decisive.
+
+        Where contact may be lost, growth for which the environment would have to pull leaves the
+        verdict ``inconclusive``.
+        """
+        return self.result.certification.refuted_in
+
+    @property
     def common_quadratic(self) -> str:
         """Whether a common quadratic function exists: ``exists``, ``impossible``, ``unknown``."""
         return str(self.result.certification.common_quadratic)
@@ -66,7 +75,7 @@ class Decision:
     @property
     def assumptions(self) -> tuple[str, ...]:
         """What the claim takes for granted."""
-        return self.result.certification.system.assumptions
+        return self.result.certification.granted
 
     @property
     def attempts(self) -> tuple[Attempt, ...]:

@@ -72,7 +72,7 @@ def certify(
     method : str
         One rung of the ladder, or all of them in turn.
     budget : float, optional
-        Seconds that the search may take.
+        Work that the search may take, in units of about a second: 60 by default.
     max_degree : int, optional
         Highest degree of a polynomial function.
     gradient : Gradient, optional

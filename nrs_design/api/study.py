@@ -102,6 +102,8 @@ class Study:
         DesignError, AssemblyError
             If the spec has no design, or its modes make no switched system; or an option is out of
             its range.
+        ClockError
+            If the clock stopped the search, long after its budget of work should have.
         """
         limits = _limits(self.loaded.spec, budget, max_degree, gradient)
         result = pipeline.run_certification(
@@ -321,7 +323,7 @@ def _limits(
     from nrs_design.spec.certification import HIGHEST_DEGREE
 
     if budget is not None and not 0 < budget < math.inf:
-        raise DesignError(f"the budget is {budget}", remedy="give seconds above zero")
+        raise DesignError(f"the budget is {budget}", remedy="give units of work above zero")
     if max_degree is not None and not 2 <= max_degree <= HIGHEST_DEGREE:
         raise DesignError(f"max_degree is {max_degree}", remedy=f"give 2 to {HIGHEST_DEGREE}")
     limits = pipeline.search_limits(spec, pipeline.Overrides(max_degree, budget))

@@ -9,11 +9,12 @@ from enum import StrEnum
 from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
+from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.system_fields import system_fields
 
-SCHEMA = "nrs-design/certificate/4"
+SCHEMA = "nrs-design/certificate/5"
 # It named the modes only; what they are had to be assembled from the spec.
 FORMER = "nrs-design/certificate/3"
 # What says nothing about the claim, so that the id does not cover it.
@@ -72,12 +73,22 @@ class Certificate:
     @property
     def verdict(self) -> str:
         """``proved``, ``refuted``, or ``inconclusive`` if it shows neither."""
-        return str(verdict_of(self.statements))
+        return str(verdict_of(self.system, self.statements))
 
     @property
     def evidence(self) -> AbstractEvidence | None:
         """The statement that decides the verdict, or None."""
-        return deciding(self.statements)
+        return deciding(self.system, self.statements)
+
+    @property
+    def refuted_in(self) -> str | None:
+        """Of what the statements refute it, if that leaves the loss of contact open; or None."""
+        return refuted_in(self.system, self.statements)
+
+    @property
+    def granted(self) -> tuple[str, ...]:
+        """What the statements take for granted."""
+        return granted(self.system, self.statements)
 
     @property
     def common_quadratic(self) -> CommonQuadraticStatus:
@@ -90,18 +101,55 @@ class Certificate:
         return content_id(to_document(self))
 
 
-def verdict_of(statements: Iterable[AbstractEvidence]) -> Verdict:
-    """Return the verdict that checked statements carry."""
-    shown = {statement.shows for statement in statements}
+def verdict_of(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> Verdict:
+    """Return the verdict that checked statements about a system carry."""
+    shown = {statement.shown(system) for statement in statements}
     if Shows.STABILITY in shown:
         return Verdict.PROVED
     return Verdict.REFUTED if Shows.INSTABILITY in shown else Verdict.INCONCLUSIVE
 
 
-def deciding(statements: Iterable[AbstractEvidence]) -> AbstractEvidence | None:
-    """Return the statement that decides the verdict, or None."""
+def deciding(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> AbstractEvidence | None:
+    """Return the statement that decides the verdict on a system, or None."""
     decisive = (Shows.STABILITY, Shows.INSTABILITY)
-    return next((item for item in statements if item.shows in decisive), None)
+    return next((item for item in statements if item.shown(system) in decisive), None)
+
+
+def refuted_in(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> str | None:
+    """Say of what checked statements refute stability, where that does not decide the verdict.
+
+    That is kept contact, where its loss must be covered: the environment would have to pull.
+    """
+    if refutes_in_contact(system, statements) is None:
+        return None
+    return IN_KEPT_CONTACT if system.flights is None else AT_ANY_DEFLECTION
+
+
+def refutes_in_contact(
+    system: SwitchedSystem, statements: Iterable[AbstractEvidence]
+) -> AbstractEvidence | None:
+    """Return the statement that shows growth, where none decides and this one does not, or None."""
+    statements = tuple(statements)
+    if deciding(system, statements) is not None:
+        return None
+    growing = (s for s in statements if s.shown(system) is Shows.INSTABILITY_IN_CONTACT)
+    return next(growing, None)
+
+
+def granted(system: SwitchedSystem, statements: Iterable[AbstractEvidence]) -> tuple[str, ...]:
+    """Return what is taken for granted: how contact is lost, only by what covers its loss.
+
+    Of a system about whose stability nothing is shown, all that was to be taken for granted.
+    """
+    contact = system.contact
+    if contact is None or not contact.loss:
+        return system.assumptions
+    about = [s for s in statements if s.shows in (Shows.STABILITY, Shows.INSTABILITY)]
+    if about and not any(item.covers_loss(system) for item in about):
+        return system.assumptions
+    return (*system.assumptions, contact.loss)
 
 
 def common_quadratic_of(
@@ -112,8 +160,9 @@ def common_quadratic_of(
         if item.is_common_quadratic:
             return CommonQuadraticStatus.EXISTS
         # Where no reset moves the state, such a function would prove stability.
-        unstable = item.shows is Shows.INSTABILITY and not system.switching.resets
-        if item.shows is Shows.NO_COMMON_QUADRATIC or unstable or item.names_unstable_mode:
+        unstable = item.shows is Shows.INSTABILITY and item.is_of_modes(system)
+        unstable = unstable and (not system.switching.resets or item.names_unstable_mode)
+        if item.shows is Shows.NO_COMMON_QUADRATIC or unstable:
             return CommonQuadraticStatus.IMPOSSIBLE
     return CommonQuadraticStatus.UNKNOWN
 
@@ -124,6 +173,7 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
     document = {
         "schema": certificate.schema,
         "verdict": certificate.verdict,
+        **({} if certificate.refuted_in is None else {"refuted_in": certificate.refuted_in}),
         "spec": {"name": certificate.spec_name, "sha256": certificate.spec_sha256},
         "coordinates": certificate.coordinates,
         "gains": {name: dict(values) for name, values in certificate.gains.items()},

@@ -17,7 +17,7 @@ from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.streams import lasting
-from nrs_design.errors import NrsDesignError
+from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
 
 # Each is in the module of its name; the help lists them in this order.
@@ -45,9 +45,11 @@ COMMANDS = (
     "ros2",
 )
 
-# Settings of libraries that count from the moment they are loaded; the user's own come first.
+# Settings of libraries that count from the moment they are loaded; they are not for the user to
+# choose, as no outcome must depend on them.
 SETTINGS = {
-    # Small matrices: waiting for a second thread takes longer than the work.
+    # Threads share a sum as they find time, and round it differently. Matrices are small: waiting
+    # for a second thread takes longer than the work.
     "OPENBLAS_NUM_THREADS": "1",
     # No other package takes part in reading specs, and none is searched for.
     "PYDANTIC_DISABLE_PLUGINS": "__all__",
@@ -114,8 +116,7 @@ def _run() -> None:
 
 def main() -> None:
     """Run the program; an error that the user can mend is one message and exit code 2."""
-    for name, value in SETTINGS.items():
-        os.environ.setdefault(name, value)
+    os.environ.update(SETTINGS)
     if not sys.warnoptions:
         # What a library has to say to programmers is none of a user's business.
         warnings.simplefilter("ignore")
@@ -126,7 +127,8 @@ def main() -> None:
         if "--json" in sys.argv:
             print_json("error", error_summary(error))
         print_error(error)
-        sys.exit(exit_codes.USAGE)
+        stopped = isinstance(error, ClockError)
+        sys.exit(exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE)
     except OSError as error:
         # What could not be written must not be tried again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

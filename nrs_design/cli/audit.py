@@ -62,12 +62,13 @@ def audit(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Tell whether a run stayed inside what was proved: stiffness, contact, times, delay, force.
+    """Tell whether a run stayed inside what was proved: times, delay, command, force.
 
     Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
     force_N); velocity_rad_s; the command in the unit of the motor of the spec (command_rpm, _V, _A,
-    _counts); mode, the name of the controller in force. A violation of the stiffness is claimed
-    only where a whole 95 % interval lies outside the range; what cannot be judged is said.
+    _counts); mode, the name of the controller in force. Stiffness and contact are estimated only:
+    no run is called outside for them, and none inside where they matter. What cannot be judged is
+    said.
 
     Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
 
@@ -176,6 +177,7 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
             say(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
         if check.status == "not judged":
             say(f"not judged: {check.name}: {check.measured}")
+    say(found.estimates)
 
 
 def _measured(check: Check) -> str:
@@ -215,6 +217,7 @@ def _summary(
             }
             for c in found.checks
         ],
+        "estimated_share_of_time": found.share,
         "stiffness": [
             {
                 "from_s": found.log.begin + float(found.log.time[w.first]),
@@ -224,7 +227,6 @@ def _summary(
                 "high_Nm_rad": w.high,
             }
             for w in found.windows
-            if w.high < float("inf")
         ],
     }
 

@@ -23,6 +23,7 @@ def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
         "spec": result.loaded.spec.name,
         "spec_sha256": result.loaded.sha256,
         "verdict": str(certification.verdict),
+        "refuted_in": certification.refuted_in,
         "common_quadratic": str(certification.common_quadratic),
         "claim": evidence.claim(certification.system) if evidence else None,
         "statements": [
@@ -42,10 +43,15 @@ def certification_summary(result: Result, path: Path | None) -> dict[str, Any]:
         "modes": [mode.name for mode in certification.system.modes],
         "gains": dict(result.certificate.gains) if result.certificate else None,
         "attempts": [
-            {"step": a.step, "outcome": a.outcome, "seconds": round(a.seconds, 6)}
+            {
+                "step": a.step,
+                "outcome": a.outcome,
+                "work": round(a.work, 6),
+                "seconds": round(a.seconds, 6),
+            }
             for a in certification.attempts
         ],
-        "assumptions": list(certification.system.assumptions),
+        "assumptions": list(certification.granted),
         "certificate": None if path is None else str(path),
         "certificate_id": result.certificate.id if result.certificate else None,
     }

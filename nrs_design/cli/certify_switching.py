@@ -257,12 +257,14 @@ def _print(result: Result, *, verbose: bool) -> None:
     certification = result.certification
     name = result.loaded.spec.name
     verdict = str(certification.verdict)
-    exists = f"(common quadratic function: {certification.common_quadratic})"
-    say(f"{name}: {verdict.upper()} {exists}", verdict=verdict)
+    refuted = certification.refuted_in
+    aside = f"common quadratic function: {certification.common_quadratic}"
+    beside = aside if refuted is None else f"refuted {refuted}; {aside}"
+    say(f"{name}: {verdict.upper()} ({beside})", verdict=verdict)
     for statement in certification.statements:
         say(f"  {statement.claim(certification.system)}")
     if certification.evidence is None:
-        say("  Neither a proof nor a refutation was found; this is not a statement of stability.")
+        say(f"  {_open_words(refuted)}")
     everything = verbose or certification.evidence is None
     for attempt in certification.attempts:
         # What was looked for and is missing must not look like something that nobody wanted.
@@ -270,15 +272,24 @@ def _print(result: Result, *, verbose: bool) -> None:
         missing = sought and attempt.outcome != "found"
         if everything or missing:
             # What was not looked for took no time.
-            took = f" ({attempt.seconds * 1e3:.1f} ms)" if attempt.seconds else ""
+            took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
+            took = took if attempt.seconds else ""
             say(f"  {attempt.step}: {attempt.outcome}{took}")
     for goal in certified_goals(result.loaded.spec, result.certificate):
         ends = "met" if goal.met else "NOT PROVED"
         say(f"  goal {goal.key}, {goal.wanted}: {ends}: {goal.said}")
     say("  modes: " + ", ".join(_shortened([m.name for m in certification.system.modes])))
     say("  taken for granted (nrs-design report says how to test each):")
-    for assumption in certification.system.assumptions:
+    for assumption in certification.granted:
         say(f"    - {assumption}")
+
+
+def _open_words(refuted: str | None) -> str:
+    if refuted is None:
+        return "Neither a proof nor a refutation was found; this is not a statement of stability."
+    return (
+        f"Refuted {refuted}; where contact may be lost, neither a proof nor a refutation was found."
+    )
 
 
 def _shortened(names: list[str], limit: int = 12) -> list[str]:

@@ -70,6 +70,14 @@ def gate(
     no_reports: Annotated[
         bool, typer.Option("--no-reports", help="Write certificates, but no HTML reports.")
     ] = False,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="BASE",
+            help="Folder like this one, such as a checkout of the base branch: say what is weaker "
+            "here than there, and fail on it.",
+        ),
+    ] = None,
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
@@ -85,16 +93,27 @@ def gate(
     Example: nrs-design gate specs
 
     Example: nrs-design gate --locked --format github specs
+
+    Example: nrs-design gate --locked --against ../base specs
     """
     chosen = format_of(format_, as_json=as_json)
     _check_options(out, locked=locked, prune=prune)
     search = (max_degree, budget, memory)
     start = perf_counter()
+    if against is not None:
+        from nrs_design.gating.against import base_paths
+
+        # What cannot be compared is said before minutes of search.
+        base_paths(paths, against)
     outcome = (
         _re_check(paths, lock, quiet=quiet)
         if locked
         else _certify(paths, lock, reports, search, html=not no_reports, prune=prune, quiet=quiet)
     )
+    if against is not None:
+        from nrs_design.gating.against import compare_with_base
+
+        outcome = compare_with_base(outcome, paths, against, lock)
     _deliver(outcome, chosen, out, quiet=quiet)
     _note(outcome, quiet=quiet)
     note(f"{perf_counter() - start:.1f} s", quiet=quiet)
@@ -173,6 +192,8 @@ def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
     for item in outcome.broken:
         say_failure(text.line_of(item), str(item.status))
     if not quiet:
+        for line in text.change_lines(outcome):
+            say(line)
         say()
         say(text.summary_line(outcome))
 
@@ -189,7 +210,7 @@ def _certify(
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
-    from nrs_design.gating.renew import certificates_of, check_folder, write_lock
+    from nrs_design.gating.renew import bounds_of, certificates_of, check_folder, write_lock
     from nrs_design.gating.run import Files, run_gate
     from nrs_design.output import LOCK, check_place
     from nrs_design.pipeline import Overrides
@@ -197,9 +218,9 @@ def _certify(
     specs = find_specs(paths)
     check_folder(reports, lock)
     check_place(lock, LOCK)
-    locked = certificates_of(read_lock_if_any(lock), lock)
+    known = read_lock_if_any(lock)
     with progress("gate", quiet=quiet) as step:
-        files = Files(reports, html=html, locked=locked)
+        files = Files(reports, html, certificates_of(known, lock), bounds_of(known))
         outcome = run_gate(specs, files, step, Overrides(*search))
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 

@@ -16,24 +16,6 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec
 
 
-NOMINAL = (
-    "Values in this table are nominal: contact at its nominal stiffness, gains as designed. Goals "
-    "and warnings are about the worst corner of the ranges."
-)
-CONTINUOUS = (
-    "Margins and limits of stiffness are those of the loop in continuous time, with the force of "
-    "the moment: the sampling that the spec declares takes from them. certify-switching is about "
-    "the sampled loop."
-)
-
-
-def say_nominal(spec: InteractionDesignSpec) -> None:
-    """Print what the values of a table are about."""
-    say(NOMINAL)
-    if spec.sampling is not None:
-        say(CONTINUOUS)
-
-
 def print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
     from nrs_design.design.measures import MEANING
@@ -96,7 +78,8 @@ def _summary(found: Achieved) -> dict[str, Any]:
     return {
         "goal": measure.goal,
         "wanted": found.goal,
-        # JSON has no infinity: null is a margin that nothing limits, or an error without bound.
+        # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
+        # what is not computed, as `at` then says.
         "worst": found.value if math.isfinite(found.value) else None,
         "unit": {"deg": "rad", "deg/s": "rad/s", "ms": "s"}.get(measure.unit, measure.unit),
         "at": found.where,

@@ -12,6 +12,7 @@ import typer
 from nrs_design.cli.options import Quiet
 from nrs_design.cli.printing import note
 from nrs_design.errors import OutputError
+from nrs_design.files import open_regular
 
 # As the first line of every template says.
 SCHEMA = "nrs.schema.json"
@@ -73,5 +74,13 @@ def _write_schema(path: Path, *, quiet: bool) -> None:
     if not path.exists():
         write_output(path, schema_text())
         note(f"{path} written, for help in your editor", quiet=quiet)
-    elif path.read_text(encoding="utf-8", errors="replace") != schema_text():
+        return
+    wanted = schema_text().encode()
+    try:
+        with open_regular(path) as file:
+            same = file.read(2 * len(wanted)).replace(b"\r\n", b"\n") == wanted
+    except OSError as error:
+        note(f"{path} cannot be read ({error.strerror})", quiet=quiet)
+        return
+    if not same:
         note(f"{path} is that of another version: `nrs-design schema --out {path}` renews it")

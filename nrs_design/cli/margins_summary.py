@@ -21,6 +21,7 @@ def margins_summary(margins: ProofMargins) -> dict[str, Any]:
             "proved_scale_exact": None if box.proved is None else str(box.proved),
             "refuted_scale": None if box.refuted is None else upper_float(box.refuted),
             "refuted_scale_exact": None if box.refuted is None else str(box.refuted),
+            "refuted_in": box.refuted_in or None,
             "why_not_refuted": box.end or None,
             "method": box.proof.method if box.proof else None,
         }
@@ -30,6 +31,7 @@ def margins_summary(margins: ProofMargins) -> dict[str, Any]:
             "proved_exact": None if dwell.proved is None else str(dwell.proved),
             "refuted": None if dwell.refuted is None else lower_float(dwell.refuted),
             "refuted_exact": None if dwell.refuted is None else str(dwell.refuted),
+            "refuted_in": dwell.refuted_in or None,
             "longest_tried": lower_float(dwell.longest),
             "unit": "s",
             "method": dwell.proof.method if dwell.proof else None,
@@ -78,5 +80,6 @@ def _ends(bracket: Bracket) -> dict[str, float | str | None]:
     return {
         "proved": None if proved is None else lower_float(proved),
         "refuted": None if refuted is None else upper_float(refuted),
+        "refuted_in": bracket.refuted_in or None,
         "why_not_refuted": bracket.end or None,
     }

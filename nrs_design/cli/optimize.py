@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -12,7 +14,6 @@ from nrs_design.cli.goals import (
     goals_summary,
     print_goals,
     print_warnings,
-    say_nominal,
     say_unjudged,
     warnings_of,
 )
@@ -58,7 +59,7 @@ def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> Non
                 "spec_sha256": loaded.sha256,
                 "motion_loop": motion_summary(analysis),
                 "sensor": _sensor(designed),
-                "controllers": [_summary(item) for item in analysis.impedance],
+                "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
                 "warnings": warnings,
             },
         )
@@ -81,10 +82,30 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
     }
 
 
-def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
+def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
+    """Yield what the values of the table are about."""
+    from nrs_design.design.measures import COST_MEANING, LIMIT_MEANING, MEANING, ONE_AXIS
+
+    yield MEANING[0]
+    yield LIMIT_MEANING
+    if spec.coupling is not None:
+        yield ONE_AXIS
+    yield MEANING[-1]
+    yield COST_MEANING
+
+
+def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:
+    from nrs_design.design.measures import (
+        DELAY_MARGIN,
+        DISK_MARGIN,
+        GAIN_MARGIN,
+        PASSIVITY_NOT_COMPUTED,
+        PHASE_MARGIN,
+        SENSITIVITY_PEAK,
+    )
     from nrs_design.proof.bounds import lower_float, upper_float
 
-    margins, band = item.margins, item.band
+    band = item.band
     passive, broken = (None, None) if band is None else (band.passive, band.broken)
     return {
         "name": item.name,
@@ -97,16 +118,21 @@ def _summary(item: ImpedanceAnalysis) -> dict[str, Any]:
         "cost": item.cost,
         "given": [gain for gain in ("Mt", "Bt") if getattr(item.given, gain).fixed],
         "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
-        "sensitivity_peak": finite(margins.sensitivity_peak),
-        "gain_margin": finite(margins.gain_margin),
-        "phase_margin_rad": finite(margins.phase_margin),
-        "delay_margin_s": finite(margins.delay_margin),
-        "disk_margin": finite(margins.disk_margin),
-        "stiffness_limit": finite(margins.stiffness_limit),
+        "sensitivity_peak": finite(item.worst(SENSITIVITY_PEAK).value),
+        "gain_margin": finite(item.worst(GAIN_MARGIN).value),
+        "phase_margin_rad": finite(item.worst(PHASE_MARGIN).value),
+        "delay_margin_s": finite(item.worst(DELAY_MARGIN).value),
+        "disk_margin": finite(item.worst(DISK_MARGIN).value),
+        "stiffness_limit": finite(item.lowest_limit),
+        "stiffness_limit_at": item.limit_at,
+        "over": [*meanings(spec)],
         "lever_arm_m": item.lever_arm,
         "stiffness_limit_at_arm_N_m": item.limit_at_arm and finite(item.limit_at_arm),
         "passive_up_to_rad_s": passive and lower_float(passive),
         "not_passive_at_rad_s": broken and upper_float(broken),
+        "passivity_not_computed": None
+        if item.sampled or spec.sampling is None
+        else PASSIVITY_NOT_COMPUTED,
         "sampled_passivity": [_band(band) for band in item.sampled],
         "creep": _creep(item),
         "goals": goals_summary(item),
@@ -166,6 +192,8 @@ def finite(value: float) -> float | None:
 
 def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     G = analysis.motion
+    from nrs_design.design.measures import MARGINS
+
     source = (
         "designed by root locus" if analysis.motion_source == "designed" else "given in the spec"
     )
@@ -193,25 +221,31 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
             f"{item.Mt:.6g}",
             f"{item.Bt:.6g}",
             f"{item.cost:.4f}",
-            f"{item.margins.sensitivity_peak:.3f}",
-            f"{item.margins.gain_margin:.3g}",
-            f"{math.degrees(item.margins.phase_margin):.1f} deg",
-            f"{1e3 * item.margins.delay_margin:.1f} ms",
-            f"{item.margins.disk_margin:.3f}",
-            f"{item.margins.stiffness_limit:.1f}",
+            *(measure.text(item.worst(measure).value) for measure in MARGINS),
+            _limit(item.lowest_limit),
         ]
         for item in analysis.impedance
     ]
     if rows:
-        print_table("at nominal values", columns, rows)
-        say_nominal(spec)
+        print_table("margins and k limit: the worst over the ranges", columns, rows)
+        for line in meanings(spec):
+            say(line)
     limits = [
-        f"{item.name} {item.limit_at_arm:.4g} N/m at {item.lever_arm:g} m"
+        f"{item.name} {_limit(item.limit_at_arm)} N/m at {item.lever_arm:g} m"
         for item in analysis.impedance
         if item.limit_at_arm is not None and math.isfinite(item.limit_at_arm)
     ]
     if limits:
         say(f"k limit where it is touched: {', '.join(limits)}")
+
+
+def _limit(value: float) -> str:
+    """Write a limit of stiffness, rounded down."""
+    from nrs_design.proof.bounds import lower
+
+    if math.isnan(value):
+        return "not computed"
+    return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)
 
 
 def _polynomial(coefficients: tuple[float, ...]) -> str:

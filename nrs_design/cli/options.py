@@ -9,7 +9,19 @@ from typing import Annotated
 
 import typer
 
-from nrs_design.cli.seconds import seconds
+
+def read_work(text: str) -> float:
+    """Read a budget of work for an option; raises `typer.BadParameter` on anything else."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not value >= 0:
+        raise typer.BadParameter(
+            f"{text!r} is no budget: give units of work, such as 60, each of about a second"
+        )
+    return value
+
 
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
@@ -30,9 +42,10 @@ MaxDegree = Annotated[
 Budget = Annotated[
     float | None,
     typer.Option(
-        metavar="S",
-        parser=seconds(),
-        help="Time for each search in s; default: the spec's, or 60.",
+        metavar="WORK",
+        parser=read_work,
+        help="Work of each search, counted in units of about a second, the same on every machine; "
+        "default: the spec's, or 60.",
     ),
 ]
 Memory = Annotated[

@@ -35,7 +35,7 @@ def reproduce(
     as_json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Recompute the numbers that the thesis prints, and say which of them are wrong in print.
+    """Recompute the numbers that the thesis prints, and say which are printed differently.
 
     Exit code 0: every row is what it is on record to be. 1: a recomputed value has drifted.
 
@@ -102,12 +102,28 @@ def _summary(
     from dataclasses import asdict
 
     from nrs_design.reproduction.comparison import drifted
-    from nrs_design.reproduction.table import count_verdicts
+    from nrs_design.reproduction.table import (
+        CONVERTED,
+        count_verdicts,
+        counts_line,
+        printed_errors,
+    )
 
     content = {
+        "summary": counts_line(table),
         "counts": count_verdicts(table),
+        "errors_of_the_print": [
+            {
+                "id": error.id,
+                "where": error.where,
+                "about": error.about,
+                "rows": [row.name for row in touched],
+            }
+            for error, touched in printed_errors(table)
+        ],
         "drift": [row.name for row in drifted(table)],
         "rows": [asdict(row) for row in table],
+        "source": CONVERTED,
     }
     if gallery is not None:
         from nrs_design.reproduction.gallery.page import summarize_gallery
@@ -117,8 +133,8 @@ def _summary(
 
 
 def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
-    from nrs_design.reproduction.page import format_deviation
-    from nrs_design.reproduction.table import count_verdicts
+    from nrs_design.reproduction.page import format_within
+    from nrs_design.reproduction.table import CONVERTED, counts_line, printed_errors
 
     cells = [
         [
@@ -127,8 +143,8 @@ def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] 
             row.printed,
             row.value or "",
             row.unit,
-            format_deviation(row.deviation),
-            row.tolerance,
+            format_within(row.deviation, row.precision),
+            format_within(row.drift, row.limit),
             str(row.verdict),
         ]
         for row in table
@@ -139,20 +155,27 @@ def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] 
         "printed",
         "recomputed",
         "unit",
-        "deviation",
-        "tolerance",
+        "off the print\n(its precision)",
+        "off our reference\n(drift beyond)",
         "verdict",
     ]
     print_table("", columns, cells)
     for row in table:
-        if row.note:
-            say(f"{row.section} {row.name}: {row.note}")
+        if row.note or row.fitted:
+            fitted = f"Fitted: {row.fitted}. " if row.fitted else ""
+            say(f"{row.section} {row.name}: {fitted}{row.note}")
     say()
-    counts = count_verdicts(table)
-    say(", ".join(f"{count} {verdict}" for verdict, count in counts.items()))
+    errors = [
+        [error.id, error.where, error.about, str(len(touched))]
+        for error, touched in printed_errors(table)
+    ]
+    if errors:
+        print_table("Errors of the print", ["error", "where", "what", "rows"], errors)
+    say(CONVERTED)
     if gallery is not None:
         from nrs_design.reproduction.gallery.page import count_outcomes
 
         outcomes = count_outcomes(gallery)
         told = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items())
         say(f"figures, {sum(outcomes.values())} statements: {told}")
+    say(counts_line(table))

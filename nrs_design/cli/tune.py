@@ -12,7 +12,6 @@ from nrs_design.cli.goals import (
     goals_summary,
     print_goals,
     print_warnings,
-    say_nominal,
     say_unjudged,
     warnings_of,
 )
@@ -24,7 +23,6 @@ from nrs_design.cli.tables import print_table
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
-    from nrs_design.spec import InteractionDesignSpec
 
 FORCE_COLUMNS = (
     "controller",
@@ -43,6 +41,11 @@ PARALLEL_COLUMNS = (
     "unstable for k\nN m/rad",
 )
 
+_NOMINAL = (
+    "Poles, damping and steady error in this table are those of the loop at nominal values in "
+    "continuous time. Goals and warnings are about the loop that certify-switching is about, at "
+    "the worst corner of the ranges."
+)
 _NO_OFFSET = (
     "{}: the steady-state error is that of a commanded position where contact begins. A simulated "
     "run keeps the position that was commanded at the switch, and leaves another error."
@@ -75,7 +78,7 @@ def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
         content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
         print_json("tune", content | _summary(designed.design, analysis) | {"warnings": warnings})
     elif not quiet:
-        _print(designed.spec, designed.design, analysis)
+        _print(designed.spec.name, designed.design, analysis)
         print_goals(loaded.spec.name, analysis.tuned)
         say_unjudged(designed.spec)
         print_warnings(warnings, quiet=quiet)
@@ -135,15 +138,14 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
     }
 
 
-def _print(spec: InteractionDesignSpec, design: ControllerDesign, analysis: DesignAnalysis) -> None:
-    name = spec.name
+def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
     columns = _motion_columns(design.command)
     print_table(f"{name}: motion loop", columns, _motion_rows(design, analysis))
     if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
         print_table(f"{name}: force loop, nominal", FORCE_COLUMNS, _force_rows(analysis))
-        say_nominal(spec)
+        say(_NOMINAL)
         for item in analysis.force:
             if item.peak is not None:
                 say(_offset_text(item))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
     from nrs_design.spec import LoadedSpec, Spec
 
-# For each of the bounds of a robot, in s.
+# Work for each of the bounds of a robot.
 BUDGET = 1800.0
 
 
@@ -58,14 +58,17 @@ def verify(
     """Re-check a certificate in exact arithmetic, and that its modes are those of a spec.
 
     No solver runs. Without a spec, the proof is checked for the modes that the certificate holds,
-    and the answer says so: whose modes they are is then not known.
+    and the answer says so: whose modes they are is then not known, and gains, coordinates and
+    assumptions, which nothing holds against anything, are not printed.
 
     With --deployed, the numbers in an exported file are compared with the certificate: the gains of
     a record; coefficients, limits and modes of a header; limits, ranges and code of a monitor; all
-    sources and variables of an FMU. Comments and compiled libraries are not compared.
+    sources and variables of an FMU, and its library with what the compiler here makes of them. The
+    answer says first what was compared and what was not, such as the code beside a header.
 
-    Where the spec names a robot, the bounds on its links are read from the file beside it, and the
-    answer says so; --bounds computes them again, from the spec of the robot.
+    Where the spec names a robot, the bounds on its links are taken on trust from the file beside
+    it, and the answer says so; a file that a pose contradicts is rejected. --bounds computes them
+    again, from the spec of the robot.
 
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
     deployed numbers or the bounds of the robot are others. 3: it holds, but decides nothing.
@@ -74,15 +77,16 @@ def verify(
     """
     _check_arguments(certificate, spec, coordinates, deployed)
     outcome, loaded = _verify(certificate, spec, None if coordinates is None else str(coordinates))
-    robot = None if loaded is None else _robot_of(loaded)
+    robot = None if loaded is None else loaded.robot
     if bounds and robot is None:
         raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
-    faults = _bounds_faults(robot, quiet=quiet) if bounds and robot is not None else None
+    faults = None if robot is None else _bounds_faults(robot, again=bounds, quiet=quiet)
+    on_trust = None if robot is None or bounds else _file_of(robot)
     checked = outcome.certificate if outcome.fault is None else None
     differences = _differences(deployed, loaded, checked)
     if as_json:
         given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
-        _print_json(outcome, given, differences, faults)
+        _print_json(outcome, given, differences, faults, on_trust)
     elif checked is None:
         say(f"REJECTED: {outcome.fault}", verdict="rejected")
     else:
@@ -90,10 +94,10 @@ def verify(
         if differences is not None:
             _print_deployed(deployed, differences, quiet=quiet)
         _print_faults(faults or [])
-        if not quiet:
-            _print(checked, None if loaded is None else loaded.spec)
-        if robot is not None and not faults and not quiet:
-            say(_taken(robot, again=bounds))
+        if not (quiet or faults):
+            _print(checked, None if loaded is None else loaded.spec, on_trust)
+        if robot is not None and bounds and not faults and not quiet:
+            say(f"  bounds of {robot.as_posix()}: computed again, they hold")
     if checked is None or differences or faults:
         raise typer.Exit(exit_codes.REFUTED)
     raise typer.Exit(exit_codes.OF_VERDICT[checked.verdict])
@@ -139,22 +143,26 @@ def _print_json(
     given: Mapping[str, Path | None],
     differences: list[str] | None,
     faults: list[str] | None,
+    on_trust: Path | None,
 ) -> None:
     from nrs_design.certificates.units import gain_units
 
     checked = outcome.certificate if outcome.fault is None else None
+    # What stands in a certificate beside its modes is held against a spec, or against nothing.
+    compared = checked if given["spec"] is not None else None
     files = {name: None if path is None else str(path) for name, path in given.items()}
     print_json(
         "verify",
         {
-            "verdict": checked.verdict if checked else "rejected",
+            "verdict": checked.verdict if checked and not (differences or faults) else "rejected",
+            "refuted_in": checked.refuted_in if checked else None,
             "fault": outcome.fault,
             "claims": [item.claim(checked.system) for item in checked.statements]
             if checked
             else None,
-            "gains": dict(checked.gains) if checked else None,
-            "gain_units": gain_units(checked) if checked else None,
-            "assumptions": list(checked.system.assumptions) if checked else None,
+            "gains": dict(compared.gains) if compared else None,
+            "gain_units": gain_units(compared) if compared else None,
+            "assumptions": list(compared.granted) if compared else None,
             "certificate": files["certificate"],
             "certificate_id": checked.id if checked else None,
             "spec": files["spec"],
@@ -162,6 +170,7 @@ def _print_json(
             "differences": differences,
             "robot": files["robot"],
             "bounds_faults": faults,
+            "on_trust": None if on_trust is None else str(on_trust),
         },
     )
 
@@ -173,27 +182,19 @@ def _print_faults(faults: list[str]) -> None:
         say(f"  {line}")
 
 
-def _robot_of(loaded: LoadedSpec) -> Path | None:
-    """Return the file of the robot that a spec names."""
-    spec = loaded.spec
-    coupling = spec.coupling if spec.kind == "interaction-design" else None
-    return None if coupling is None or not coupling.robot else loaded.path.parent / coupling.robot
+def _file_of(robot: Path) -> Path:
+    from nrs_design.spec.robot_bounds import bounds_file
+
+    return bounds_file(robot)
 
 
-def _bounds_faults(robot: Path, *, quiet: bool) -> list[str]:
-    from nrs_design.pipeline.robots import check_robot_bounds
+def _bounds_faults(robot: Path, *, again: bool, quiet: bool) -> list[str]:
+    from nrs_design.pipeline.robots import check_robot_bounds, contradict_robot_bounds
 
-    with progress(f"bounds of {robot.name}", quiet=quiet, lines=True) as step:
-        return list(check_robot_bounds(robot, BUDGET, step)[1])
-
-
-def _taken(robot: Path, *, again: bool) -> str:
-    if again:
-        return f"  bounds of {robot.as_posix()}: computed again, they hold"
-    return (
-        f"  taken for granted: the bounds of {robot.as_posix()}, as computed before; --bounds "
-        "computes them again"
-    )
+    with progress(f"bounds of {robot.name}", quiet=quiet, lines=again) as step:
+        if again:
+            return list(check_robot_bounds(robot, BUDGET, step)[1])
+        return list(contradict_robot_bounds(robot, step)[1])
 
 
 _NEXT = {
@@ -224,29 +225,49 @@ def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -
         for line in differences:
             say(f"  {line}")
     elif not quiet:
-        say(f"deployed: {file} holds the numbers of the certificate, bit for bit")
-        if file is not None and file.suffix == ".fmu":
-            say("  not compared: a compiled library inside; only its sources are")
+        from nrs_design.exporters.deployed import scope_of
+
+        assert file is not None, "it was compared"
+        compared, left_out = scope_of(file)
+        say(
+            f"deployed: {compared} of {file}: those of the certificate, bit for bit; not compared: "
+            f"{left_out}"
+        )
 
 
-def _print(certificate: Certificate, spec: Spec | None) -> None:
-    from nrs_design.certificates.units import gain_units
-
-    verdict = certificate.verdict
+def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -> None:
+    verdict, where = certificate.verdict, certificate.refuted_in
+    refuted = "" if where is None else f" (refuted {where})"
     if spec is None:
-        say(f"{verdict.upper()} for the modes in the file, checked exactly.", verdict=verdict)
+        say(
+            f"{verdict.upper()}{refuted} for the modes in the file, checked exactly.",
+            verdict=verdict,
+        )
         say(
             "  not compared with a spec: name it to check that these are its modes, gains and "
-            "assumptions"
+            "assumptions; without it none of them is printed"
         )
+    elif on_trust is None:
+        say(f"{verdict.upper()}{refuted}: the certificate holds, checked exactly.", verdict=verdict)
     else:
-        say(f"{verdict.upper()}: the certificate holds, checked exactly.", verdict=verdict)
+        say(
+            f"{verdict.upper()}{refuted}, on trust in {on_trust.as_posix()}: the certificate "
+            "holds, checked exactly, if the bounds in that file do; --bounds computes them again.",
+            verdict=verdict,
+        )
     for statement in certificate.statements:
         say(f"  {statement.claim(certificate.system)}")
-    if certificate.coordinates:
+    if spec is not None and certificate.coordinates:
         say(f"  coordinates: {certificate.coordinates}")
     if verdict in _NEXT:
         say(_NEXT[verdict])
+    if spec is not None:
+        _print_gains(certificate, spec)
+
+
+def _print_gains(certificate: Certificate, spec: Spec) -> None:
+    from nrs_design.certificates.units import gain_units
+
     units = gain_units(certificate)
     for name, gains in certificate.gains.items():
         if gains:
@@ -256,7 +277,7 @@ def _print(certificate: Certificate, spec: Spec | None) -> None:
                 say(f"  {name}: {gain} anywhere in [{low}, {high}]")
 
 
-def _ranges(spec: Spec | None, name: str) -> Iterator[tuple[str, str, str]]:
+def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:
     """Yield the gains of a controller that have a range, with its ends as written."""
     controller = getattr(spec, "controllers", {}).get(name)
     for gain in ("Mt", "Bt"):

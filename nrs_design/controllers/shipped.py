@@ -63,8 +63,8 @@ def shipped_law(
 
 def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> StepLogic | None:
     """Return the mode logic that ships; an estimator of the environment does not."""
-    logic = spec.mode_logic
-    if logic is None or logic.type != "thresholds":
+    logic = None if spec.mode_logic is None else spec.mode_logic.thresholds
+    if logic is None:
         return None
     return StepLogic.of(logic, law.modes, period)
 

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 
 from nrs_design.controllers.controller_design import ImpedanceOptimum
-from nrs_design.design.goals import Requirement
+from nrs_design.design.goals import NOT_COMPUTED, Requirement
 from nrs_design.design.impedance_optimum import (
     NODES,
     ImpedanceProblem,
@@ -18,7 +18,7 @@ from nrs_design.design.impedance_optimum import (
     objective_of,
     optimize_impedance,
 )
-from nrs_design.design.measures import Measure
+from nrs_design.design.measures import CREEP_MEASURES, Measure
 from nrs_design.design.nested_search import search_square
 from nrs_design.design.pattern_search import Objective
 from nrs_design.design.transfer import FloatArray
@@ -31,7 +31,8 @@ _MISSED = 1e6
 def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> ImpedanceOptimum:
     """Find the global minimum of the cost over the admittances that meet all goals.
 
-    Where the minimum without goals meets them, it is the answer.
+    Where the minimum without goals meets them, it is the answer. Goals are held against the loop
+    that is proved; the cost is that of the thesis.
 
     Parameters
     ----------
@@ -46,6 +47,7 @@ def optimize_with_goals(problem: ImpedanceProblem, requirement: Requirement) -> 
         If no admittance within the bounds is stable, or none meets the goals; the message names
         the goal and the best value within the bounds.
     """
+    _check_computed(requirement)
     optimum = optimize_impedance(problem)
     if meets(requirement, optimum.Mt, optimum.Bt):
         return optimum
@@ -116,6 +118,17 @@ class _Search:
         part = 1 - 1 / (1 + np.maximum(missed, 0))
         values[stable] = np.where(missed > 0, _MISSED + part, values[stable])
         return values
+
+
+def _check_computed(requirement: Requirement) -> None:
+    """Refuse goals that no number decides."""
+    unknown = (m for m, _ in requirement.goals if m not in CREEP_MEASURES)
+    if requirement.axis is None and (measure := next(unknown, None)) is not None:
+        raise DesignError(
+            f"the {measure.title} is {NOT_COMPUTED}",
+            remedy=f"leave the goal {measure.goal} out, or outer_period",
+            at=("goals", measure.goal),
+        )
 
 
 def _unreachable(

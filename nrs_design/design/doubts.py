@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from nrs_design.controllers.controller_design import ImpedanceOptimum
@@ -20,7 +21,9 @@ def doubt_values(name: str, achieved: tuple[Achieved, ...]) -> Iterator[Doubt]:
     bad, keys = [], []
     for item in achieved:
         measure, limit = item.measure, item.measure.doubtful
-        if limit is None or measure in judged or measure.violation(item.value, limit) <= 0:
+        known = not math.isnan(item.value)
+        missed = known and limit is not None and measure.violation(item.value, limit) > 0
+        if limit is None or measure in judged or not missed:
             continue
         bad.append(
             f"{measure.title} {measure.text(item.value)} (usual: {measure.goal_text(limit)})"

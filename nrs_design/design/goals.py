@@ -1,23 +1,28 @@
 """What a controller achieves at worst, beside what the spec asks for.
 
+The loop is that of the modes that a certificate is about, cut where the law takes the force.
 Margins are taken in every contact: at the nominal values of the environment that the controller is
-designed for, and at all corners of the declared ranges of all its contacts and of its gains.
-Displayed impedance and force error are what the design is for: they are taken with the designed
-gains, in the environment that it is designed for, at its nominal values and at all corners of its
-ranges. Values between corners are not looked at. All of it is floating point, and no proof.
+designed for, and at all corners of the declared ranges of all its contacts, of its gains and of the
+motor, sampled at every age of the force sample. Displayed impedance and force error are what the
+design is for: they are taken with the designed gains, in the environment that it is designed for.
+Values between corners are not looked at. All of it is floating point, and no proof.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
 from itertools import product
+from math import pi, tan
 
 import numpy as np
 
+from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
-from nrs_design.design.impedance import ImpedanceLoop
+from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops, gain_extremes, multiply
 from nrs_design.design.measures import (
     AT_HOME,
@@ -34,9 +39,14 @@ from nrs_design.design.measures import (
     TRANSPARENCY,
     Measure,
 )
-from nrs_design.design.transfer import FloatArray, TransferFunction
+from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
+from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
+from nrs_design.switched.cut_loop import AbstractAxis, Place
+
+# In the place of a corner.
+NOT_COMPUTED = "not computed: the force is sampled more often than the motion loop"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,60 +78,93 @@ class Achieved:
 
 @dataclass(frozen=True, slots=True)
 class ContactCorner:
-    """One contact that a controller is measured in, and where its gains are then.
+    """One contact that a controller is measured in, and where gains and motor are then.
 
     Parameters
     ----------
     label : str
         For people.
+    environment : str
+        Its name.
     contact : AbstractLinearLaw
         The environment there.
+    place : Place
+        Of the motor, and the age of the force sample.
+    designed : bool
+        Whether the gains are the designed ones.
     home : bool
-        Whether this is the environment that the controller is designed for, with the designed
-        gains.
+        Whether they are, and this is the environment that the controller is designed for.
     Mt, Bt : float or None
         End of a declared range of the gain; None is the designed gain.
-    Kt : float
+    Kt : Fraction
         Spring of the admittance, N m/rad; zero is none.
     """
 
     label: str
+    environment: str
     contact: AbstractLinearLaw
+    place: Place
+    designed: bool
     home: bool
     Mt: float | None = None
     Bt: float | None = None
-    Kt: float = 0.0
+    Kt: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True)
 class Requirement:
-    """Goals of one controller, and all that is needed to measure it.
+    """Goals of one impedance controller, and all that is needed to measure it.
 
     Parameters
     ----------
-    motion : TransferFunction
-        Closed motion loop G.
+    axis : AbstractAxis or None
+        From which the modes follow; None where no loop is cut at one place. What takes a loop is
+        then not computed: NaN.
     corners : tuple of ContactCorner
         As `corners_of` gives them.
     goals : tuple of (Measure, float)
         Goals in SI units.
     desired : float
-        Desired impedance, N m s/rad; impedance controllers only.
+        Desired impedance, N m s/rad.
     bandwidth : float
-        Highest frequency of the command, rad/s; impedance controllers only.
-    lags : tuple of float
-        Denominator of the filter of the force, whose numerator is 1.
+        Highest frequency of the command, rad/s.
     force_error : float
         Bound on the lasting error of the force signal, N m.
     """
 
-    motion: TransferFunction
+    axis: AbstractAxis | None
     corners: tuple[ContactCorner, ...]
     goals: tuple[tuple[Measure, float], ...] = ()
     desired: float = 0.0
     bandwidth: float = 0.0
-    lags: tuple[float, ...] = (1.0,)
     force_error: float = 0.0
+
+    @cached_property
+    def nominal(self) -> tuple[ContactCorner, ...]:
+        """Nominal contact, motor and gains, at every age of the force sample."""
+        first = next(corner for corner in self.corners if corner.home)
+        return tuple(
+            corner
+            for corner in self.corners
+            if corner.home
+            and corner.contact == first.contact
+            and corner.place.motor == first.place.motor
+        )
+
+    def stable(self, Mt: FloatArray, Bt: FloatArray) -> BoolArray:
+        """Tell for which admittances nominal contact is stable, at every age of the force sample.
+
+        Parameters
+        ----------
+        Mt, Bt : ndarray, shape (m,)
+            kg m^2 and N m s/rad.
+        """
+        loops = [self.loops(corner, Mt, Bt) for corner in self.nominal]
+        return np.asarray(np.all([each.stable for each in loops], axis=0))
+
+    def corner(self, label: str) -> ContactCorner:
+        """Return the corner of a label."""
+        return next(corner for corner in self.corners if corner.label == label)
 
     def violation(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         """Return by which part the worst goal is missed; not positive where all are met."""
@@ -144,6 +187,8 @@ class Requirement:
         Mt, Bt : ndarray, shape (m,)
             The admittances, kg m^2 and N m s/rad.
         """
+        if self.axis is None and measure not in (CREEP, CREEP_ANGLE):
+            return np.full(len(Mt), np.nan), [NOT_COMPUTED] * len(Mt)
         corners = [c for c in self.corners if c.home or measure not in AT_HOME]
         table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
         worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
@@ -151,29 +196,146 @@ class Requirement:
         in_the_air = measure in (CREEP, CREEP_ANGLE)
         return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
+    def loops(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
+        """Return the open loops at a corner.
+
+        Parameters
+        ----------
+        corner : ContactCorner
+            One of the `corners`.
+        Mt, Bt : ndarray, shape (m,)
+            The designed gains, kg m^2 and N m s/rad.
+        """
+        gains = _gains(corner, Mt, Bt)
+        return self.family(corner).loops(*gains, corner.contact.stiffness)
+
+    def displayed(
+        self, corner: ContactCorner, Mt: float, Bt: float, omega: FloatArray
+    ) -> ComplexArray | None:
+        """Return the displayed impedance at frequencies in rad/s, but for its phase if sampled.
+
+        Parameters
+        ----------
+        corner : ContactCorner
+            One of the `corners`.
+        Mt, Bt : float
+            The designed gains, kg m^2 and N m s/rad.
+        omega : ndarray
+            Frequencies, rad/s.
+
+        Returns
+        -------
+        ndarray or None
+            In N m s/rad; None where it is not computed: for a sampled law with a spring.
+        """
+        if self.axis is None or (corner.Kt and self.axis.period is not None):
+            return None
+        gains = _gains(corner, np.array([Mt]), np.array([Bt]))
+        loops = self.loops(corner, *gains)
+        above, below = self.family(corner).over_admittance(*gains)
+        shown = Loops(multiply(loops.numerator, above), multiply(loops.closed, below), loops.period)
+        (found,) = shown.response(omega)
+        return np.asarray(found)
+
+    def stiffness_limits(
+        self, Mt: float, Bt: float, *, retuned: bool = True
+    ) -> dict[str, tuple[float, str]]:
+        """Return the smallest stiffness limit in N m/rad in every environment, and where it is.
+
+        Parameters
+        ----------
+        Mt, Bt : float
+            The designed gains, kg m^2 and N m s/rad.
+        retuned : bool
+            Whether the corners of the ranges of gains count as well.
+        """
+        if self.axis is None:
+            return {c.environment: (np.nan, NOT_COMPUTED) for c in self.corners}
+        found: dict[str, tuple[float, str]] = {}
+        seen = set()
+        for corner in self.corners:
+            gains = Mt if corner.Mt is None else corner.Mt, Bt if corner.Bt is None else corner.Bt
+            key = corner.contact.at_stiffness(Fraction(1)), corner.place, corner.Kt, gains
+            if (corner.environment, key) in seen or not (retuned or corner.designed):
+                continue
+            seen.add((corner.environment, key))
+            limit = self.family(corner).stiffness_limit(*gains)
+            if corner.environment not in found or limit < found[corner.environment][0]:
+                found[corner.environment] = limit, corner.label
+        return found
+
+    def family(self, corner: ContactCorner) -> LoopFamily:
+        """Return the loops of all admittances in a contact, made once."""
+        key = corner.contact.at_stiffness(Fraction(1)), corner.Kt, corner.place
+        assert self.axis is not None, "without an axis there are no loops"
+        if key not in self._families:
+            self._families[key] = LoopFamily(self.axis, *key)
+        return self._families[key]
+
+    @cached_property
+    def _families(self) -> dict[tuple[AbstractLinearLaw, Fraction, Place], LoopFamily]:
+        return {}
+
     def _at(
         self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
     ) -> FloatArray:
-        Mt = Mt if corner.Mt is None else np.full_like(Mt, corner.Mt)
-        Bt = Bt if corner.Bt is None else np.full_like(Bt, corner.Bt)
+        Mt, Bt = _gains(corner, Mt, Bt)
         if measure is CREEP:
             return np.zeros_like(Bt) if corner.Kt else self.force_error / Bt
         if measure is CREEP_ANGLE:
-            return np.full_like(Bt, self.force_error / corner.Kt if corner.Kt else np.inf)
-        loops = _impedance_loops(self, corner, Mt, Bt)
-        if measure is TRANSPARENCY:
-            return transparency(loops, self.bandwidth)
-        if measure is HAND_EFFORT:
-            return hand_effort(loops, corner.contact, self.bandwidth)
+            angle = self.force_error / float(corner.Kt) if corner.Kt else np.inf
+            return np.full_like(Bt, angle)
+        if measure in (TRANSPARENCY, HAND_EFFORT):
+            return self._held(corner, measure, Mt, Bt)
+        loops = self.loops(corner, Mt, Bt)
         if measure is not IMPEDANCE_ERROR:
             return _margin(loops, measure)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
             return np.full(len(Mt), np.inf)
-        forward = multiply(loops.numerator, np.tile(self.lags, (len(Mt), 1)))
-        displayed = multiply(forward, np.stack([Mt, Bt], axis=1))
-        low, high = gain_extremes(displayed, loops.closed, self.bandwidth)
+        above, below = self.family(corner).over_admittance(Mt, Bt)
+        displayed = multiply(loops.numerator, above), multiply(loops.closed, below)
+        low, high = gain_extremes(*displayed, self._seen_bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
         return np.where(loops.stable, error, np.inf)
+
+    def _held(
+        self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
+    ) -> FloatArray:
+        """Return a measure of the hand that holds the robot."""
+        if self._period is not None:
+            raise DesignError(
+                f"the {measure.title} is not computed for a sampled loop",
+                remedy=f"leave {measure.goal} out, or sampling",
+                at=("goals", measure.goal),
+            )
+        loops = self.family(corner).felt(Mt, Bt, corner.contact.stiffness)
+        if measure is TRANSPARENCY:
+            return transparency(loops, self.bandwidth)
+        return hand_effort(loops, corner.contact, self.bandwidth)
+
+    @property
+    def _period(self) -> Fraction | None:
+        return None if self.axis is None else self.axis.period
+
+    @property
+    def _seen_bandwidth(self) -> float:
+        """The bandwidth on the axis of the loops; up to half the sampling rate, if there is one."""
+        if self._period is None:
+            return self.bandwidth
+        half = float(self._period) / 2
+        return tan(min(self.bandwidth * half, pi / 2 * _NEARLY)) / half
+
+
+# Half the sampling rate is at infinity.
+_NEARLY = 1 - 1e-9
+
+
+def _gains(corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the gains at a corner."""
+    return (
+        Mt if corner.Mt is None else np.full_like(Mt, corner.Mt),
+        Bt if corner.Bt is None else np.full_like(Bt, corner.Bt),
+    )
 
 
 def achieve_impedance(
@@ -200,30 +362,49 @@ def achieve_impedance(
     return tuple(found)
 
 
-def achieve_force(
-    requirement: Requirement,
-    measures: tuple[Measure, ...],
-    gain: float,
-    approach: Approach = NO_OFFSET,
-) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one force gain.
+@dataclass(frozen=True)
+class ForceRequirement:
+    """Goals of one force controller, and all that is needed to measure it.
 
     Parameters
     ----------
-    requirement : Requirement
+    axis, corners, goals
+        As for `Requirement`.
+    law : CompliantLaw
+        With the gains that ship.
+    motion : TransferFunction
+        Closed motion loop G, from commanded to actual position, for the steady error.
+    """
+
+    axis: AbstractAxis | None
+    corners: tuple[ContactCorner, ...]
+    goals: tuple[tuple[Measure, float], ...]
+    law: CompliantLaw
+    motion: TransferFunction
+
+
+def achieve_force(
+    requirement: ForceRequirement, measures: tuple[Measure, ...], approach: Approach = NO_OFFSET
+) -> tuple[Achieved, ...]:
+    """Return the worst value of every measure of one force controller.
+
+    Parameters
+    ----------
+    requirement : ForceRequirement
         Where it is measured, and what is wanted.
     measures : tuple of Measure
         What is measured.
-    gain : float
-        In rad/(N m).
     approach : Approach
         How the limit is reached, for the steady error; by default there is no offset.
     """
     goals = dict(requirement.goals)
+    if requirement.axis is None:
+        return tuple(Achieved(m, np.nan, NOT_COMPUTED, goals.get(m)) for m in measures)
+    loops = {corner.label: _force_loops(requirement, corner) for corner in requirement.corners}
     found = []
     for measure in measures:
         values = {
-            corner.label: _force_value(requirement.motion, corner, measure, gain, approach)
+            corner.label: _force_value(requirement, corner, measure, loops[corner.label], approach)
             for corner in requirement.corners
             if corner.home or measure is not FORCE_ERROR
         }
@@ -235,8 +416,9 @@ def achieve_force(
 def corners_of(
     environments: tuple[Environment, ...],
     home: str,
-    gains: Mapping[str, tuple[float, ...]],
-    spring: float = 0.0,
+    gains: Mapping[str, tuple[Fraction, ...]],
+    places: tuple[Place, ...],
+    spring: Fraction = Fraction(0),
 ) -> tuple[ContactCorner, ...]:
     """List where a controller is measured.
 
@@ -248,66 +430,78 @@ def corners_of(
         The one that it is designed for.
     gains : mapping
         Ends of the declared ranges of ``Mt``, ``Bt`` and ``Kt``, empty for a gain without a range.
-    spring : float
+    places : tuple of Place
+        Of the motor, and ages of the force sample.
+    spring : Fraction
         The designed Kt, N m/rad.
     """
     return tuple(
         corner
         for environment in environments
-        for corner in _corners(environment, home, gains, spring)
+        for corner in _corners(environment, home, gains, places, spring)
     )
 
 
 def _corners(
-    environment: Environment, home: str, gains: Mapping[str, tuple[float, ...]], spring: float
+    environment: Environment,
+    home: str,
+    gains: Mapping[str, tuple[Fraction, ...]],
+    places: tuple[Place, ...],
+    spring: Fraction,
 ) -> Iterator[ContactCorner]:
     points = list(environment.corners)
     if environment.nominal not in points:
         points.insert(0, environment.nominal)
     designed = (None, None, None)
     retuned = [*product(*(gains.get(name) or (None,) for name in ("Mt", "Bt", "Kt")))]
-    for contact, (Mt, Bt, Kt) in product(points, dict.fromkeys([designed, *retuned])):
+    tuned = dict.fromkeys([designed, *retuned])
+    for contact, place, (Mt, Bt, Kt) in product(points, places, tuned):
         at = [*contact.texts()]
-        at += [f"Mt = {Mt:.6g} kg*m^2"] if Mt is not None else []
-        at += [f"Bt = {Bt:.6g} N*m*s/rad"] if Bt is not None else []
-        at += [f"Kt = {Kt:.6g} N*m/rad"] if Kt is not None else []
-        is_home = environment.name == home and (Mt, Bt, Kt) == designed
-        label = f"{environment.name}, {', '.join(at)}"
-        yield ContactCorner(label, contact, is_home, Mt, Bt, spring if Kt is None else Kt)
+        at += [f"Mt = {float(Mt):.6g} kg*m^2"] if Mt is not None else []
+        at += [f"Bt = {float(Bt):.6g} N*m*s/rad"] if Bt is not None else []
+        at += [f"Kt = {float(Kt):.6g} N*m/rad"] if Kt is not None else []
+        label = f"{environment.name}, {', '.join((*at, *place.texts))}"
+        as_designed = (Mt, Bt, Kt) == designed
+        yield ContactCorner(
+            label,
+            environment.name,
+            contact,
+            place,
+            as_designed,
+            environment.name == home and as_designed,
+            None if Mt is None else float(Mt),
+            None if Bt is None else float(Bt),
+            spring if Kt is None else Kt,
+        )
 
 
-def _impedance_loops(
-    requirement: Requirement, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray
-) -> Loops:
-    """Return ``G Ze H Y`` of many admittances (thesis fig. 6.13)."""
-    loop = ImpedanceLoop(requirement.motion, corner.contact, corner.Kt, requirement.lags)
-    contact, free = loop.forward
-    numerator = np.zeros((len(Mt), len(free) + 1))
-    numerator[:, len(free) + 1 - len(contact) :] = contact
-    denominator = np.zeros_like(numerator)
-    denominator[:, :-1] += np.outer(Mt, free)
-    denominator[:, 1:] += np.outer(Bt, free)
-    denominator[:, len(free) + 1 - len(loop.drawn) :] += loop.drawn
-    return Loops(numerator, denominator)
+def _force_loops(requirement: ForceRequirement, corner: ContactCorner) -> Loops:
+    """Return the open loop of a force controller in one contact."""
+    assert requirement.axis is not None, "without an axis there are no loops"
+    cut = requirement.axis.cut(requirement.law, corner.contact, corner.place)
+    numerator = [float(c - o) for c, o in zip(cut.closed, cut.opened, strict=True)]
+    period = requirement.axis.period
+    return Loops(
+        np.array([numerator]),
+        np.array([[float(c) for c in cut.opened]]),
+        None if period is None else float(period),
+    )
 
 
 def _force_value(
-    motion: TransferFunction,
+    requirement: ForceRequirement,
     corner: ContactCorner,
     measure: Measure,
-    gain: float,
+    loops: Loops,
     approach: Approach,
 ) -> float:
-    """Return a measure of the force loop ``Kp k G`` (thesis 6.33) in one contact."""
-    loop_gain = gain * corner.contact.stiffness
-    numerator = np.zeros((1, len(motion.denominator)))
-    numerator[0, -len(motion.numerator) :] = loop_gain * np.asarray(motion.numerator)
-    loops = Loops(numerator, np.array([motion.denominator]))
+    """Return a measure of a force loop in one contact."""
     if measure is not FORCE_ERROR:
         return float(_margin(loops, measure)[0])
     if not loops.stable[0]:
         return np.inf
-    return steady_force_error(motion, corner.contact.stiffness, gain, approach)
+    gain = float(requirement.law.gains["Kp"])
+    return steady_force_error(requirement.motion, corner.contact.stiffness, gain, approach)
 
 
 def _margin(loops: Loops, measure: Measure) -> FloatArray:

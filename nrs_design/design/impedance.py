@@ -16,10 +16,8 @@ from numpy.typing import ArrayLike
 
 from nrs_design.design.transfer import (
     BoolArray,
-    ComplexArray,
     FloatArray,
     TransferFunction,
-    frequency_response,
     hurwitz,
     trim,
 )
@@ -79,103 +77,10 @@ class ImpedanceLoop:
             np.convolve(np.convolve(self.motion.denominator, trim(denominator)), self.lags),
         )
 
-    def free(self, Mt: float, Bt: float) -> FloatArray:
-        """Return the denominator of ``G Ze H Y``; an s that it has in common is left out.
-
-        Parameters
-        ----------
-        Mt : float
-            Virtual mass, kg m^2.
-        Bt : float
-            Virtual damping, N m s/rad.
-        """
-        return np.asarray(np.polyadd(np.convolve(self.forward[1], trim((Mt, Bt))), self.drawn))
-
     @property
     def drawn(self) -> FloatArray:
-        """What the spring adds to that denominator: Kt times that of ``G Ze H``, over s."""
+        """What the spring adds to the denominator of L: Kt times that of ``G Ze H``, over s."""
         return np.asarray(self.Kt * self.forward[1][:-1]) if self.Kt else np.zeros(1)
-
-
-def open_loop(loop: ImpedanceLoop, Mt: float, Bt: float) -> TransferFunction:
-    """Return ``G Ze H Y`` (thesis fig. 6.13, with the filter H) for mass Mt and damping Bt.
-
-    Parameters
-    ----------
-    loop : ImpedanceLoop
-        Motion loop and environment.
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
-    """
-    check_admittance(Mt, Bt)
-    numerator, _ = loop.forward
-    return TransferFunction(tuple(numerator.tolist()), tuple(loop.free(Mt, Bt).tolist()))
-
-
-def displayed_impedance_at(
-    loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike
-) -> ComplexArray:
-    """Evaluate ``Zdisp = G Ze / (1 + G Ze H Y)`` (thesis 6.3).
-
-    Parameters
-    ----------
-    loop : ImpedanceLoop
-        Motion loop and environment.
-    Mt, Bt : float
-        Admittance, kg m^2 and N m s/rad.
-    omega : array_like
-        Frequencies, rad/s; zero is allowed where there is no spring.
-
-    Returns
-    -------
-    ndarray of complex
-        Impedance, N m s/rad, in the shape of `omega`.
-    """
-    forward = np.convolve(loop.forward[0], loop.lags)
-    if not loop.Kt:
-        return _over_characteristic(loop, Mt, Bt, np.convolve(forward, trim((Mt, Bt))), omega)
-    numerator = np.convolve(forward, trim((Mt, Bt, loop.Kt)))
-    omega = np.asarray(omega, np.float64)
-    return np.asarray(_over_characteristic(loop, Mt, Bt, numerator, omega) / (1j * omega))
-
-
-def sensitivity(loop: ImpedanceLoop, Mt: float, Bt: float, omega: ArrayLike) -> ComplexArray:
-    """Evaluate ``L = 1 / (1 + G Ze H Y)`` (thesis 6.5); parameters as `displayed_impedance_at`.
-
-    Parameters
-    ----------
-    loop, Mt, Bt, omega
-        As for `displayed_impedance_at`.
-    """
-    return _over_characteristic(loop, Mt, Bt, loop.free(Mt, Bt), omega)
-
-
-def closed_loop_polynomial(loop: ImpedanceLoop, Mt: float, Bt: float) -> FloatArray:
-    """Return the closed loop's characteristic polynomial, highest power first.
-
-    Its degree is that of ``G Ze Y``: with a spring two more than the motion loop's order, and one
-    more where Mt is zero.
-
-    Parameters
-    ----------
-    loop, Mt, Bt
-        As for `open_loop`.
-
-    Raises
-    ------
-    DesignError
-        If Mt is negative or Bt is not positive.
-    """
-    check_admittance(Mt, Bt)
-    return np.asarray(
-        trim(
-            characteristic_polynomials(
-                characteristic_basis(loop), np.array(Mt), np.array(Bt)
-            ).tolist()
-        )
-    )
 
 
 def stabilizes(loop: ImpedanceLoop, Mt: ArrayLike, Bt: ArrayLike) -> BoolArray:
@@ -216,14 +121,6 @@ def characteristic_polynomials(basis: FloatArray, Mt: FloatArray, Bt: FloatArray
         Admittances of one shape, kg m^2 and N m s/rad.
     """
     return np.asarray(Mt[..., None] * basis[0] + Bt[..., None] * basis[1] + basis[2])
-
-
-def _over_characteristic(
-    loop: ImpedanceLoop, Mt: float, Bt: float, numerator: FloatArray, omega: ArrayLike
-) -> ComplexArray:
-    closed = closed_loop_polynomial(loop, Mt, Bt)
-    ratio = TransferFunction(tuple(numerator.tolist()), tuple(closed.tolist()))
-    return frequency_response(ratio, omega)
 
 
 def check_admittance(Mt: ArrayLike, Bt: ArrayLike) -> None:

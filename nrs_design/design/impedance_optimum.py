@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,12 +13,11 @@ from numpy.typing import ArrayLike
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.impedance import (
     ImpedanceLoop,
-    characteristic_basis,
-    characteristic_polynomials,
     check_admittance,
+    stabilizes,
 )
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
-from nrs_design.design.transfer import FloatArray, frequency_response, hurwitz
+from nrs_design.design.transfer import BoolArray, FloatArray, frequency_response
 from nrs_design.errors import DesignError
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
@@ -51,6 +51,9 @@ class ImpedanceProblem:
         fix the parameter.
     weight_displayed, weight_sensitivity : float
         Weights wD and wR of the two parts of the cost, not negative and not both zero.
+    stable : callable, optional
+        Tells for which Mt and Bt nominal contact is stable, of the loop that is proved; by default
+        that of the `loop` is asked for.
 
     Raises
     ------
@@ -65,6 +68,7 @@ class ImpedanceProblem:
     damping_bounds: tuple[float, float]
     weight_displayed: float = 0.5
     weight_sensitivity: float = 0.5
+    stable: Callable[[FloatArray, FloatArray], BoolArray] | None = None
 
     def __post_init__(self) -> None:
         """Check every number against its domain."""
@@ -209,17 +213,15 @@ def admittance_at(
 
 def objective_of(problem: ImpedanceProblem, nodes: int) -> Objective:
     """Return the cost over the unit square; infinite where the nominal loop is not stable."""
-    return partial(
-        _stable_cost, problem, _sample(problem, nodes), characteristic_basis(problem.loop)
-    )
+    return partial(_stable_cost, problem, _sample(problem, nodes))
 
 
 def _stable_cost(
-    problem: ImpedanceProblem, samples: _Samples, basis: FloatArray, u: FloatArray, v: FloatArray
+    problem: ImpedanceProblem, samples: _Samples, u: FloatArray, v: FloatArray
 ) -> FloatArray:
-    """Evaluate the cost at points of the unit square, infinite where the loop is not Hurwitz."""
+    """Evaluate the cost at points of the unit square, infinite where the loop is not stable."""
     Mt, Bt = admittance_at(problem, u, v)
-    stable = hurwitz(characteristic_polynomials(basis, Mt, Bt))
+    stable = stabilizes(problem.loop, Mt, Bt) if problem.stable is None else problem.stable(Mt, Bt)
     if stable.all():
         return samples.cost(Mt, Bt)
     costs = np.full(len(Mt), np.inf)

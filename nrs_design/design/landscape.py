@@ -1,6 +1,8 @@
 """Around a chosen admittance: the cost over Mt and Bt, what it gives up, and the delay it bears.
 
-All of it is floating point, in contact with the nominal environment, and no part of any proof.
+All of it is floating point, and no part of any proof. The cost is that of the thesis, on its loop
+in contact with the nominal environment; stability and dead time are those of the loop that is
+proved.
 """
 
 from __future__ import annotations
@@ -10,19 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
-    characteristic_basis,
-    characteristic_polynomials,
-    stabilizes,
-)
+from nrs_design.design.goals import Requirement
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.design.loops import Loops
-from nrs_design.design.transfer import FloatArray, trim
+from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 
 _POINTS = 100
@@ -43,7 +39,8 @@ class CostMap:
     cost : ndarray, shape (b, m)
         NaN where the nominal loop is not stable.
     abscissa : ndarray, shape (b, m)
-        Largest real part of the poles of the nominal loop in 1/s: it is zero on the border.
+        Largest real part of the roots of the nominal loop that is proved, in 1/s: it is zero on the
+        border.
     """
 
     Mt: FloatArray
@@ -78,13 +75,15 @@ class Alternative:
     sensitivity: float
 
 
-def map_cost(problem: ImpedanceProblem, Mt: float, Bt: float) -> CostMap:
+def map_cost(problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float) -> CostMap:
     """Evaluate the cost within the bounds, around them, and around a point.
 
     Parameters
     ----------
     problem : ImpedanceProblem
         What is minimized.
+    requirement : Requirement
+        The loops, for the border of stability.
     Mt, Bt : float
         The point, in kg m^2 and N m s/rad.
     """
@@ -93,18 +92,22 @@ def map_cost(problem: ImpedanceProblem, Mt: float, Bt: float) -> CostMap:
         for bounds, value in ((problem.mass_bounds, Mt), (problem.damping_bounds, Bt))
     )
     grid = np.meshgrid(masses, dampings)
-    cost = np.where(stabilizes(problem.loop, *grid), impedance_cost(problem, *grid), np.nan)
-    return CostMap(masses, dampings, cost, _abscissa(problem.loop, *grid))
+    abscissa = _abscissa(requirement, *grid)
+    cost = np.where(abscissa < 0, impedance_cost(problem, *grid), np.nan)
+    return CostMap(masses, dampings, cost, abscissa)
 
 
-def _abscissa(loop: ImpedanceLoop, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-    """Return the largest real part of the poles, as eigenvalues of companion matrices."""
-    closed = characteristic_polynomials(characteristic_basis(loop), Mt, Bt)
-    order = closed.shape[-1] - 1
-    companion = np.zeros((*Mt.shape, order, order))
-    companion[..., 0, :] = -closed[..., 1:] / closed[..., :1]
-    companion[..., range(1, order), range(order - 1)] = 1.0
-    return np.asarray(np.linalg.eigvals(companion).real.max(axis=-1), dtype=np.float64)
+def _abscissa(requirement: Requirement, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
+    """Return the largest real part of the roots, as eigenvalues of companion matrices."""
+    found = []
+    for corner in requirement.nominal:
+        closed = requirement.loops(corner, Mt.ravel(), Bt.ravel()).closed
+        order = closed.shape[-1] - 1
+        companion = np.zeros((len(closed), order, order))
+        companion[:, 0, :] = -closed[:, 1:] / closed[:, :1]
+        companion[:, range(1, order), range(order - 1)] = 1.0
+        found.append(np.linalg.eigvals(companion).real.max(axis=-1))
+    return np.asarray(np.max(found, axis=0).reshape(Mt.shape), dtype=np.float64)
 
 
 def _ends(bounds: tuple[float, float], value: float) -> tuple[float, float]:
@@ -173,28 +176,30 @@ def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alter
     return Alternative(name, Mt, Bt, *costs)
 
 
-def delay_borne(loop: ImpedanceLoop, Mt: float, Bt: float, stiffness: FloatArray) -> FloatArray:
+def delay_borne(
+    requirement: Requirement, Mt: float, Bt: float, stiffness: FloatArray
+) -> FloatArray:
     """Return the smallest dead time in s that destabilizes, over the stiffness of the contact.
 
-    Zero where the loop is unstable without any; infinite where no dead time destabilizes.
+    At the worst corner of all other ranges, with the designed gains in the environment that they
+    are designed for. Zero where the loop is unstable without any; infinite where no dead time
+    destabilizes.
 
     Parameters
     ----------
-    loop : ImpedanceLoop
-        Motion loop and law of the environment; its own stiffness is not used.
+    requirement : Requirement
+        The loops.
     Mt, Bt : float
         Admittance, kg m^2 and N m s/rad.
     stiffness : ndarray, shape (k,)
         N m/rad, positive.
     """
-    held, grown = loop.contact.by_stiffness
-    motion = np.asarray(loop.motion.numerator)
-    free = loop.free(Mt, Bt)
-    rows = [
-        np.polymul(motion, trim(np.polyadd(held, k * np.asarray(grown)).tolist()))
-        for k in stiffness
-    ]
-    width = max(len(free), *map(len, rows))
-    numerator = np.stack([np.pad(row, (width - len(row), 0)) for row in rows])
-    denominator = np.tile(np.pad(free, (width - len(free), 0)), (len(rows), 1))
-    return Loops(numerator, denominator).delay_margin()
+    gains = np.full_like(stiffness, Mt), np.full_like(stiffness, Bt)
+    families = {
+        id(f): f
+        for corner in requirement.corners
+        if corner.home
+        for f in (requirement.family(corner),)
+    }
+    borne = [f.loops(*gains, stiffness).delay_margin() for f in families.values()]
+    return np.asarray(np.min(borne, axis=0), dtype=np.float64)

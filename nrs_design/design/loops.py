@@ -2,8 +2,7 @@
 
 Each margin is taken at the exact stationary or crossover frequencies of its loop, which are roots
 of a polynomial in ``x = omega^2``; there is no frequency grid. By hand, as python-control takes one
-loop after the other; it gives the margins of the design that is chosen
-(`nrs_design.design.margins`).
+loop after the other, on a grid; the tests hold it against these.
 """
 
 from __future__ import annotations
@@ -29,6 +28,9 @@ class Loops:
     ----------
     numerator, denominator : ndarray, shape (n, m + 1)
         One polynomial in s per row, highest power first, padded to one length.
+    period : float or None
+        Sampled: the time between two samples in s, and the polynomials are in
+        ``(2/T) (z - 1)/(z + 1)`` instead of s.
 
     Notes
     -----
@@ -38,6 +40,7 @@ class Loops:
 
     numerator: FloatArray
     denominator: FloatArray
+    period: float | None = None
 
     @property
     def closed(self) -> FloatArray:
@@ -54,6 +57,15 @@ class Loops:
         peak = np.maximum(1.0, _peak(self.denominator, self.closed))
         return np.where(self.stable, peak, np.inf)
 
+    def peak_frequency(self) -> FloatArray:
+        """Return where Ms is reached, rad/s; infinite where it is only approached."""
+        omega = _stationary(self.denominator, self.closed)
+        magnitude = np.nan_to_num(np.abs(_ratio(self.denominator, self.closed, omega)))
+        padded = np.concatenate([magnitude, np.ones((len(omega), 1))], axis=1)
+        places = np.concatenate([omega, np.full((len(omega), 1), np.inf)], axis=1)
+        best = padded.argmax(axis=1)[:, None]
+        return self._true(np.take_along_axis(places, best, axis=1)[:, 0])
+
     def disk_margin(self) -> FloatArray:
         """Return ``1/max |S - 1/2|``, at most 2."""
         peak = np.maximum(1.0, _peak(self.denominator - self.numerator, self.closed))
@@ -63,7 +75,8 @@ class Loops:
         """Return the smallest factor above 1 on the loop gain that destabilizes."""
         _, imaginary = _product(self.numerator, self.denominator)
         omega = _frequencies(imaginary)
-        response = self._at(omega).real
+        last = _at_infinity(self.numerator, self.denominator)[:, None]
+        response = np.concatenate([self._at(omega).real, last], axis=1)
         inside = (response < 0) & (response > -1)
         gain = -1 / np.where(inside, response, np.nan)
         return np.where(self.stable, _smallest(gain), 0.0)
@@ -74,9 +87,28 @@ class Loops:
         return np.where(self.stable, _smallest(np.abs(phase)), 0.0)
 
     def delay_margin(self) -> FloatArray:
-        """Return the smallest dead time that destabilizes, in s."""
+        """Return the smallest dead time that destabilizes, in s.
+
+        Sampled, a dead time is a whole number of samples by which the force is older, and the
+        largest one up to which none destabilizes is returned.
+        """
         phase, omega = self._crossovers()
-        return np.where(self.stable, _smallest(phase % (2 * math.pi) / omega), 0.0)
+        dead = _smallest(phase % (2 * math.pi) / self._true(omega))
+        if self.period is not None:
+            dead = np.floor(dead / self.period) * self.period
+            last = np.abs(_at_infinity(self.numerator, self.denominator))
+            dead = np.where(last < 1, dead, 0.0)
+        return np.where(self.stable, dead, 0.0)
+
+    def response(self, omega: FloatArray) -> ComplexArray:
+        """Return every open loop at frequencies in rad/s, below half the sampling rate."""
+        seen = omega if self.period is None else 2 / self.period * np.tan(omega * self.period / 2)
+        return self._at(np.broadcast_to(seen, (len(self.numerator), len(omega))))
+
+    def _true(self, omega: FloatArray) -> FloatArray:
+        """Return the frequencies of points on the imaginary axis."""
+        half = None if self.period is None else self.period / 2
+        return omega if half is None else np.arctan(omega * half) / half
 
     def _crossovers(self) -> tuple[FloatArray, FloatArray]:
         """Return the phase over -180 degrees, and the frequency, of every gain crossover."""
@@ -86,6 +118,13 @@ class Loops:
 
     def _at(self, omega: FloatArray) -> ComplexArray:
         return _ratio(self.numerator, self.denominator, omega)
+
+
+def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    """Return the ratios at the end of the axis: half the sampling rate, if there is one."""
+    first = (denominator != 0).argmax(axis=1)[:, None]
+    above, below = (np.take_along_axis(p, first, axis=1)[:, 0] for p in (numerator, denominator))
+    return above / below
 
 
 def gain_extremes(
@@ -133,7 +172,8 @@ def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
 def _peak(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     omega = _stationary(numerator, denominator)
     magnitude = np.abs(_ratio(numerator, denominator, omega))
-    return np.asarray(np.fmax.reduce(magnitude, axis=1, initial=0.0))
+    last = np.abs(_at_infinity(numerator, denominator))
+    return np.fmax(last, np.fmax.reduce(magnitude, axis=1, initial=0.0))
 
 
 def _smallest(values: FloatArray) -> FloatArray:

@@ -11,12 +11,29 @@ _DIGITS = 4
 
 # What the worst values of the measures are, in words.
 MEANING = (
-    "Margins: the worst at the nominal values and at every corner of the ranges of all contacts "
-    "and gains.",
+    "Margins: the worst of the loop that certify-switching is about, at the nominal values and at "
+    "every corner of the ranges of all contacts, the gains and the motor, each of them constant; "
+    "sampled, at every age of the force sample, always the same.",
     "Errors, transparency and effort: the worst with the designed gains, in the environment that "
-    "the controller is designed for, at its nominal values and every corner of its ranges.",
+    "the controller is designed for, at the nominal values and every corner of its ranges and of "
+    "those of the motor.",
     "Computed in floating point, not a proof; values between corners are not looked at.",
 )
+# What else a table of an impedance design shows.
+LIMIT_MEANING = (
+    "k limit: one constant stiffness of the environment of the design, up to which the same loop "
+    "is stable at every corner of the other ranges."
+)
+COST_MEANING = (
+    "Cost: that of the thesis, of its loop G Ze H Y at nominal values, in continuous time and "
+    "without a load of the motor; gains are chosen by it."
+)
+PASSIVITY_NOT_COMPUTED = (
+    "Where a sampled law is passive is not computed with two periods, a spring Kt, a filter of the "
+    "force, ranges of gains or of the motor, or beside other axes; the frequency of another law is "
+    "not shown in its place."
+)
+ONE_AXIS = "Of axes that act on each other, this is one by itself."
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +65,8 @@ class Measure:
 
     def text(self, value: float) -> str:
         """Write a value with four digits, rounded to its unfavorable side."""
+        if math.isnan(value):
+            return "not computed"
         if not math.isfinite(value):
             return "unbounded" if self.upper else "unlimited"
         rounding = ROUND_CEILING if self.upper else ROUND_FLOOR

@@ -1,21 +1,35 @@
-"""Up to which frequency a displayed admittance is passive, exactly.
+"""Up to which frequency a displayed admittance is passive, exactly, over the ranges.
 
-A surgeon who holds the tool meets the admittance ``G Y`` with ``Y = 1/(Mt s + Bt)``. It is passive
-at omega where ``Re 1/(G Y) >= 0``; times the square of the numerator of G, that is a polynomial in
-``x = omega^2`` with rational coefficients. Its sign is decided by Sturm's theorem, without a grid.
-With a strictly proper G of relative degree one the displayed admittance has relative degree two, so
-with an inertia it is never passive at all frequencies (thesis 7): what counts is the band.
+A surgeon who holds the tool applies a torque and meets the admittance ``Y = N/D`` from it to the
+velocity of the tool: what the law makes of the torque, and what the torque itself turns of a motor
+with a load. D is the characteristic polynomial of the assembled mode that touches nothing, and
+``D + b N`` that with a damper b, so both are exact. Y is passive at omega where
+``Re N conj(D) >= 0``, a polynomial in ``x = omega^2`` with rational coefficients. Its sign is
+decided by Sturm's theorem, without a grid. With a strictly proper motion loop of relative degree
+one and no load, Y has relative degree two with an inertia, so it is never passive at all
+frequencies (thesis 7): what counts is the band.
+
+Ranges: times Mt (or Bt without inertia) and the time constant, N and D are affine in each of Km,
+tau, Mt, Bt and Kt, so the polynomial is of second degree at most in each. Anywhere in the box it is
+a mean of its Bernstein coefficients: where all of these are positive, so is it. Each parameter is
+unknown but constant; that is what a frequency is about.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
 from math import gcd, isqrt, lcm
 
-from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.models.contact import KelvinVoigt
+from nrs_design.proof.evidence.unstable_mode import is_stable
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.cut_loop import ContinuousAxis, Place
 
 # Frequencies are bracketed to this share, in rad/s.
 RESOLUTION = Fraction(1, 10**5)
@@ -32,36 +46,97 @@ class PassiveBand:
     Parameters
     ----------
     passive : Fraction or None
-        It is passive at every frequency up to this one, in rad/s; None for all frequencies.
+        Wherever the parameters are in their ranges, it is passive at every frequency up to this
+        one, in rad/s; None for all frequencies, zero where nothing is shown.
     broken : Fraction or None
-        At this one it is not: an exact refutation of passivity. None where none was found.
+        At this one it is not, with parameters at a corner of the ranges: an exact refutation of
+        passivity. None where none was found.
     """
 
     passive: Fraction | None
     broken: Fraction | None
 
 
-def passive_band(loop: MotionLoop, Mt: Fraction, Bt: Fraction) -> PassiveBand:
-    """Find the frequency up to which ``G Y`` is passive, and one at which it is not.
+def passive_band(
+    axis: ContinuousAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
+) -> PassiveBand:
+    """Find the frequency up to which the displayed admittance is passive, and one where it is not.
 
     Parameters
     ----------
-    loop : MotionLoop
-        Closed motion loop G, stable.
-    Mt : Fraction
-        Virtual inertia in kg m^2, not negative.
-    Bt : Fraction
-        Virtual damping in N m s/rad, positive.
+    axis : ContinuousAxis
+        From which the modes follow.
+    law : CompliantLaw
+        An admittance with its gains Mt, Bt and, with a spring, Kt; Bt is positive.
+    ranges : mapping of str to Interval
+        Where ``Mt``, ``Bt``, ``Kt``, and ``Km``, ``tau`` of the motor are, if they have ranges.
     """
-    P = real_part(loop, Mt, Bt)
-    if P[-1] <= 0:
+    if not is_stable(RationalMatrix.from_rows(axis.realization.A), Time.CONTINUOUS):
         return PassiveBand(Fraction(0), None)
-    bracket = first_root(P)
-    if bracket is None:
-        return PassiveBand(None, None)
-    low, high = bracket
-    broken = _negative_beyond(P, high)
-    return PassiveBand(root_below(low), broken)
+    grid = {
+        at: real_part(axis, law, dict(zip(ranges, values, strict=True)))
+        for at, values in zip(
+            product(range(3), repeat=len(ranges)),
+            product(*((r.low, r.middle, r.high) for r in ranges.values())),
+            strict=True,
+        )
+    }
+    # None is zero at every frequency: passive, and on the border of it.
+    bounds = [P for Q in _bernstein(grid) if any(P := _without_zeros(Q))]
+    if any(P[-1] <= 0 for P in bounds):
+        return PassiveBand(Fraction(0), None)
+    roots = [bracket for P in bounds if (bracket := first_root(P)) is not None]
+    corners = [P for at, Q in grid.items() if 1 not in at and any(P := _without_zeros(Q))]
+    found = [(bracket[1], P) for P in corners if (bracket := first_root(P)) is not None]
+    broken = [omega for high, P in found if (omega := _negative_beyond(P, high)) is not None]
+    passive = root_below(min(low for low, _ in roots)) if roots else None
+    return PassiveBand(passive, min(broken, default=None))
+
+
+def real_part(
+    axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
+) -> Polynomial:
+    """Return ``Re N conj(D)`` in ``x = omega^2``, times what is positive, highest power first.
+
+    Parameters
+    ----------
+    axis, law
+        As for `passive_band`.
+    values : mapping of str to Fraction
+        Of the parameters that have ranges.
+    """
+    nominal = axis.places[0].motor
+    gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
+    place = Place(replace(nominal, gain=gain, time_constant=tau))
+    held = law.of({**law.gains, **values})
+    D, damped = (
+        axis.cut(held, KelvinVoigt(Fraction(0), Fraction(b)), place).closed for b in (0, 1)
+    )
+    factor = tau * (held.gains["Mt"] or held.gains["Bt"])
+    N = [factor * (b - a) for a, b in zip(D, damped, strict=True)]
+    mirrored = [factor * c * (-1) ** k for k, c in enumerate(reversed(D))][::-1]
+    even = list(reversed(_times(N, mirrored)))[::2]
+    return [c * (-1) ** k for k, c in enumerate(even)][::-1]
+
+
+def _bernstein(grid: Mapping[tuple[int, ...], Polynomial]) -> list[Polynomial]:
+    """Return the coefficients of a polynomial of second degree in each parameter, over a box.
+
+    Along one parameter they are its values at the ends and twice that in the middle less their
+    mean; anywhere in the box, the polynomial is a mean of all of them.
+    """
+    found = dict(grid)
+    for axis in range(len(next(iter(grid)))):
+        for at in [at for at in found if at[axis] == 1]:
+            ends = (found[(*at[:axis], end, *at[axis + 1 :])] for end in (0, 2))
+            found[at] = [2 * m - (a + b) / 2 for m, a, b in zip(found[at], *ends, strict=True)]
+    return [*found.values()]
+
+
+def _without_zeros(P: Polynomial) -> Polynomial:
+    """Leave out zeros of the highest powers, and powers of x that all terms have."""
+    kept = [i for i, c in enumerate(P) if c]
+    return P[kept[0] : kept[-1] + 1] if kept else []
 
 
 def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
@@ -83,28 +158,6 @@ def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
         middle = _rounded((low + high) / 2)
         low, high = (low, middle) if none > _changes(chain, middle) else (middle, high)
     return low, high
-
-
-def real_part(loop: MotionLoop, Mt: Fraction, Bt: Fraction) -> Polynomial:
-    """Return ``Re 1/(G Y)`` times the squared numerator of G, in ``x = omega^2``.
-
-    Parameters
-    ----------
-    loop, Mt, Bt
-        As for `passive_band`.
-
-    Returns
-    -------
-    list of Fraction
-        Coefficients, highest power first, the leading one not zero.
-    """
-    mirrored = [c * (-1) ** k for k, c in enumerate(reversed(loop.numerator))][::-1]
-    product = _times(_times([Mt, Bt], list(loop.denominator)), mirrored)
-    even = list(reversed(product))[::2]
-    terms = [c * (-1) ** k for k, c in enumerate(even)][::-1]
-    while len(terms) > 1 and terms[0] == 0:
-        terms.pop(0)
-    return terms
 
 
 def count_positive_roots(P: Sequence[Fraction], end: Fraction) -> int:

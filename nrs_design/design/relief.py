@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 from nrs_design.controllers.float32 import round_significant
-from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.margins import stiffness_limit
+from nrs_design.design.goals import Requirement
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt
 
@@ -17,7 +16,7 @@ _DIGITS = 3
 
 
 def doubt_stiffness(
-    name: str, loop: ImpedanceLoop, contacts: tuple[Environment, ...], Mt: float, Bt: float
+    name: str, requirement: Requirement, contacts: tuple[Environment, ...], Mt: float, Bt: float
 ) -> Iterator[Doubt]:
     """Yield the contacts whose stiffness reaches the limit of an admittance.
 
@@ -25,36 +24,40 @@ def doubt_stiffness(
     ----------
     name : str
         Of the controller.
-    loop : ImpedanceLoop
-        Motion loop, and what else is in the loop; its contact is not used.
+    requirement : Requirement
+        Its loops, and the corners of all ranges.
     contacts : tuple of Environment
         All that it touches.
     Mt, Bt : float
         Its gains, kg m^2 and N m s/rad.
     """
+    limits = requirement.stiffness_limits(Mt, Bt, retuned=False)
     for contact in contacts:
-        touched = replace(loop, contact=contact.nominal)
-        highest, limit = float(contact.stiffness.high), stiffness_limit(touched, Mt, Bt)
-        if highest < limit:
+        highest, (limit, _) = float(contact.stiffness.high), limits[contact.name]
+        if highest < limit or math.isnan(limit):
             continue
-        enough = enough_damping(touched, Mt, Bt, highest)
+        enough = enough_damping(requirement, contact.name, Mt, Bt, highest)
         held = "no Bt" if enough is None else f"Bt = {enough:g} N*m*s/rad"
         text = (
             f"{name}: the stiffness of {contact.name}, up to {highest:.6g} N*m/rad, reaches the "
             f"limit {limit:.6g} N*m/rad of its gains; with Mt = {Mt:g} kg*m^2, {held} would hold "
-            "one such contact, all else nominal and without margin (continuous time, floating "
-            "point, not a proof)"
+            "one such contact at every corner of the other ranges, constant and without margin "
+            "(floating point, not a proof)"
         )
         yield Doubt(("controllers", name), text)
 
 
-def enough_damping(loop: ImpedanceLoop, Mt: float, Bt: float, stiffness: float) -> float | None:
+def enough_damping(
+    requirement: Requirement, environment: str, Mt: float, Bt: float, stiffness: float
+) -> float | None:
     """Return a virtual damping above Bt that is stable up to a stiffness, with few digits.
 
     Parameters
     ----------
-    loop : ImpedanceLoop
-        Motion loop and law of the environment.
+    requirement : Requirement
+        The loops.
+    environment : str
+        Which contact.
     Mt, Bt : float
         The gains that are not enough, kg m^2 and N m s/rad.
     stiffness : float
@@ -65,15 +68,19 @@ def enough_damping(loop: ImpedanceLoop, Mt: float, Bt: float, stiffness: float) 
     float or None
         The least one, rounded up; None if none up to 10,000 times Bt is enough.
     """
+
+    def holds(damping: float) -> bool:
+        limits = requirement.stiffness_limits(Mt, damping, retuned=False)
+        return limits[environment][0] > stiffness
+
     low, high = Bt, Bt
-    while stiffness_limit(loop, Mt, high) <= stiffness:
+    while not holds(high):
         low, high = high, 2 * high
         if high > _FURTHEST * Bt:
             return None
     while high - low > _NEAR * high:
         middle = (low + high) / 2
-        enough = stiffness_limit(loop, Mt, middle) > stiffness
-        low, high = (low, middle) if enough else (middle, high)
+        low, high = (low, middle) if holds(middle) else (middle, high)
     return next(
         float(rounded)
         for up in range(100)

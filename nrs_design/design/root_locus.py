@@ -22,7 +22,6 @@ from nrs_design.design.transfer import (
     to_control,
 )
 from nrs_design.errors import DesignError
-from nrs_design.plotting import load_matplotlib
 
 _LOCUS_MOTION = 0.02
 _LOCUS_LIMIT = 4000
@@ -293,8 +292,7 @@ def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
     chosen = np.asarray(gains, dtype=np.float64)
     for gain in chosen:
         _closed_polynomial(open_loop, float(gain))
-    load_matplotlib()
-    import control
+    from nrs_design.control_library import control
 
     system = to_control(open_loop)
     return np.asarray(control.root_locus_map(system, gains=chosen).loci, dtype=np.complex128)

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from nrs_design.errors import DesignError
-from nrs_design.plotting import load_matplotlib
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -103,8 +102,7 @@ def static_gain(tf: TransferFunction) -> float:
 
 def to_control(tf: TransferFunction) -> Any:
     """Return the function as python-control's own ``TransferFunction``."""
-    load_matplotlib()
-    import control
+    from nrs_design.control_library import control
 
     return control.TransferFunction(list(trim(tf.numerator)), list(tf.denominator))
 

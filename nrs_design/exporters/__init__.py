@@ -117,7 +117,7 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
         ),
         "mat": Format(
             "matlab",
-            "modes, gains and certificate for MATLAB, GNU Octave and SciPy",
+            "plant, controllers, loops, modes and certificate for MATLAB, GNU Octave and SciPy",
             DESIGN,
             {".mat": MAT},
         ),

@@ -147,7 +147,7 @@ def _proof(certificate: Certificate) -> Proof:
                 {"exact": str(rate), "rounded": rate_text(rate, system.time), "unit": unit}
             ),
             "coordinates": certificate.coordinates,
-            "assumptions": system.assumptions,
+            "assumptions": certificate.granted,
         }
     )
 

@@ -87,13 +87,7 @@ class CNames:
         return found
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
-        """Return every coefficient of a law that has a macro, by it.
-
-        Raises
-        ------
-        DesignError
-            If two controllers have one name in C.
-        """
+        """Return every coefficient of a law that has a macro, by it."""
         found: dict[str, tuple[Coefficient, Fraction]] = {}
         for coefficient in law.coefficients:
             if coefficient.inline or coefficient.table:
@@ -101,13 +95,22 @@ class CNames:
             owners = law.modes if coefficient.by_mode else ("",)
             for owner, value in zip(owners, coefficient.values, strict=True):
                 found[self.coefficient(coefficient, owner)] = coefficient, value
+        return found
+
+    def check(self, law: StepLaw) -> None:
+        """Refuse a law whose names are not names in C: what all programs of it are made of.
+
+        Raises
+        ------
+        DesignError
+            If two controllers have one name in C.
+        """
         if len({self.mode(name) for name in law.modes}) < len(law.modes):
             raise DesignError(
                 "two controllers have the same name in C",
                 remedy="let their names differ in letters or digits",
                 at=("controllers",),
             )
-        return found
 
 
 def _identifier(name: str) -> str:

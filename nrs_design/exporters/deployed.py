@@ -16,17 +16,31 @@ from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters import monitor
 from nrs_design.exporters.build import build_record
-from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.deployed_archive import Archive, read_archive
 from nrs_design.exporters.deployed_c import code_differences, macro_differences
 from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import monitor_limits
-from nrs_design.exporters.program import law_of, program_of
+from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord, Gain
 from nrs_design.files import open_regular
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
+# What a record says of itself, in words.
+_SAID = ("verdict", "unproved", "outside", "proof")
+
+
+def scope_of(file: Path) -> tuple[str, str]:
+    """Return what of a deployed file `find_differences` compares, and what it does not."""
+    if file.suffix == ".json":
+        return "all fields", "the release that wrote it"
+    if file.suffix == ".fmu":
+        return "sources, variables and library", "the documentation inside"
+    source = file.with_suffix(".c").name
+    if file.suffix == ".h":
+        return "macros", f"any code ({source}), comments, how it is compiled"
+    return "code", f"its headers ({file.with_suffix('.h').name}), comments, how it is compiled"
 
 
 def find_differences(
@@ -55,15 +69,15 @@ def find_differences(
         raise _something_else(file)
     export = _exported(spec, certificate, file)
     if file.suffix == ".fmu":
-        return [*model_differences(_read(file), export)]
+        return [*model_differences(_archive(file), export)]
     text = _text(file)
     if "_monitor_t" in text:
         return [*_of_monitor(text, export, file)]
     if file.suffix == ".c":
         raise _something_else(file)
-    names = CNames(spec.name)
-    wanted = names.numbers(law_of(export))
-    return [*macro_differences(text, f"{names.upper}_H", wanted)]
+    program = program_of(export)
+    wanted = program.names.numbers(program.law)
+    return [*macro_differences(text, f"{program.names.upper}_H", wanted)]
 
 
 def _something_else(file: Path) -> NrsDesignError:
@@ -122,6 +136,13 @@ def _read(file: Path) -> bytes:
     return content
 
 
+def _archive(file: Path) -> Archive | None:
+    try:
+        return read_archive(file)
+    except OSError as error:
+        raise NrsDesignError(f"cannot be read ({error.strerror})", path=file) from error
+
+
 def _text(file: Path) -> str:
     try:
         return _read(file).decode("utf-8" if file.suffix == ".json" else "ascii")
@@ -163,10 +184,14 @@ def _of_record(
                 has = proved.get(gain, "no such gain")
                 found = mine.get(gain, "missing")
                 yield f"{gain} of {name} is {found}, and the certificate has {has}"
-    proved_rest = _rest_of(_record(spec, certificate))
+    proved_record = _record(spec, certificate)
+    proved_rest = _rest_of(proved_record)
     for name, found in _rest_of(record).items():
         if found != proved_rest[name]:
             yield f"{name}: {found}, and the certificate has {proved_rest[name]}"
+    for name in _SAID:
+        if getattr(record, name) != getattr(proved_record, name):
+            yield f"its field {name!r} is not what the certificate says"
 
 
 def _rest_of(record: ExportRecord) -> dict[str, str]:

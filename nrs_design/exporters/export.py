@@ -37,6 +37,8 @@ class Export:
         The gains of the record.
     spec : InteractionDesignSpec or None
         What the record is of.
+    designed : Designed or None
+        The plant and the gains of a proved design.
     """
 
     verdict: str
@@ -45,6 +47,7 @@ class Export:
     reason: str = ""
     design: ControllerDesign | None = None
     spec: InteractionDesignSpec | None = None
+    designed: Designed | None = None
 
     def shipped(self) -> ExportRecord:
         """Return the record.
@@ -136,7 +139,9 @@ def _certified_afresh(loaded: LoadedSpec, progress: Progress) -> Export:
     verdict = str(result.certification.verdict)
     assert result.designed is not None, "an interaction design"
     if result.certificate is None or verdict != "proved":
-        reason = f"the design is not proved: {verdict}"
+        where = result.certification.refuted_in
+        aside = "" if where is None else f", and refuted {where}"
+        reason = f"the design is not proved: {verdict}{aside}"
         return Export(verdict, None, result.certificate, reason, result.design)
     return _proved(result.designed, result.certificate)
 
@@ -153,7 +158,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)
     if found.verdict != "proved":
-        return Export("inconclusive", None, found, f"{file} proves nothing", design)
+        aside = "" if found.refuted_in is None else f": it is refuted {found.refuted_in}"
+        return Export("inconclusive", None, found, f"{file} proves nothing{aside}", design)
     fault = find_mismatch(design, found)
     if fault is None and found.coordinates != designed.spec.coordinates:
         fault = f"is about {found.coordinates} coordinates, not those of the spec"
@@ -166,7 +172,7 @@ def _proved(designed: Designed, certificate: Certificate) -> Export:
     spec, design = designed.spec, designed.design
     delay = None if spec.sampling is None else spec.sampling.delay
     record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
-    return Export("proved", record, certificate, design=design)
+    return Export("proved", record, certificate, design=design, designed=designed)
 
 
 def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | None) -> Fraction:

@@ -76,13 +76,18 @@ def contents(program: Program, compile_with: str | None) -> dict[str, bytes]:
     entries |= {f"sources/{name}": text.encode() for name, text in sources.items()}
     binary = "compiled: nothing, only sources"
     if compile_with is not None:
-        library = f"{LIBRARIES}/{names.lower}.so"
+        library = library_of(program)
         entries[library] = shared_library(compile_with, sources)
         binary = (
             f"compiled for 64-bit Linux on x86: {library}, by the C compiler of who exported it"
         )
     entries["documentation/index.html"] = page(program, binary).encode()
     return entries
+
+
+def library_of(program: Program) -> str:
+    """Return where the compiled library of a program is, if there is one."""
+    return f"{LIBRARIES}/{program.names.lower}.so"
 
 
 def guid_of(record: ExportRecord) -> str:

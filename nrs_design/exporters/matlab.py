@@ -1,4 +1,4 @@
-"""Modes, gains and certificate as a MAT-file (level 5), for MATLAB, GNU Octave and SciPy.
+"""Plant, loops, modes and certificate as a MAT-file (level 5), for MATLAB, GNU Octave and SciPy.
 
 Numbers are the doubles next to the exact ones. What decides is the exact certificate, which is in
 the file as text: `nrs-design verify` checks it.
@@ -10,7 +10,7 @@ import io
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.io
@@ -20,15 +20,20 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.record import ExportRecord, Gain
 from nrs_design.output import MAT
+from nrs_design.pipeline.design import run_linear_parts
 from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
+if TYPE_CHECKING:
+    from nrs_design.design.linear_parts import LinearPart
+
 # The text at the beginning of a MAT-file; SciPy writes the time and the system into it.
 _TEXT_BYTES = 116
 # Names that may be fields of a structure.
 _FIELD = re.compile("[A-Za-z][A-Za-z0-9_]*")
+_PART = ("name", *"ABCD", "input", "input_unit", "outputs", "output_units")
 _RATIO = re.compile("-?[0-9]+(/[0-9]+)?")
 
 
@@ -36,8 +41,15 @@ def render(export: Export) -> dict[str, bytes]:
     """Return the file of an export, by its ending."""
     record, certificate = export.shipped(), export.certificate
     assert certificate is not None, "what is proved has a certificate"
+    assert export.designed is not None, "it was designed"
+    parts = run_linear_parts(export.designed)
     variables = {
-        "info": _info(record, certificate),
+        "info": _info(record, certificate) | {"loops_left_out": _cells(parts.left_out)},
+        "plant": _parts((parts.actuator, parts.motion_loop)),
+        "controllers": _parts(parts.controllers),
+        "force_filter": _parts(() if parts.force_filter is None else (parts.force_filter,)),
+        "contacts": _parts(parts.contacts),
+        "loops": _parts(parts.loops),
         "states": _cells(certificate.system.states),
         "modes": _modes(certificate.system.modes),
         "free_modes": _modes(certificate.system.contact.free if certificate.system.contact else ()),
@@ -57,6 +69,21 @@ def render(export: Export) -> dict[str, bytes]:
     scipy.io.savemat(file, variables, long_field_names=True, oned_as="column")
     text = (MAT + record.spec.name.encode()).ljust(_TEXT_BYTES)
     return {".mat": text + file.getvalue()[_TEXT_BYTES:]}
+
+
+def _parts(parts: Iterable[LinearPart]) -> Any:
+    rows = [
+        {
+            "name": part.name,
+            **{key: getattr(part, key) for key in "ABCD"},
+            "input": part.input[0],
+            "input_unit": part.input[1],
+            "outputs": _cells(name for name, _ in part.outputs),
+            "output_units": _cells(unit for _, unit in part.outputs),
+        }
+        for part in parts
+    ]
+    return _structs(rows, _PART)
 
 
 def _info(record: ExportRecord, certificate: Certificate) -> dict[str, Any]:

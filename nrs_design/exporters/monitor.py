@@ -13,8 +13,8 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.exporters.c_names import CNames, block_comment, harmless, literal
 from nrs_design.exporters.c_step import FINITE
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.monitor_limits import CHANCE, MonitorLimits, monitor_limits
-from nrs_design.exporters.monitor_source import KEPT, SOURCE
+from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
+from nrs_design.exporters.monitor_source import SOURCE
 from nrs_design.exporters.program import Program, program_of
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
 
@@ -27,8 +27,6 @@ KINDS = {
     "ORDER": "A mode was followed by one that must not follow it",
     "SATURATION": "The command met its limit",
     "FORCE": "The torque is beyond its limit",
-    "STIFFNESS": "A window shows a stiffness outside the ranges, for certain",
-    "CONTACT": "A window shows free motion, for certain, and contact must be kept",
     "SPEED": "The axes together are faster than their coupling is known for",
 }
 
@@ -86,12 +84,8 @@ def source_text(program: Program, limits: MonitorLimits) -> str:
     """
     names = program.names
     text = SOURCE.replace("@FINITE@", FINITE)
-    losable = not limits.contact_kept
-    text = text.replace("@KEPT@", KEPT if losable else "")
-    text = text.replace("@AND_KEPT@", " && kept(m)" if losable else "")
-    for place, table in _tables(program, limits).items():
-        text = text.replace(place, table)
-    text = text.replace("@CHECKS@", _checks(limits)).replace("@CONTACT@", _contact(limits))
+    text = text.replace("@STAYS@", _tables(program, limits))
+    text = text.replace("@CHECKS@", _checks(limits))
     text = text.replace("@OWN@", names.lower).replace("@UP@", names.upper)
     about = (*program.about, f"More is in {names.spec}_monitor.h.")
     return block_comment(about, C_MONITOR) + text.replace("@SPEC@", names.spec)
@@ -104,21 +98,8 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
         f"Call {own}_monitor_init once, then {own}_monitor_step at every sample, beside "
         f"{own}_step. It returns the first violation, and from then on the same until init. What "
         "to do then is for the caller to say. It commands nothing and is no part of the proof: "
-        "silence does not show that the loop kept its bounds between samples or windows."
+        "silence says nothing of what is not monitored, or happens between samples."
     )
-    yield (
-        f"Stiffness is judged in windows of {limits.window} samples in one mode, at the end of "
-        "each: that sample takes longer than the others. A window claims only what a whole "
-        f"interval shows, {float(limits.quantile):.3g} standard errors to both sides: where errors "
-        f"are normal, Student's distribution leaves {CHANCE:g} of the windows outside. Shorter "
-        "stays are not judged. A torque that stays the same for a whole window tells nothing."
-    )
-    if not limits.contact_kept:
-        yield (
-            "Contact may be lost, and a window that is partly free shows a stiffness that no "
-            "tissue has. So one is judged only if the torque keeps its sign, and a quarter of its "
-            "largest size at least."
-        )
     if limits.speed is not None:
         yield (
             "The axes act on each other, and how much is known below a speed only. It is that of "
@@ -148,8 +129,6 @@ def _kinds(names: CNames, limits: MonitorLimits) -> str:
 def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:
     """Yield the macro of each limit, its number, and what stands beside it."""
     up = f"{names.upper}_MONITOR"
-    yield f"{up}_WINDOW", limits.window, "samples"
-    yield f"{up}_QUANTILE", limits.quantile, "standard errors"
     yield f"{up}_PERIOD", limits.period, "s"
     yield f"{up}_TORQUE", limits.torque, "N*m, from the spec"
     if limits.command is not None:
@@ -168,43 +147,24 @@ def _macro(name: str, value: int | Fraction, words: str) -> str:
     return f"#define {name} {literal(value)} /* {exact_decimal(value)} {words} */\n"
 
 
-def _tables(program: Program, limits: MonitorLimits) -> dict[str, str]:
-    """Write what each mode has, by where it goes; a range that is not there is never left."""
+def _tables(program: Program, limits: MonitorLimits) -> str:
+    """Write what each mode has."""
     modes, count = program.law.modes, f"{program.names.upper}_MODES"
-    most = max(1, *map(len, limits.stiffness))
     allowed = [", ".join("true" if may else "false" for may in row) for row in limits.follows]
     rows = {
         ("uint32_t", "shortest", ""): [f"{n}U" for n, _ in limits.stays],
         ("uint32_t", "longest", ""): [f"{n}U" for _, n in limits.stays],
         ("bool", "follows", f"[{count}]"): [f"{{{row}}}" for row in allowed],
     }
-    counts = [f"{len(pairs)}U" for pairs in limits.stiffness]
-    pairs = [_range(each, most) for each in limits.stiffness]
-    return {
-        "@COUNTS@": _table(("uint32_t", "ranges", ""), counts, modes, count, ""),
-        "@RANGE@": _table(("float", "range", f"[{most}][2]"), pairs, modes, count),
-        "@STAYS@": "".join(_table(head, each, modes, count) for head, each in rows.items()),
-    }
+    return "".join(_table(head, each, modes, count) for head, each in rows.items())
 
 
-def _table(
-    head: tuple[str, str, str],
-    rows: list[str],
-    modes: tuple[str, ...],
-    count: str,
-    by: str = "    ",
-) -> str:
+def _table(head: tuple[str, str, str], rows: list[str], modes: tuple[str, ...], count: str) -> str:
     type_, name, shape = head
     lines = "".join(
-        f"{by}    {row}, /* {harmless(mode)} */\n" for row, mode in zip(rows, modes, strict=True)
+        f"        {row}, /* {harmless(mode)} */\n" for row, mode in zip(rows, modes, strict=True)
     )
-    return f"{by}static const {type_} {name}[{count}]{shape} = {{\n{lines}{by}}};\n"
-
-
-def _range(pairs: tuple[tuple[Fraction, Fraction], ...], most: int) -> str:
-    texts = [f"{{{literal(low)}, {literal(high)}}}" for low, high in pairs]
-    texts += ["{0.0F, 0.0F}"] * (most - len(pairs))
-    return "{" + ", ".join(texts) + "}"
+    return f"    static const {type_} {name}[{count}]{shape} = {{\n{lines}    }};\n"
 
 
 def _checks(limits: MonitorLimits) -> str:
@@ -226,10 +186,6 @@ def _checks(limits: MonitorLimits) -> str:
 
 def _check(condition: str, kind: str) -> str:
     return f"    note(m, {condition}, @UP@_LEFT_{kind});\n"
-
-
-def _contact(limits: MonitorLimits) -> str:
-    return "@UP@_LEFT_CONTACT" if limits.contact_kept else "@UP@_LEFT_NONE"
 
 
 _SPEED = "    float speed; /* rad/s: root of the sum of squares of all joint speeds */\n"
@@ -265,9 +221,6 @@ typedef struct {
     uint32_t stay;
     bool begun;
     bool switched;
-    uint32_t count;
-    float angle[@UP@_MONITOR_WINDOW];
-    float torque[@UP@_MONITOR_WINDOW];
 } @OWN@_monitor_t;
 
 /* Begin anew; steps of time may be off by so many s. */

@@ -37,21 +37,6 @@ class Program:
         return header_lines(self.record)
 
 
-def law_of(export: Export) -> StepLaw:
-    """Return the law of an export, as operations.
-
-    Raises
-    ------
-    DesignError
-        If nothing may be exported, or a controller has no step yet.
-    """
-    record = export.shipped()
-    assert export.spec is not None
-    assert export.design is not None
-    assert record.sample_time is not None
-    return shipped_law(export.spec, export.design, Fraction(record.sample_time.exact))
-
-
 def program_of(export: Export) -> Program:
     """Return the program of an export.
 
@@ -63,7 +48,14 @@ def program_of(export: Export) -> Program:
     Raises
     ------
     DesignError
-        If nothing may be exported, or there is no program of a controller yet.
+        If nothing may be exported, or there is no program of a controller yet, or its names are no
+        names in C.
     """
     record = export.shipped()
-    return Program(record, law_of(export), CNames(record.spec.name))
+    assert export.spec is not None
+    assert export.design is not None
+    assert record.sample_time is not None
+    law = shipped_law(export.spec, export.design, Fraction(record.sample_time.exact))
+    names = CNames(record.spec.name)
+    names.check(law)
+    return Program(record, law, names)

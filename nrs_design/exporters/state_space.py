@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.pipeline import Designed
-from nrs_design.plotting import load_matplotlib
+from nrs_design.pipeline.design import run_linear_parts
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.design.linear_parts import LinearPart
 
 Rows = Sequence[Sequence[Fraction]]
 
@@ -40,13 +42,11 @@ class StateSpaces:
 
 def design_state_spaces(designed: Designed) -> StateSpaces:
     """Return the parts of a design; a filter of the force sensor is in none of them."""
-    plant, motion = designed.plant, designed.design.motion
-    Km, tau = plant.actuator.gain, plant.actuator.time_constant
-    loop = plant.motion_loop(motion.Kp, motion.Kd)
+    parts = run_linear_parts(designed)
     return StateSpaces(
-        _of_transfer((Km,), (tau, Fraction(1), Fraction(0)), "actuator", "speed", "position"),
-        _of_transfer(loop.numerator, loop.denominator, "motion_loop", "command", "motion"),
-        {item.name: _of_law(item.law, item.name) for item in designed.design.controllers},
+        _of_part(parts.actuator),
+        _of_part(parts.motion_loop),
+        {part.name: _of_part(part) for part in parts.controllers},
     )
 
 
@@ -70,45 +70,14 @@ def _of_mode(system: SwitchedSystem, index: int, mode: Mode) -> Any:
     return _state_space(A, B, np.eye(n), np.zeros((n, B.shape[1])), dt, name=_plain(mode.name))
 
 
-def _of_law(law: CompliantLaw, name: str) -> Any:
-    """Return a law; where it has a spring, the offset q that the spring acts on is a state."""
-    own, spring = len(law.states), law.spring
-    size = own + (spring != 0) + 1
-    forms = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
-    force = list(forms[-1])
-    if spring:
-        force[own] -= spring
-    command, rates = law.respond(force, forms[:own])
-    if spring:
-        rates = [*rates, [-entry for entry in command]]
-    rows = np.zeros((size, size))
-    rows[: len(rates)] = _array(rates) if rates else 0.0
-    rows[-1] = _array([command])
-    A, B, C, D = rows[:-1, :-1], rows[:-1, -1:], rows[-1:, :-1], rows[-1:, -1:]
-    return _state_space(A, B, C, D, 0, name=_plain(name), inputs=["force"], outputs=[law.commands])
-
-
-def _of_transfer(
-    numerator: Sequence[Fraction],
-    denominator: Sequence[Fraction],
-    name: str,
-    command: str,
-    response: str,
-) -> Any:
-    """Return the controllable canonical form of a strictly proper transfer function."""
-    n, leading = len(denominator) - 1, denominator[0]
-    A, B, C = np.eye(n, k=1), np.zeros((n, 1)), np.zeros((1, n))
-    A[-1] = [float(-c / leading) for c in reversed(denominator[1:])]
-    B[-1] = 1.0
-    C[0, : len(numerator)] = [float(c / leading) for c in reversed(numerator)]
-    return _state_space(
-        A, B, C, np.zeros((1, 1)), 0, name=name, inputs=[command], outputs=[response]
-    )
+def _of_part(part: LinearPart) -> Any:
+    outputs = [name for name, _ in part.outputs]
+    parts = part.A, part.B, part.C, part.D
+    return _state_space(*parts, 0, name=_plain(part.name), inputs=[part.input[0]], outputs=outputs)
 
 
 def _state_space(A: Any, B: Any, C: Any, D: Any, dt: float | bool, **names: Any) -> Any:
-    load_matplotlib()
-    import control
+    from nrs_design.control_library import control
 
     return control.StateSpace(A, B, C, D, dt, remove_useless_states=False, **names)
 

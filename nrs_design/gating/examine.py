@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.certificates.certificate import (
+    Certificate,
+    Verdict,
+    deciding,
+    refuted_in,
+    refutes_in_contact,
+)
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
@@ -19,6 +26,7 @@ from nrs_design.gating.rules import (
     GOAL,
     MODE_STABLE,
     NOT_DOUBTED,
+    ROBOT_BOUNDS,
     SCENARIO_LIMIT,
     SPEC,
     STIFFNESS_RANGE,
@@ -30,6 +38,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.unstable_mode import (
     affordable,
+    decides,
     is_stable,
     worst_eigenvalue,
 )
@@ -41,6 +50,7 @@ from nrs_design.spec.document import Position
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.gating.lock import LockedGoal
     from nrs_design.pipeline.scenarios import Simulated
 
 
@@ -89,7 +99,7 @@ class Examiner:
         return Obligation(rule, path, subject, status, message, place.line, place.column)
 
     def stability(
-        self, system: SwitchedSystem, evidence: AbstractEvidence | None, searched: str
+        self, system: SwitchedSystem, statements: Sequence[AbstractEvidence], searched: str
     ) -> tuple[Obligation, ...]:
         """Return NRS101 for every mode, and NRS102 for the system.
 
@@ -97,15 +107,16 @@ class Examiner:
         ----------
         system : SwitchedSystem
             Assembled from the spec.
-        evidence : AbstractEvidence or None
-            Checked; None if the verdict is inconclusive.
+        statements : sequence of AbstractEvidence
+            Checked.
         searched : str
             What was tried, for the message of an inconclusive verdict.
         """
+        evidence = deciding(system, statements)
         proved = evidence is not None and evidence.shows is Shows.STABILITY
         lasting = {mode.name for mode in system.lasting_modes()}
         modes = tuple(
-            self._mode(mode, system.time, proved=proved, affordable=fits)
+            self._mode(mode, system, proved=proved, affordable=fits)
             if mode.name in lasting
             else self._left_mode(mode, system.time, affordable=fits)
             for mode, fits in affordable(system.modes)
@@ -113,13 +124,20 @@ class Examiner:
         if evidence is None:
             status = Status.INCONCLUSIVE
             message = f"neither a proof nor a refutation was found ({searched})"
+            if (growing := refutes_in_contact(system, statements)) is not None:
+                where = refuted_in(system, statements)
+                message = f"refuted {where}, which decides nothing where contact may be lost: "
+                message += growing.claim(system)
         else:
             status = Status.PROVED if proved else Status.REFUTED
             message = evidence.claim(system)
         place = self.places.at("switching")
         return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
 
-    def _mode(self, mode: Mode, time: Time, *, proved: bool, affordable: bool) -> Obligation:
+    def _mode(
+        self, mode: Mode, system: SwitchedSystem, *, proved: bool, affordable: bool
+    ) -> Obligation:
+        time = system.time
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
         # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
         if not (proved or affordable):
@@ -131,6 +149,9 @@ class Examiner:
             status = Status.REFUTED
             eigenvalue = worst_eigenvalue(mode.A, time)
             message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
+            if not decides(system, mode.name):
+                status = Status.INCONCLUSIVE
+                message += ", which is growth for which the environment would have to pull"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def _left_mode(self, mode: Mode, time: Time, *, affordable: bool) -> Obligation:
@@ -162,28 +183,40 @@ class Examiner:
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
-        message = f"design goal: {error.message} (floating point, not a proof)"
+        message = f"design goal: {error.message}{self._in_contact} (floating point, not a proof)"
         place = self.places.at("controllers")
-        return self.obligation(STIFFNESS_RANGE, "controllers", Status.MISSED, message, place)
+        return self.obligation(STIFFNESS_RANGE, "controllers", self._missed, message, place)
+
+    @property
+    def _missed(self) -> Status:
+        """What a loop that is unstable in kept contact decides: where it may be lost, nothing."""
+        return Status.INCONCLUSIVE if self._in_contact else Status.MISSED
+
+    @property
+    def _in_contact(self) -> str:
+        spec = self.loaded.spec
+        losable = spec.kind == "interaction-design" and spec.contact == "losable"
+        return ", in kept contact" if losable else ""
 
     def stiffness_ranges(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS103 for every impedance controller."""
         for item in analysis.impedance:
             highest, limit = item.highest_stiffness, item.lowest_limit
-            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
-            ranged = any(gain.ranged for gain in item.given.gains().values())
-            where = f"{item.name}, in the corners of its gain ranges" if ranged else item.name
+            if isnan(limit):
+                continue
             reached = highest < limit
+            held = ", all parameters in proportion" if item.problem.loop.contact.remembers else ""
+            held += "" if reached else self._in_contact
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {where}{held} "
-                "(floating point, not a proof)"
+                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name}{held}, "
+                "at the worst corner of the other ranges (floating point, not a proof)"
             )
             yield self.obligation(
                 STIFFNESS_RANGE,
                 item.name,
-                Status.MET if reached else Status.MISSED,
+                Status.MET if reached else self._missed,
                 message,
                 self.places.at("controllers", item.name),
             )
@@ -195,9 +228,10 @@ class Examiner:
                 if found.goal is None:
                     continue
                 measure = found.measure
+                reached = f"{measure.text(found.value)} at worst, in {found.where}"
                 message = (
                     f"design goal: {measure.title} of controller {item.name} is "
-                    f"{measure.text(found.value)} at worst, in {found.where}; "
+                    f"{found.where if isnan(found.value) else reached}; "
                     f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
                 )
                 status = Status.MET if found.met else Status.MISSED
@@ -237,6 +271,53 @@ class Examiner:
         message = f"simulated: {error.message} (no run, so no limit is met)"
         place = self.places.at("scenarios", name)
         return self.obligation(SCENARIO_LIMIT, name, Status.MISSED, message, place)
+
+    def robot_bounds(self, file: Path, faults: Sequence[str]) -> Obligation:
+        """Return NRS111 from what is wrong with the bounds, all of which were computed again."""
+        status, message = Status.MET, f"{file.as_posix()} holds: every bound was computed again"
+        if faults:
+            status = Status.MISSED
+            message = f"{file.as_posix()} claims what does not hold: {'; '.join(faults)}"
+        return self._of_bounds(status, message)
+
+    def undecided_bounds(self, error: DesignError) -> Obligation:
+        """Return NRS111 for bounds that were neither shown nor refuted."""
+        return self._of_bounds(Status.INCONCLUSIVE, error.message)
+
+    def known_bounds(
+        self, robot: Path, locked: LockedGoal | None
+    ) -> tuple[Obligation, tuple[Caution]]:
+        """Return NRS111 as it is locked, unless a pose exceeds a bound; and that it is on trust.
+
+        Parameters
+        ----------
+        robot : Path
+            Its spec.
+        locked : LockedGoal, optional
+            What the lock file says of its bounds.
+        """
+        # Poses are tried with NumPy, which nothing else of `--locked` needs.
+        from nrs_design.pipeline.robots import contradict_robot_bounds
+
+        file, faults = contradict_robot_bounds(robot)
+        place = self.places.at("coupling", "robot")
+        caution = Caution(
+            self.loaded.path,
+            f"taken on trust: the bounds of {file.as_posix()}; the lock file says that a gate "
+            "computed them again (nrs-design robot bounds --check does)",
+            place.line,
+            place.column,
+        )
+        if faults:
+            return self._of_bounds(Status.MISSED, "; ".join(faults)), (caution,)
+        if locked is None:
+            message = "the lock file does not say that the bounds were computed again"
+            return self._of_bounds(Status.MISSED, f"{message} (run nrs-design gate)"), (caution,)
+        return self._of_bounds(Status(locked.status), locked.message), (caution,)
+
+    def _of_bounds(self, status: Status, message: str) -> Obligation:
+        place = self.places.at("coupling", "robot")
+        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, place)
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""

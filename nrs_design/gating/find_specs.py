@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 import re
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.spec.document import MAX_BYTES, Mapping, Scalar, parse_document
 from nrs_design.spec.load import SPEC_KINDS
 
 SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
-# A line of a spec, somewhere in so many bytes from its beginning.
-_KIND = re.compile(rf"^kind: *({'|'.join(SPEC_KINDS)})\b".encode(), re.MULTILINE)
-_LOOKED_AT = 16_384
+# The key of a spec in a text that cannot be parsed: quoted or not, in any style of YAML.
+_KIND = re.compile(
+    rf"(?<![\w.-])[\"']?kind[\"']?\s*:\s*(?:[!&]\S*\s+)*[\"']?({'|'.join(SPEC_KINDS)})(?![\w-])"
+)
 
 
 def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
@@ -68,13 +71,24 @@ def find_misnamed(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 
 def _reads_like_a_spec(file: Path) -> bool:
+    """Tell whether a file has the kind of a spec, as a spec is read; a broken one may have it."""
     if not file.is_file():
         return False
     try:
         with file.open("rb") as stream:
-            return _KIND.search(stream.read(_LOOKED_AT)) is not None
+            content = stream.read(MAX_BYTES)
     except OSError:
         return False
+    wide = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
+    text = content.decode("utf-16" if wide else "utf-8-sig", errors="replace")
+    if not any(kind in text for kind in SPEC_KINDS):
+        return False
+    try:
+        root = parse_document(text)
+    except SpecError:
+        return _KIND.search(text) is not None
+    kind = root.entries.get("kind") if isinstance(root, Mapping) else None
+    return isinstance(kind, Scalar) and kind.text in SPEC_KINDS
 
 
 def _specs_of(path: Path) -> list[Path]:

@@ -27,9 +27,11 @@ from nrs_design.gating.rules import (
     LOCKED,
     MODE_STABLE,
     NOT_DOUBTED,
+    NOT_WEAKER,
     RULES,
     SPEC,
     SWITCHING_STABLE,
+    Rule,
 )
 
 SCHEMA: Literal["nrs-design/lock/2"] = "nrs-design/lock/2"
@@ -45,6 +47,7 @@ DECIDED_AGAIN = frozenset(
         CERTIFICATE_HOLDS,
         LOCKED,
         NOT_DOUBTED,
+        NOT_WEAKER,
     }
 )
 
@@ -110,6 +113,10 @@ class LockedSpec(_Frozen):
     gains: dict[str, dict[str, str]]
     goals: list[LockedGoal]
     recorded: dict[str, Sha256] = Field(default_factory=dict)
+
+    def goal_of(self, rule: Rule) -> LockedGoal | None:
+        """Return the first goal of a rule."""
+        return next((goal for goal in self.goals if goal.rule == rule.id), None)
 
     @model_serializer(mode="wrap")
     def _leave_out_nothing_recorded(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -13,9 +13,22 @@ from nrs_design.certificates.units import gain_units
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status, failed
+from nrs_design.gating.obligations import (
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    Status,
+    failed,
+)
 from nrs_design.gating.recorded import hash_recorded
-from nrs_design.gating.rules import LOCKED, RULES, SCENARIO_LIMIT, SWITCHING_STABLE
+from nrs_design.gating.rules import (
+    LOCKED,
+    ROBOT_BOUNDS,
+    RULES,
+    SCENARIO_LIMIT,
+    SWITCHING_STABLE,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
 from nrs_design.spec.document import Position
@@ -131,18 +144,21 @@ def _confirmed(
     examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
     rate, rate_name = certified_rate(certificate)
+    bounds, on_trust = _bounds(examiner, entry)
     return SpecOutcome(
         path=examiner.loaded.path,
         obligations=(
-            *examiner.stability(certificate.system, certificate.evidence, ""),
+            *examiner.stability(certificate.system, certificate.statements, "as locked"),
             examiner.certificate(place, None),
             *examiner.certified_goals(certificate),
             *_goals(examiner, entry),
+            *bounds,
             *examiner.identified(),
             _agrees(examiner, file),
         ),
         sha256=examiner.loaded.sha256,
         verdict=certificate.verdict,
+        refuted_in=certificate.refuted_in,
         common_quadratic=str(certificate.common_quadratic),
         rate=rate,
         rate_name=rate_name,
@@ -152,13 +168,15 @@ def _confirmed(
         gains=certificate.gains,
         units=gain_units(certificate),
         bounds=bounds_summary(certificate.system, certificate.statements),
-        cautions=tuple(examiner.cautions(None)),
+        cautions=(*on_trust, *examiner.cautions(None)),
     )
 
 
 def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
     """Yield what only a design can decide, as it ended when it was locked."""
     for goal in entry.goals:
+        if goal.rule == ROBOT_BOUNDS.id:
+            continue
         yield examiner.obligation(
             RULES[goal.rule],
             goal.subject,
@@ -166,6 +184,17 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
             f"{goal.message} (as locked; not computed again)",
             _place(examiner, goal),
         )
+
+
+def _bounds(
+    examiner: Examiner, entry: LockedSpec
+) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
+    """Return NRS111 of a spec that names a robot, and that its bounds are on trust."""
+    robot = examiner.loaded.robot
+    if robot is None:
+        return (), ()
+    bounds, cautions = examiner.known_bounds(robot, entry.goal_of(ROBOT_BOUNDS))
+    return (bounds,), cautions
 
 
 def _place(examiner: Examiner, goal: LockedGoal) -> Position:
@@ -199,18 +228,21 @@ def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutc
         f"neither a proof nor a refutation is locked in {file.name}",
         examiner.places.at("switching"),
     )
+    bounds, on_trust = _bounds(examiner, entry)
     return SpecOutcome(
         path=examiner.loaded.path,
         obligations=(
             obligation,
             *examiner.certified_goals(None),
             *_goals(examiner, entry),
+            *bounds,
             *examiner.identified(),
             _agrees(examiner, file),
         ),
         sha256=examiner.loaded.sha256,
         verdict="inconclusive",
         common_quadratic="unknown",
+        cautions=on_trust,
     )
 
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from nrs_design.errors import NrsDesignError
+from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.gating.rules import INTERNAL, RULES, Rule
 
 
@@ -112,6 +112,8 @@ class SpecOutcome:
         Hash of the spec, if it could be read.
     verdict, common_quadratic : str or None
         Of the certification; None if there was none.
+    refuted_in : str or None
+        In which contact alone it is refuted, where that leaves its loss open.
     rate : str or None
         Certified rate with six digits, rounded to its safe side.
     rate_name : str or None
@@ -143,6 +145,7 @@ class SpecOutcome:
     sha256: str | None = None
     verdict: str | None = None
     common_quadratic: str | None = None
+    refuted_in: str | None = None
     rate: str | None = None
     rate_name: str | None = None
     modes: int | None = None
@@ -157,6 +160,25 @@ class SpecOutcome:
 
 
 @dataclass(frozen=True, slots=True)
+class BaseChanges:
+    """What differs from the specs of a base, beside what is weaker, which breaks an obligation.
+
+    Parameters
+    ----------
+    base : Path
+        Folder of the base.
+    weaker : int
+        Number of obligations that it breaks.
+    others : tuple of Caution
+        What is stronger, or neither; versions.
+    """
+
+    base: Path
+    weaker: int
+    others: tuple[Caution, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class GateOutcome:
     """What one run of the gate found.
 
@@ -166,10 +188,13 @@ class GateOutcome:
         In the order of their paths.
     notes : tuple of str
         What a person should know beside it.
+    changes : BaseChanges or None
+        What differs from a base; None if it was not asked for.
     """
 
     specs: tuple[SpecOutcome, ...]
     notes: tuple[str, ...] = ()
+    changes: BaseChanges | None = None
 
     @property
     def broken(self) -> tuple[Obligation, ...]:
@@ -220,7 +245,7 @@ def of_error(path: Path, error: NrsDesignError) -> Obligation:
         RULES[error.rule],
         path,
         "spec",
-        Status.ERROR,
+        Status.INCONCLUSIVE if isinstance(error, ClockError) else Status.ERROR,
         _one_line(message),
         None if elsewhere else error.line,
         None if elsewhere else error.column,

@@ -20,7 +20,8 @@ from nrs_design.gating.lock import (
     read_lock_if_any,
     relative_to_lock,
 )
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome
+from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status
+from nrs_design.gating.rules import ROBOT_BOUNDS
 from nrs_design.output import LOCK, alone_in, write_output
 
 
@@ -131,6 +132,12 @@ def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
         for entry in lock.specs
         if entry.certificate is not None
     }
+
+
+def bounds_of(lock: Lock) -> Mapping[str, LockedGoal]:
+    """Return what a gate of this release found of bounds of robots, by the hash of the spec."""
+    found = {e.sha256: e.goal_of(ROBOT_BOUNDS) for e in lock.specs if e.version == __version__}
+    return {hash_: goal for hash_, goal in found.items() if goal and goal.status == Status.MET}
 
 
 def check_folder(folder: Path, file: Path) -> None:

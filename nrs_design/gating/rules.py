@@ -100,6 +100,15 @@ POSE = Rule(
     "stretched. The message names the leg and by how much it is overstretched or folded too far.",
     "Choose a pose inside the workspace; `nrs-design robot kinematics SPEC` maps it.",
 )
+CLOCK = Rule(
+    "NRS008",
+    "The clock does not stop the work",
+    "What a search may do is counted in units of work, of about a second each, so that its "
+    "outcome does not depend on how fast a machine is or what else it does. The clock is a fuse: "
+    "after ten seconds for each unit of the budget, and a minute more, it stops everything. Then "
+    "nothing is decided, and no rate is claimed that more time would have raised. Exit code 3.",
+    "Run it again where less else runs, or with a larger --budget, which allows more time, too.",
+)
 MODE_STABLE = Rule(
     "NRS101",
     "Every mode is stable",
@@ -120,8 +129,9 @@ SWITCHING_STABLE = Rule(
     "where none exists a polynomial of higher degree, or one quadratic function for each mode "
     "where switching is constrained, or one that depends on a constant parameter. Refuted by an "
     "unstable mode, by an average of modes that is not stable, or by a periodic switching signal "
-    "that makes a motion grow, also at one value of a constant parameter. Whatever it is, it has "
-    "passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
+    "that makes a motion grow, also at one value of a constant parameter; where contact may be "
+    "lost, by a motion that grows and is in contact and free as it says itself. Whatever it is, it "
+    "has passed an exact check. Stable modes alone do not suffice, and that no common quadratic "
     "function exists refutes nothing.",
     "If refuted by a mode, mend that mode first (NRS101). If refuted by a signal, take it away: "
     "declare a longer dwell time or only the transitions that really occur, narrow the ranges, or "
@@ -136,18 +146,21 @@ STIFFNESS_RANGE = Rule(
     "NRS103",
     "The declared stiffness is below the stiffness limit",
     "For every impedance controller, the whole declared stiffness range of the environment that "
-    "it is designed for lies below the stiffness at which its loop first becomes unstable (at "
-    "nominal damping, or in viscoelastic contact with all parameters in proportion; with the "
-    "designed gains and in the corners of their declared ranges). A "
-    "design goal, computed in floating point: not a proof. What is proved about the ranges is "
-    "NRS102, at every corner of the parameter box and so inside it.",
+    "it is designed for lies below the stiffness at which the loop that is proved first becomes "
+    "unstable, that stiffness being constant (damping held, or in viscoelastic contact all "
+    "parameters in proportion), at every corner of the ranges of damping, gains and motor and at "
+    "every age of a force sample. A "
+    "design goal, computed in floating point: not a proof. It is of contact that is kept: with "
+    "`contact: losable` a range that reaches the limit is inconclusive. What is proved about the "
+    "ranges is NRS102, at every corner of the parameter box and so inside it.",
     "Raise Bt or its upper bound, or narrow the stiffness range to what really occurs.",
 )
 GOAL = Rule(
     "NRS106",
     "The design meets its goal",
-    "Every goal that the spec sets for a controller is met by the gains that ship: a margin at the "
-    "nominal values and at every corner of the ranges of all contacts and gains; the error of the "
+    "Every goal that the spec sets for a controller is met by the gains that ship: a margin of the "
+    "loop that is proved at the nominal values and at every corner of the ranges of all contacts, "
+    "gains and motor, sampled at every age of the force sample; the error of the "
     "displayed impedance or of the steady force at the nominal values and at every corner of the "
     "ranges of the environment that it is designed for; the creep in free motion at the worst "
     "gains. Values between corners are not looked at. Computed in floating point: not a proof. "
@@ -210,6 +223,27 @@ LOCKED = Rule(
     "Run `nrs-design gate` without --locked, look at what changed, and commit the new lock file "
     "together with its certificates; with --prune for specs that were removed.",
 )
+NOT_WEAKER = Rule(
+    "NRS110",
+    "Nothing is weaker than in the base",
+    "With --against BASE, what the specs of BASE asked for is still asked for: no spec is gone, no "
+    "range covers less, no goal, limit or disturbance is looser, nothing more is taken for granted "
+    "(a dwell time, contact that is kept, a doubt that is accepted), and no certified rate or "
+    "verdict is lower. A proof of a weaker spec is a proof, so no other rule sees this. Values "
+    "that are neither more nor less, and versions, are listed as other changes, and break nothing.",
+    "If it is meant, let somebody who may decide that say so where the change is reviewed: there "
+    "is no option for it, because the change itself could set it. Otherwise, take it back.",
+)
+ROBOT_BOUNDS = Rule(
+    "NRS111",
+    "The bounds of the robot hold",
+    "A spec that names a robot is certified with bounds on its links from a file beside the "
+    "robot, which the certificate takes on trust. When their hash is not in the lock file, the "
+    "gate computes every one of them again from the spec of the robot, by interval arithmetic, in "
+    "minutes. Otherwise it tries poses, and a warning says that they are on trust in the lock "
+    "file.",
+    "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it.",
+)
 ROS_PARAMETERS = Rule(
     "NRS201",
     "The parameters of a ROS 2 controller are read as they are meant",
@@ -229,6 +263,15 @@ ROS_AXIS = Rule(
     "Lower the stiffness that is touched, the age of the measurement or the period; raise the "
     "mass or the damping (with stiffness 0 only joint_damping damps); raise filter_coefficient "
     "towards 1. The message says up to which stiffness there is a proof.",
+)
+ROS_OTHERS = Rule(
+    "NRS203",
+    "Every controller of a ROS 2 parameter file is decided",
+    "`nrs-design ros2 check` knows admittance_controller of ros2_controllers, and broadcasters, "
+    "which command nothing. Any other node may move the same robot, in front of an admittance "
+    "controller or instead of it: nothing is said about that.",
+    "Show by other means what it does to the robot; keep nodes that are no controllers in a file "
+    "of their own; give the type of a node that is one.",
 )
 INTERNAL = Rule(
     "NRS900",
@@ -250,6 +293,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             OUTPUT,
             DATA,
             POSE,
+            CLOCK,
             MODE_STABLE,
             SWITCHING_STABLE,
             STIFFNESS_RANGE,
@@ -259,8 +303,11 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             NOT_DOUBTED,
             CERTIFIED_GOAL,
             SCENARIO_LIMIT,
+            NOT_WEAKER,
+            ROBOT_BOUNDS,
             ROS_PARAMETERS,
             ROS_AXIS,
+            ROS_OTHERS,
             INTERNAL,
         )
     }
@@ -282,8 +329,11 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "The statement is false, and a witness shows it, checked exactly: a mode that is "
                 "not stable by itself, an average of modes that is not, a periodic switching "
                 "signal along which a motion grows, or a value of a constant parameter with one of "
-                "these. Modes of a sampled loop enclose what the motor does, as closely as the "
-                "assumptions say: a witness there may be of no motor in the range.",
+                "these. Where `contact: losable` is asked for, it is a sequence of contact and "
+                "flight that a growing motion makes by itself; growth for which the environment "
+                "would have to pull is no such witness. Modes of a sampled loop enclose what the "
+                "motor does, as closely as the assumptions say: a witness there may be of no motor "
+                "in the range.",
                 "Mend the spec or the design: the message names the witness. A mode needs more "
                 "damping (raise Bt) or a narrower range; a signal is also taken away by a longer "
                 "dwell time or by fewer transitions, if the robot keeps to them. Exit code 1.",
@@ -292,7 +342,10 @@ WORDS: Mapping[str, Word] = MappingProxyType(
                 "inconclusive",
                 "Neither a proof nor a refutation was found. This is not a statement of "
                 "stability, nor of instability, even where it is shown that no common quadratic "
-                "function exists.",
+                "function exists. `refuted in kept contact` beside it says that there is growth, "
+                "but only with an environment that pulls as it pushes, which none does: where "
+                "contact may be lost, that decides nothing. Near the rest position under a "
+                "constant force that pushes in, it is how motions grow until contact is lost.",
                 "Search longer: with a larger --budget, more --memory or a higher --max-degree "
                 "(of certify-switching, report and gate), whichever the message says has ended "
                 "the search. Or ask for less: a longer dwell time, narrower ranges "

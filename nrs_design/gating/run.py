@@ -34,12 +34,18 @@ from nrs_design.pipeline import (
     run_verification,
     search_limits,
 )
+from nrs_design.pipeline.robots import check_robot_bounds
 from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.gating.lock import LockedGoal
+
+
+# For each of the bounds of a robot, in s.
+BUDGET = 1800.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,11 +60,15 @@ class Files:
         Whether reports are asked for.
     locked : mapping of Path to Path
         Which spec a certificate file is locked for, as real paths.
+    bounds : mapping of str to LockedGoal
+        What a gate of this release locked of the bounds of a robot that it computed again, by the
+        hash of the spec, which holds theirs.
     """
 
     folder: Path
     html: bool = True
     locked: Mapping[Path, Path] = field(default_factory=dict)
+    bounds: Mapping[str, LockedGoal] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
         """Return the certificate file of the spec of that name."""
@@ -81,6 +91,43 @@ class Files:
         owner = self.locked.get(Path(os.path.realpath(file)))
         if owner is not None and owner.is_file() and owner != Path(os.path.realpath(spec)):
             raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
+
+
+@dataclass(frozen=True, slots=True)
+class Robots:
+    """Whose bounds this run has computed again: once for all specs that name a robot.
+
+    Parameters
+    ----------
+    checked : dict
+        The file of the bounds and what is wrong with them, or the error that kept them undecided,
+        by the real path of the robot.
+    """
+
+    checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
+
+    def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:
+        """Return NRS111 of bounds that are new: nothing is evidence of them but to compute them.
+
+        Parameters
+        ----------
+        robot : Path
+            Its spec.
+        examiner : Examiner
+            Of the spec that names it.
+        progress : callable
+            Told the name of each step.
+        """
+        key = Path(os.path.realpath(robot))
+        if key not in self.checked:
+            try:
+                self.checked[key] = check_robot_bounds(robot, BUDGET, progress)
+            except DesignError as error:
+                self.checked[key] = error
+        found = self.checked[key]
+        if isinstance(found, DesignError):
+            return examiner.undecided_bounds(found)
+        return examiner.robot_bounds(*found)
 
 
 def run_gate(
@@ -108,12 +155,13 @@ def run_gate(
         A spec that fails is part of it, and does not keep the others from being examined.
     """
     read = [_read(path) for path in specs]
+    robots = Robots()
     namesakes = _namesakes(item for item in read if isinstance(item, LoadedSpec))
     return GateOutcome(
         tuple(
             item
             if isinstance(item, SpecOutcome)
-            else _examine_safely(item, namesakes.get(item.path), files, progress, overrides)
+            else _examine_safely(item, namesakes.get(item.path), files, progress, overrides, robots)
             for item in read
         )
     )
@@ -144,12 +192,13 @@ def _examine_safely(
     files: Files,
     progress: Progress,
     overrides: Overrides | None,
+    robots: Robots,
 ) -> SpecOutcome:
     try:
         if namesake is not None:
             raise _shared_name(loaded, namesake)
         return _examine(
-            loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides
+            loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides, robots
         )
     except Exception as error:
         # One spec must not keep the others from being examined, whatever goes wrong with it.
@@ -168,7 +217,11 @@ def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
 
 
 def _examine(
-    loaded: LoadedSpec, files: Files, progress: Progress, overrides: Overrides | None
+    loaded: LoadedSpec,
+    files: Files,
+    progress: Progress,
+    overrides: Overrides | None,
+    robots: Robots,
 ) -> SpecOutcome:
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
@@ -184,7 +237,7 @@ def _examine(
     subsets = find_subsets(result, limits, progress)
     tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
     searched = "; ".join((*tried, *(() if subsets is None else subset_lines(subsets))))
-    obligations = examiner.stability(certification.system, certification.evidence, searched)
+    obligations = examiner.stability(certification.system, certification.statements, searched)
     file = None
     if certificate is not None:
         file = files.certificate(loaded.spec.name)
@@ -192,6 +245,13 @@ def _examine(
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
+    robot = loaded.robot
+    on_trust: tuple[Caution, ...] = ()
+    if robot is not None and loaded.sha256 not in files.bounds:
+        obligations += (robots.bounds(robot, examiner, progress),)
+    elif robot is not None:
+        bounds, on_trust = examiner.known_bounds(robot, files.bounds[loaded.sha256])
+        obligations += (bounds,)
     recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)
@@ -207,6 +267,7 @@ def _examine(
         ),
         sha256=loaded.sha256,
         verdict=str(certification.verdict),
+        refuted_in=certification.refuted_in,
         common_quadratic=str(certification.common_quadratic),
         rate=rate,
         rate_name=rate_name,
@@ -216,7 +277,7 @@ def _examine(
         gains=gains_of(result.design) if result.design else {},
         units=result.design.units if result.design else {},
         bounds=bounds_summary(certification.system, certification.statements),
-        cautions=cautions,
+        cautions=(*on_trust, *cautions),
         recorded=recorded,
     )
 

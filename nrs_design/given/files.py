@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
-from typing import Any, NoReturn
+from types import MappingProxyType
+from typing import Any, BinaryIO, NoReturn
 
+from nrs_design.confined import read_confined
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.given.matrices import refuse_times
@@ -63,42 +65,37 @@ def read_proposal(path: Path) -> Proposal:
     DataError
         If the file cannot be read, or does not hold these.
     """
-    readers: dict[str, Callable[[bytes], dict[str, Any]]] = {
-        ".npz": _read_npz,
-        ".mat": _read_mat,
-        ".json": _read_json,
-    }
-    reader = readers.get(path.suffix.lower())
-    if reader is None:
+    kind = path.suffix.lower()
+    if kind not in (*_FOREIGN, ".json"):
         raise DataError(
             f"files named {path.suffix or 'without an ending'!r} are not read",
             path=path,
             remedy="name a file .npz, .mat or .json",
         )
-    raw = _read_bytes(path)
-    try:
-        content = reader(raw)
-    except Exception as error:
-        # Readers of foreign formats raise what they like on files that are not theirs.
-        raise DataError(
-            f"cannot be read ({error or type(error).__name__})", path=path, remedy=_CONTENT
-        ) from error
-    return _proposal(content, path)
-
-
-def _read_bytes(path: Path) -> bytes:
     if not path.is_file():
         raise DataError("is not a file", path=path, remedy="check the path")
     try:
         with open_regular(path) as file:
-            content = file.read(MAX_BYTES + 1)
+            return _proposal(_read(file, kind, path), path)
     except OSError as error:
         raise DataError(
             f"cannot be read ({error.strerror})", path=path, remedy="check the path"
         ) from error
-    if len(content) > MAX_BYTES:
+
+
+def _read(file: BinaryIO, kind: str, path: Path) -> dict[str, Any]:
+    if os.fstat(file.fileno()).st_size > MAX_BYTES:
         raise DataError(f"is larger than {MAX_BYTES} bytes", path=path, remedy="name a smaller one")
-    return content
+    if kind in _FOREIGN:
+        reader, libraries = _FOREIGN[kind]
+        found: dict[str, Any] = read_confined(
+            f"{__name__}:{reader.__name__}", libraries, file, path, _CONTENT
+        )
+        return found
+    try:
+        return _read_json(file.read(MAX_BYTES))
+    except (ValueError, RecursionError) as error:
+        raise DataError(f"cannot be read ({error})", path=path, remedy=_CONTENT) from error
 
 
 def _proposal(content: dict[str, Any], path: Path) -> Proposal:
@@ -156,11 +153,12 @@ def _read_json(raw: bytes) -> dict[str, Any]:
     return content
 
 
-def _read_npz(raw: bytes) -> dict[str, Any]:
+def unpack_npz(file: BinaryIO, path: Path) -> dict[str, Any]:
+    """Return the arrays of a NumPy archive as lists; in a process of its own."""
     import numpy as np
 
-    check_npz(raw)
-    with np.load(BytesIO(raw), allow_pickle=False) as archive:
+    check_npz(file)
+    with np.load(file, allow_pickle=False) as archive:
         arrays = {key: archive[key] for key in archive.files}
     for key, array in arrays.items():
         refuse_times(array, key)
@@ -168,12 +166,14 @@ def _read_npz(raw: bytes) -> dict[str, Any]:
     return {key: array.tolist() for key, array in arrays.items()}
 
 
-def _read_mat(raw: bytes) -> dict[str, Any]:
+def unpack_mat(file: BinaryIO, path: Path) -> dict[str, Any]:
+    """Return the variables of a MATLAB file as lists; in a process of its own."""
     from scipy.io import loadmat
 
-    check_mat(raw)
+    check_mat(file.read())
+    file.seek(0)
     # It reads from streams, too, which its annotations do not know.
-    stream: Any = BytesIO(raw)
+    stream: Any = file
     variables = loadmat(stream)
     arrays = {key: value for key, value in variables.items() if not key.startswith("__")}
     _check_entries(sum(map(_size, arrays.values())))
@@ -206,6 +206,12 @@ def _plain(value: Any) -> Any:
     if value.ndim == 3:
         return [value[:, :, k].tolist() for k in range(value.shape[2])]
     return value.tolist()
+
+
+# By ending: who reads such a file, and the libraries that he loads.
+_FOREIGN: Mapping[str, tuple[Callable[[BinaryIO, Path], dict[str, Any]], tuple[str, ...]]] = (
+    MappingProxyType({".npz": (unpack_npz, ("numpy",)), ".mat": (unpack_mat, ("scipy.io",))})
+)
 
 
 def _not_finite(text: str) -> NoReturn:

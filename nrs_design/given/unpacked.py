@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from io import BytesIO
+from typing import BinaryIO
 from zipfile import ZipFile
 
 MAX_UNPACKED = 32 * 2**20
@@ -17,16 +17,17 @@ _MATRIX = 14
 _COMPRESSED = 15
 
 
-def check_npz(content: bytes) -> None:
-    """Refuse an archive that unfolds to more than 32 MiB.
+def check_npz(file: BinaryIO) -> None:
+    """Refuse an archive that unfolds to more than 32 MiB; end at its beginning.
 
     Raises
     ------
     ValueError
         If it does.
     """
-    with ZipFile(BytesIO(content)) as archive:
+    with ZipFile(file) as archive:
         _check_length(sum(item.file_size for item in archive.infolist()))
+    file.seek(0)
 
 
 def check_mat(content: bytes) -> None:

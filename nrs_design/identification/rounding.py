@@ -7,12 +7,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Small changes of a rounded signal are whole numbers of its step: so near, and so many of them.
+# Changes of a rounded signal are whole numbers of its step: so near, and so many of them.
 _WHOLE = 0.06
 _MOST = 0.9
 # What is small, in steps; and how many of the changes must be.
 _SMALL = 10.5
 _SHARE = 0.1
+# Changes that stand out between two equal ones: so many at least, and so many of all changes.
+_FEWEST_BLIPS, _BLIPS = 2, 0.05
+# Steps that are tried: a reading may be rounded twice, by its sensor and by the digits of its file.
+_CANDIDATES = 50
 # A probe rests where a reading stays so many times longer than usual.
 _REST = 3.0
 
@@ -20,18 +24,39 @@ _REST = 3.0
 def resolution(readings: Array) -> float:
     """Return the step to which readings are rounded, 0 if no step shows.
 
-    The smallest change that occurs is the step, if the other small changes are multiples of it.
+    Where a motion is even, rounding lets single changes stand out between two equal ones (0, 0, q,
+    0, 0 or 3q, 3q, 4q, 3q): by a step. A clean ramp has no such changes, whatever its own change
+    from sample to sample is. Of the steps that stand out, the largest is taken of which all other
+    small changes are multiples.
     """
-    changes = np.abs(np.diff(readings))
-    changes = changes[changes > 1e-9 * changes.max(initial=0.0)]
-    if not len(changes):
-        return 0.0
-    ratios = changes / changes.min()
-    small = ratios[ratios < _SMALL]
-    if len(small) < _SHARE * len(ratios):
-        return 0.0
-    whole = np.abs(small - np.round(small)) < _WHOLE * np.round(small)
-    return float(changes.min()) if np.mean(whole) > _MOST else 0.0
+    changes = np.diff(readings)
+    sizes = np.abs(changes)
+    exact = max(
+        1e-9 * float(sizes.max(initial=0.0)),
+        4 * np.finfo(float).eps * float(np.abs(readings).max(initial=0.0)),
+    )
+    sizes = sizes[sizes > exact]
+    before, at, after = changes[:-2], changes[1:-1], changes[2:]
+    blips = np.abs(at - before)[np.abs(after - before) <= exact]
+    blips = np.sort(blips[blips > exact])
+    found = 0.0
+    for step in np.unique(blips[:: -(-len(blips) // _CANDIDATES) or 1]).tolist():
+        enough = int(np.sum(_are_whole(blips, step)))
+        if enough < max(_FEWEST_BLIPS, _BLIPS * len(sizes)):
+            continue
+        small = sizes[sizes < _SMALL * step]
+        if len(small) < _SHARE * len(sizes):
+            continue
+        if float(np.mean(_are_whole(small, step))) > _MOST:
+            found = step
+    return found
+
+
+def _are_whole(sizes: Array, step: float) -> NDArray[np.bool_]:
+    """Tell which sizes are whole numbers of a step, and not none."""
+    ratios = sizes / step
+    whole = np.round(ratios)
+    return np.asarray((whole > 0) & (np.abs(ratios - whole) < _WHOLE * whole))
 
 
 def rounding_of_velocity(time: Array, readings: Array) -> float:

@@ -17,6 +17,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.datasets import PoseRecord
 from nrs_design.identification.statistics import Estimate, student_quantile
 from nrs_design.identification.tool_causes import likely_cause
+from nrs_design.spec.plausible import doubt_size
 
 Array = NDArray[np.float64]
 
@@ -67,6 +68,11 @@ class ToolIdentification:
         """Root mean square of the errors of force and torque, in N and N m."""
         force, torque = (np.sqrt(np.mean(e**2)) for e in (self.force_errors, self.torque_errors))
         return float(force), float(torque)
+
+    @property
+    def slips(self) -> tuple[str, ...]:
+        """Doubts that say that the data are likely read in another unit."""
+        return _slips(self.mass.value, self.center)
 
     @property
     def synthetic(self) -> bool:
@@ -122,8 +128,19 @@ def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentifi
         forces.estimates()[1:],
         torques.estimates()[3:],
         *errors,
-        tuple(_doubts(records, spread, errors, mass.value * gravity, center)),
+        (
+            *_slips(mass.value, center),
+            *_doubts(records, spread, errors, mass.value * gravity, center),
+        ),
     )
+
+
+def _slips(mass: float, center: Sequence[Estimate]) -> tuple[str, ...]:
+    """Return what is asked about the sizes of what was found."""
+    away = math.hypot(*(estimate.value for estimate in center))
+    sizes = ("mass", "mass", mass, "kg"), ("distance of its center", "center_of_mass", away, "m")
+    asked = ((what, value, si, doubt_size(field, value, si)) for what, field, value, si in sizes)
+    return tuple(f"the {what} is {v:.4g} {si}: {said}" for what, v, si, said in asked if said)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

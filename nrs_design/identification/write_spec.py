@@ -17,12 +17,20 @@ from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.identification.tool import ToolIdentification
-from nrs_design.models.contact import LINEAR_LAWS, TISSUE_LAWS, AbstractLinearLaw, HuntCrossley
+from nrs_design.models.contact import (
+    LAWS,
+    LINEAR_LAWS,
+    TISSUE_LAWS,
+    AbstractLinearLaw,
+    HuntCrossley,
+)
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
+from nrs_design.spec.describe import describe
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
-from nrs_design.spec.sampling import LONGEST_DELAY
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.sampling import LONGEST_DELAY, SamplingSpec
 
 _DIGITS = 6
 # What only a power law has in a spec.
@@ -54,24 +62,20 @@ def merge_tissue(
     """
     model = found.chosen
     law, ranges = found.written
+    name = _place(loaded, environment, arm, rotational=found.rotational)
     if not isinstance(law, AbstractLinearLaw):
-        raise DataError(
-            f"the chosen law, {law.name}, has no place in a spec",
-            remedy="say by --preload at which deflections, or choose one that has a place: "
-            f"--model {' or --model '.join(TISSUE_LAWS)}",
-        )
+        raise _no_place(law.name)
     if model.doubts and not all(map(_is_limited, ranges)):
         raise DataError(
             f"a range is unlimited, the records do not determine it: {model.doubts[0]}",
             remedy="choose a simpler law with --model, or record again as the message says",
         )
-    spec = _interaction(loaded)
-    name = _environment(spec, environment, loaded.path)
     document = SpecDocument(loaded)
     node = document.root["environments"][name]
     power = found.tangent is not None and has_place(found.tangent)
     if found.tangent is not None and power:
-        kept = _put_power_law(document, node, found.tangent, law, rotational=found.rotational)
+        put = _PUT_BY_TANGENT[model.law.name]
+        kept = put(document, node, found.tangent, law, rotational=found.rotational)
     else:
         document.put(node, "model", law.name)
         units = law.units(rotational=found.rotational)
@@ -85,12 +89,6 @@ def merge_tissue(
         document.drop(node, "lever_arm")
     elif arm is not None:
         document.put(node, "lever_arm", arm)
-    elif "lever_arm" not in node:
-        raise SpecError(
-            f"the environment {name} has no lever_arm, and the records are linear",
-            path=loaded.path,
-            remedy="give --lever-arm '0.24 m'",
-        )
     document.put(node, "range_covers", model.coverage)
     if found.tangent is None or power:
         document.drop(node, "linearized_about")
@@ -103,6 +101,76 @@ def merge_tissue(
     assert isinstance(written, InteractionDesignSpec)
     document.put(node, "range_id", written.environments[name].values_id())
     return document.text()
+
+
+def law_to_write(
+    loaded: LoadedSpec,
+    environment: str | None,
+    arm: str | None,
+    asked: str | None,
+    *,
+    preloaded: bool,
+    rotational: bool,
+) -> str:
+    """Return the law whose parameters go into an environment: its own, unless another is asked for.
+
+    All that can be refused before a fit is refused here.
+
+    Parameters
+    ----------
+    loaded, environment, arm
+        As for `merge_tissue`.
+    asked : str or None
+        Name of a law that the user has asked for.
+    preloaded : bool
+        Whether a preload is given.
+    rotational : bool
+        Whether the records are.
+
+    Raises
+    ------
+    SpecError
+        As by `merge_tissue`; or if no record of a press tells the law of the environment.
+    DataError
+        If the law has no place in a spec.
+    """
+    name = _place(loaded, environment, arm, rotational=rotational)
+    declared = _interaction(loaded).environments[name]
+    law = asked or declared.model
+    if law not in LAWS:
+        raise SpecError(
+            f"the environment {name} is a {law}, which no record of a press tells",
+            path=loaded.path,
+            remedy="name the law that shall replace it: "
+            f"--model {' or --model '.join(TISSUE_LAWS)}",
+        )
+    if law not in TISSUE_LAWS and not preloaded:
+        raise _no_place(law, declared.preload_range)
+    return law
+
+
+def _no_place(law: str, preload: tuple[Quantity, Quantity] | None = None) -> DataError:
+    said = "" if preload is None else f" (the spec has '{preload[0].text}..{preload[1].text}')"
+    return DataError(
+        f"the law {law} has no place in a spec without a preload",
+        remedy=f"say by --preload at which deflections{said}, or choose one that has a place: "
+        f"--model {' or --model '.join(TISSUE_LAWS)}",
+    )
+
+
+def _place(
+    loaded: LoadedSpec, environment: str | None, arm: str | None, *, rotational: bool
+) -> str:
+    """Return the name of the environment, which a lever arm leads to."""
+    spec = _interaction(loaded)
+    name = _environment(spec, environment, loaded.path)
+    if not rotational and arm is None and spec.environments[name].lever_arm is None:
+        raise SpecError(
+            f"the environment {name} has no lever_arm, and the records are linear",
+            path=loaded.path,
+            remedy="give --lever-arm '0.24 m'",
+        )
+    return name
 
 
 def has_place(about: Tangent) -> bool:
@@ -139,6 +207,10 @@ def _put_power_law(
     document.put(node, "about", f"{about.about!r} {length}")
     document.put(node, "preload", [f"{end!r} {length}" for end in (about.low, about.high)])
     return (*law.keys, *_POWER_KEYS)
+
+
+# How a law that is not linear is written, by its name.
+_PUT_BY_TANGENT = {HuntCrossley.name: _put_power_law}
 
 
 def _preload(found: TissueIdentification) -> str:
@@ -179,13 +251,12 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     DataError
         If an interval is unlimited, or a spec has no place for such a motor.
     """
-    spec = _interaction(loaded)
+    spec = check_actuator(loaded, found.unit)
     if found.chosen.order != 1:
         raise DataError(
             "a spec has no place for a motor of second order",
             remedy="leave --write out, or record commands that a first order describes",
         )
-    _check_commands(spec, found.unit, loaded.path)
     document = SpecDocument(loaded)
     node = document.root["actuator"]
     if found.unit != spec.actuator.command:
@@ -217,8 +288,15 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     return document.text()
 
 
-def _check_commands(spec: InteractionDesignSpec, unit: str, path: Path) -> None:
-    """Refuse a motor for which gains in the spec would be in the wrong unit."""
+def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
+    """Refuse, before a fit, a spec that a motor with commands in this unit cannot go into.
+
+    Raises
+    ------
+    SpecError
+        If it is no interaction design, or its gains would be in the wrong unit.
+    """
+    spec = _interaction(loaded)
     friction = None if spec.disturbances is None else spec.disturbances.friction
     written = {
         "derivative_gain": spec.motion_loop.derivative_gain,
@@ -229,10 +307,11 @@ def _check_commands(spec: InteractionDesignSpec, unit: str, path: Path) -> None:
         if quantity is not None and spec.actuator.command != unit:
             raise SpecError(
                 f"the records are about commands in {unit}, and {name} is {quantity.text}",
-                path=path,
+                path=loaded.path,
                 remedy=f"remove {name} before, and give it in {unit} afterwards; without "
                 "derivative_gain the root locus chooses it",
             )
+    return spec
 
 
 def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
@@ -245,13 +324,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     DataError
         If the record shows dynamics and no mere delay, or a delay that no spec takes.
     """
-    spec = _interaction(loaded)
-    if spec.sampling is None:
-        raise SpecError(
-            "the spec has no sampling, and a delay counts in its periods",
-            path=loaded.path,
-            remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
-        )
+    sampling = check_delay_place(loaded)
     if found.is_lag:
         sent, seen = found.record.names
         raise DataError(
@@ -260,7 +333,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
             remedy="name the force as measured by --command and the force that the law used by "
             "--measured; dynamics between them belong into the model",
         )
-    low, high = found.in_periods(spec.sampling.outer)
+    low, high = found.in_periods(sampling.outer)
     if high > LONGEST_DELAY:
         raise DataError(
             f"the force is up to {high} periods old, a spec takes {LONGEST_DELAY} at most",
@@ -272,6 +345,24 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     document.put(node, "provenance", [_provenance(found.record.source)])
     _put_doubts(document, node, found.caveats)
     return document.text()
+
+
+def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
+    """Refuse, before a fit, a spec that no delay can go into.
+
+    Raises
+    ------
+    SpecError
+        If it is no interaction design, or not about a sampled loop.
+    """
+    sampling = _interaction(loaded).sampling
+    if sampling is None:
+        raise SpecError(
+            "the spec has no sampling, and a delay counts in its periods",
+            path=loaded.path,
+            remedy="add `sampling: {period: 2 ms, delay: 0}`, with the period of your processor",
+        )
+    return sampling
 
 
 def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
@@ -287,7 +378,7 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
     DataError
         If the interval of the mass reaches zero.
     """
-    spec = _interaction(loaded)
+    spec = check_tool(loaded)
     document = SpecDocument(loaded)
     sensor = document.child(document.root, "sensor", ("bias", "tool"))
     document.put(sensor, "bias", _left(found.torque_bias, "N*m"))
@@ -302,6 +393,22 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
     document.put(tool, "provenance", [_provenance(record.source) for record in found.records])
     _put_doubts(document, tool, found.doubts)
     return document.text()
+
+
+def check_tool(loaded: LoadedSpec) -> InteractionDesignSpec:
+    """Refuse, before a fit, a spec that no tool can go into: one that is no interaction design."""
+    return _interaction(loaded)
+
+
+def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return what a new text of a spec changes, and what it has no longer, a line each."""
+    old, new = (
+        {row.name: row.written for row in describe(spec)}
+        for spec in (loaded.spec, parse_spec(text))
+    )
+    changed = (f"{n}: {w} -> {new[n]}" for n, w in old.items() if n in new and new[n] != w)
+    lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
+    return tuple(changed), tuple(lost)
 
 
 def _left(bias: Sequence[Estimate], unit: str) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
-from nrs_design.models.contact import LINEAR_LAWS
+from nrs_design.models.contact import linear_law_of, nonlinear_law_of
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 from nrs_design.proof.noun import dataclass
@@ -114,6 +114,6 @@ def _interval(written: RangedQuantity) -> Interval:
 
 
 def _environment(name: str, spec: EnvironmentSpec) -> Environment:
-    law, turned = LINEAR_LAWS[spec.linear_model], spec.linear_at_pivot()
+    law, turned = linear_law_of(spec), spec.linear_at_pivot()
     ranges = tuple(turned[key] for key in law.keys)
-    return Environment(name, law, ranges, preloaded=spec.preloaded)
+    return Environment(name, law, ranges, nonlinear=nonlinear_law_of(spec))

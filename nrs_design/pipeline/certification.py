@@ -16,10 +16,10 @@ from nrs_design.pipeline.design import Designed, placed, run_design
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import GIGABYTE
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
+from nrs_design.work import GIGABYTE
 
 if TYPE_CHECKING:
     from nrs_design.certificates.verify import Verification
@@ -67,7 +67,7 @@ class Overrides:
     max_degree : int or None
         Highest degree of a polynomial function.
     budget : float or None
-        Time in s.
+        Work, in units.
     memory : float or None
         In GB.
     """
@@ -96,7 +96,7 @@ def search_limits(
     if declared is not None and declared.max_degree is not None:
         limits = replace(limits, max_degree=declared.max_degree)
     if declared is not None and declared.budget is not None:
-        limits = replace(limits, budget=float(declared.budget.exact))
+        limits = replace(limits, budget=float(declared.budget))
     if asked.max_degree is not None:
         limits = replace(limits, max_degree=asked.max_degree)
     if asked.budget is not None:
@@ -133,6 +133,8 @@ def run_certification(
     ------
     DesignError, AssemblyError
         If the spec has no design, or its modes make no switched system.
+    ClockError
+        If the clock stopped the search.
     """
     from nrs_design.search.certify import certify
 
@@ -201,7 +203,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
         limit = rate_limit(kept.system)
     certification = Certification(
         kept.system,
-        verdict_of(kept.statements),
+        verdict_of(kept.system, kept.statements),
         kept.common_quadratic,
         "certificate",
         kept.statements,
@@ -312,9 +314,14 @@ def run_verification(file: Path, result: Result) -> Verification:
 
 
 def find_relief(result: Result) -> tuple[str, ...]:
-    """Return what would hold of a refuted design whose contacts are too stiff for its gains."""
+    """Return what would hold of a refuted design whose contacts are too stiff for its gains.
+
+    It may be refuted in kept contact alone.
+    """
     designed = result.designed
-    if designed is None or result.certification.verdict is not Verdict.REFUTED:
+    certification = result.certification
+    refuted = certification.verdict is Verdict.REFUTED or certification.refuted_in is not None
+    if designed is None or not refuted:
         return ()
     from nrs_design.design.analysis import too_stiff
 

@@ -13,6 +13,7 @@ from nrs_design.spec import LoadedSpec
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
+    from nrs_design.design.linear_parts import LinearParts
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
 
@@ -49,7 +50,20 @@ def placed(loaded: LoadedSpec) -> Iterator[None]:
             place = loaded.place(*error.at)
             error.line, error.column = place.line, place.column
         error.path = error.path or loaded.path
+        if isinstance(error, DesignError):
+            _ask_first(error, loaded)
         raise
+
+
+def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
+    """Put what is asked about sizes before advice on gains, which would follow from a slip."""
+    from nrs_design.spec.plausible import doubt_sizes
+
+    for at, text in doubt_sizes(loaded.spec):
+        if text not in (error.remedy or ""):
+            place = loaded.place(*at)
+            rest = f" Otherwise, {error.remedy}" if error.remedy else ""
+            error.remedy = f"first, line {place.line}: {text}{rest}"
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
@@ -107,3 +121,10 @@ def run_analysis(designed: Designed) -> DesignAnalysis:
 
     with placed(designed.loaded):
         return analyze_design(designed.spec, designed.plant, designed.design)
+
+
+def run_linear_parts(designed: Designed) -> LinearParts:
+    """Return plant, controllers, contacts and closed loops of a design, at nominal values."""
+    from nrs_design.design.linear_parts import linear_parts
+
+    return linear_parts(designed.plant, designed.design)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.pipeline.certification import Result, assemble_spec, search_limits
 from nrs_design.pipeline.design import Designed, placed
@@ -15,7 +14,7 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.certification import Limits
+from nrs_design.search.certification import Certification, Limits
 
 if TYPE_CHECKING:
     from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
@@ -144,7 +143,7 @@ def _sampling_margins(
     progress: Progress,
 ) -> tuple[Bracket, Bracket]:
     """Decide the loop at other delays and other periods, without what disturbs it."""
-    from nrs_design.search.certify import certify, is_refuted_at_once
+    from nrs_design.search.certify import certify, refuted_at_once
     from nrs_design.search.loop_margin import find_longest_delay, find_longest_period
     from nrs_design.spec.sampling import LONGEST_DELAY
 
@@ -153,23 +152,25 @@ def _sampling_margins(
         spec = designed.spec.model_copy(update={"sampling": changed, "disturbances": None})
         return assemble_spec(result.loaded, replace(designed, spec=spec), result.coordinates)
 
-    def decide(changes: Mapping[str, object]) -> Verdict | str:
+    def decide(changes: Mapping[str, object]) -> Certification | str:
         try:
-            return certify(assemble_at(changes), limits=limits).verdict
+            system = assemble_at(changes)
         except NrsDesignError as error:
             return error.message
+        return certify(system, limits=limits)
 
-    def is_unstable(delay: int) -> bool:
+    def unstable_in(delay: int) -> str | None:
         progress(f"delay {delay} alone")
         try:
-            return is_refuted_at_once(assemble_at({"delay": (delay, delay)}), limits)
+            system = assemble_at({"delay": (delay, delay)})
         except NrsDesignError:
-            return False  # What makes no loop shows nothing.
+            return None  # What makes no loop shows nothing.
+        return refuted_at_once(system, limits)
 
-    def at_delay(longest: int) -> Verdict | str:
+    def at_delay(longest: int) -> Certification | str:
         return decide({"delay": (sampling.delay[0], longest)})
 
-    def at_period(period: Fraction) -> Verdict | str:
+    def at_period(period: Fraction) -> Certification | str:
         return decide(
             {
                 name: replace(given, value=period * given.value / sampling.period.exact)
@@ -178,9 +179,9 @@ def _sampling_margins(
             }
         )
 
-    known = result.certification.verdict
+    known = result.certification
     return (
-        find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, is_unstable, known, progress),
+        find_longest_delay(*sampling.delay, LONGEST_DELAY, at_delay, unstable_in, known, progress),
         find_longest_period(sampling.period.exact, at_period, known, progress),
     )
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.pipeline.design import placed, wrong_kind
 from nrs_design.progress import Progress, silent
@@ -63,7 +64,7 @@ def check_robot_bounds(
     path : Path
         The spec of the robot.
     budget : float
-        Time for each of the bounds in s.
+        Work for each of the bounds, in units.
     progress : callable
         Told the name of each step.
 
@@ -79,9 +80,47 @@ def check_robot_bounds(
     SpecError
         If the robot, or the file of its bounds, cannot be read.
     DesignError
-        If the time was over before something was decided.
+        If the work did not suffice to decide something.
+    ClockError
+        If the clock stopped it.
     """
     from nrs_design.models.robot import confirm_bounds
+
+    return _checked(path, lambda robot, document: confirm_bounds(robot, document, budget, progress))
+
+
+def contradict_robot_bounds(
+    path: Path, progress: Progress = silent
+) -> tuple[Path, tuple[str, ...]]:
+    """Look for poses that exceed the bounds of a robot, in seconds; none shows nothing.
+
+    Parameters
+    ----------
+    path : Path
+        The spec of the robot.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    Path
+        The file of the bounds.
+    tuple of str
+        What is wrong with them; nothing if no pose that was tried exceeds them.
+
+    Raises
+    ------
+    SpecError
+        If the robot, or the file of its bounds, cannot be read.
+    """
+    from nrs_design.models.robot import contradict_bounds
+
+    return _checked(path, lambda robot, document: contradict_bounds(robot, document, progress))
+
+
+def _checked(
+    path: Path, faults: Callable[[Robot, Mapping[str, Any]], Iterator[str]]
+) -> tuple[Path, tuple[str, ...]]:
     from nrs_design.spec.robot_bounds import bounds_file, read_bounds
 
     loaded, _, robot = run_robot(path)
@@ -90,4 +129,4 @@ def check_robot_bounds(
     if bounds.sha256 != loaded.sha256:
         return file, ("the robot has changed since its bounds were computed",)
     with placed(loaded):
-        return file, tuple(confirm_bounds(robot, document, budget, progress))
+        return file, tuple(faults(robot, document))

@@ -132,7 +132,7 @@ def simulate_group(
     """
     from nrs_design.simulation.bodies import simulate_on_body
     from nrs_design.simulation.exact import simulate_exactly
-    from nrs_design.simulation.run import ESTIMATOR_LEFT_OUT, MAX_STEPS
+    from nrs_design.simulation.run import LOGIC_LEFT_OUT, MAX_STEPS
     from nrs_design.simulation.summary import summarize
 
     spec, engine = designed.spec, wanted.engine or _usual(designed.spec, group)
@@ -146,8 +146,7 @@ def simulate_group(
         timed = spec.model_copy(update={"sampling": _sampling(spec, wanted)})
         arm = _arm(designed, name) if len(group) > 1 else None
         runs = simulate_on_body(timed, *given, group, engine, arm, max_steps=most, tell=tell)
-    estimated = spec.mode_logic is not None and spec.mode_logic.type == "estimator"
-    more = (ESTIMATOR_LEFT_OUT,) if estimated else ()
+    more = () if spec.mode_logic is None else LOGIC_LEFT_OUT[spec.mode_logic.type]
     for scenario, run in zip(group, runs, strict=True):
         told = replace(run, left_out=(*run.left_out, *more))
         yield Simulated(scenario, told, summarize(spec, scenario, told))

@@ -15,7 +15,7 @@ from nrs_design.pipeline.design import placed
 from nrs_design.pipeline.margins import quick_limits
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
-from nrs_design.search.certification import Limits
+from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec.interval import Interval
 
 # The largest stiffness of every contact, over the declared one.
@@ -45,6 +45,8 @@ class StabilityMap:
         Name, lower end of the stiffness in every cell, and declared upper end, in N m/rad.
     delay : int
         Longest declared age.
+    refuted_in : str
+        In which contact alone some cells are refuted, where its loss must be covered; or empty.
     """
 
     shortest: int
@@ -53,6 +55,7 @@ class StabilityMap:
     verdicts: Mapping[tuple[int, int], Verdict]
     contacts: tuple[tuple[str, Fraction, Fraction], ...]
     delay: int
+    refuted_in: str = ""
 
 
 def run_stability_map(
@@ -104,7 +107,16 @@ def run_stability_map(
     shortest, declared = sampling.delay
     longest = min(max(declared + 1, shortest + ROWS - 1), LONGEST_DELAY)
     delays = tuple(range(shortest, longest + 1))
-    quick, known = quick_limits(result, limits), result.certification.verdict
+    quick, weaker = quick_limits(result, limits), dict[str, None]()
+
+    def settled(found: Certification) -> Verdict:
+        """Take what is refuted in kept contact for refuted, and keep that it is."""
+        if found.refuted_in is None:
+            return found.verdict
+        weaker[found.refuted_in] = None
+        return Verdict.REFUTED
+
+    known = settled(result.certification)
     # What is refuted may be too stiff.
     softer = FACTORS[0] if known is Verdict.REFUTED else None
     contacts = tuple(
@@ -122,10 +134,11 @@ def run_stability_map(
         plain = spec.model_copy(update=changed | {"disturbances": None})
         other = replace(designed, spec=plain, plant=_within(designed.plant, contacts, factor))
         system = assemble_spec(result.loaded, other, result.coordinates)
-        return certify(system, limits=quick).verdict
+        return settled(certify(system, limits=quick))
 
     verdicts = decide_staircase(len(delays), len(factors), decide)
-    return StabilityMap(shortest, delays, factors, verdicts, contacts, declared)
+    where = " or ".join(weaker)
+    return StabilityMap(shortest, delays, factors, verdicts, contacts, declared, where)
 
 
 def _within(

@@ -53,7 +53,7 @@ def are_wanted(result: Result) -> bool:
         return False
     verdict = result.certification.verdict
     if has_unbounded_turns(result):
-        return verdict is not Verdict.REFUTED
+        return verdict is not Verdict.REFUTED and result.certification.refuted_in is None
     beside = spec.sampling is not None or spec.disturbances is not None
     return spec.coupling is not None and beside and verdict is Verdict.INCONCLUSIVE
 
@@ -158,8 +158,8 @@ def run_subsets(
             system = assemble_spec(result.loaded, other, result.coordinates)
             decided = certify(system, limits=quick)
             if decided.verdict is Verdict.PROVED and decided.evidence is not None:
-                known = set(result.certification.system.assumptions)
-                needs = tuple(text for text in system.assumptions if text not in known)
+                known = set(result.certification.granted)
+                needs = tuple(text for text in decided.granted if text not in known)
                 found.append(Subset(left_out, decided.evidence.claim(system), needs))
         if found:
             return tuple(found)
@@ -186,5 +186,6 @@ def _bounds_apart(
     if decided.verdict is not Verdict.PROVED or not bounds:
         return decay, Subset((_OUTER,), "")
     claims = " ".join(item.claim(system) for item in bounds)
-    needs = tuple(text for text in system.assumptions if text not in whole.assumptions)
+    known = result.certification.granted
+    needs = tuple(text for text in decided.granted if text not in known)
     return decay, Subset((_OUTER,), claims, needs)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.noun import dataclass
@@ -30,9 +32,50 @@ class Contact:
     pushed : bool
         A constant force may push into contact: the deflection at which its force is that one is
         the same in all modes that follow each other, and a statement may be about it.
+    loss : str
+        All this in words: what is taken for granted by what covers the loss of contact, and by
+        nothing else.
     """
 
     free: tuple[Mode, ...]
     pulls: tuple[RationalMatrix, ...] = ()
     required: bool = False
     pushed: bool = False
+    loss: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Flights:
+    """Free motion among the modes of a system, to which contact is lost whatever the deflection.
+
+    That is more than happens: the environment pushes in contact only, and where it would pull there
+    is free motion. What holds for all signals holds for those; what grows must keep to them.
+
+    Parameters
+    ----------
+    touching : tuple of str
+        Modes in which the environment acts: there, the last state, the deflection, is positive.
+    flying : tuple of str
+        Modes without it: there, the deflection is not positive, or every force would pull. Modes
+        that are named nowhere are the same in contact and free.
+    pulls : tuple of RationalMatrix, each of shape (1, n)
+        As of `Contact`.
+    """
+
+    touching: tuple[str, ...]
+    flying: tuple[str, ...]
+    pulls: tuple[RationalMatrix, ...] = ()
+
+    def among(self, names: Iterable[str]) -> Flights:
+        """Return the same for some of the modes.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Of the modes that are left.
+        """
+        left = frozenset(names)
+        touching, flying = (
+            tuple(name for name in part if name in left) for part in (self.touching, self.flying)
+        )
+        return Flights(touching, flying, self.pulls)

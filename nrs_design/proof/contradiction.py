@@ -16,6 +16,7 @@ def find_contradiction(system: SwitchedSystem) -> str | None:
         or _find_odd_switch(system, names)
         or _find_odd_ends(system, names)
         or _find_odd_contact(system, names)
+        or _find_odd_flights(system, names)
         or _find_odd_sample_time(system)
         or _find_odd_channel(system)
         or _find_odd_rounding(system)
@@ -67,7 +68,22 @@ def _find_odd_contact(system: SwitchedSystem, names: set[str]) -> str | None:
         return "contact is lost, but there is no free mode, or two modes have one name"
     if not all(_is_motion(mode.A, n, system.time) for mode in free):
         return "the deflection acts on the other states in a free mode"
-    if not all(q.is_well_formed and q.shape == (1, n) for q in system.contact.pulls):
+    return _find_odd_pulls(system, system.contact.pulls)
+
+
+def _find_odd_flights(system: SwitchedSystem, names: set[str]) -> str | None:
+    if system.flights is None:
+        return None
+    touching, flying = set(system.flights.touching), set(system.flights.flying)
+    if system.contact is not None or not system.is_uniform:
+        return "free motion is among the modes and beside them, or they share no deflection"
+    if touching & flying or not touching | flying <= names:
+        return "what is in contact or free is no mode, or is both"
+    return _find_odd_pulls(system, system.flights.pulls)
+
+
+def _find_odd_pulls(system: SwitchedSystem, pulls: tuple[RationalMatrix, ...]) -> str | None:
+    if not all(q.is_well_formed and q.shape == (1, system.order) for q in pulls):
         return "a force is not one row over a positive denominator"
     return None
 

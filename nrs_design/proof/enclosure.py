@@ -93,6 +93,50 @@ def eigenvalues(A: RationalMatrix) -> list[Any]:
     return [root / A.denominator for root, count in roots for _ in range(count)]
 
 
+def characteristic_sign(M: Any, number: Fraction) -> int:
+    """Return the sign of ``det(number I - M)`` for all matrices in M; 0 if it is not certain.
+
+    Parameters
+    ----------
+    M : flint.arb_mat, shape (n, n)
+        Balls.
+    number : Fraction
+        Real.
+    """
+    from flint import arb, fmpq
+
+    value = M.charpoly()(arb(fmpq(number.numerator, number.denominator)))
+    return 1 if value > 0 else -1 if value < 0 else 0
+
+
+def eigenvector(M: Any, low: Fraction, high: Fraction) -> Any:
+    """Return balls around an eigenvector for an eigenvalue between two numbers, or None.
+
+    Where the characteristic polynomial p has opposite signs at the two, there is a root z between
+    them. By Cayley and Hamilton, ``v(z) = adj(z I - M) u`` has ``(z I - M) v(z) = p(z) u = 0``; it
+    is enclosed for all numbers in between. What is returned may enclose zero, which is none.
+
+    Parameters
+    ----------
+    M : flint.arb_mat, shape (n, n)
+        Balls.
+    low, high : Fraction
+        The numbers.
+    """
+    from flint import arb, arb_mat, fmpq
+
+    if characteristic_sign(M, low) * characteristic_sign(M, high) >= 0:
+        return None
+    ends = (arb(fmpq(end.numerator, end.denominator)) for end in (low, high))
+    z, n, coefficients = next(ends).union(next(ends)), M.nrows(), M.charpoly().coeffs()
+    v = w = u = arb_mat(n, 1, [1] * n)
+    # Horner's scheme, with w_(n-1) = u and w_(j-1) = M w_j + c_j u.
+    for c in coefficients[n - 1 : 0 : -1]:
+        w = M * w + u * c
+        v = v * z + w
+    return v
+
+
 def lower_integers(form: Any) -> IntegerMatrix:
     """Return integers that are below a symmetric matrix of balls times a number > 0.
 

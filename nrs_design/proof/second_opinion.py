@@ -69,8 +69,10 @@ def agrees(
 
 
 def _is_mode_unstable(system: SwitchedSystem, evidence: UnstableMode) -> bool:
-    matrix = next(mode.A for mode in system.modes if mode.name == evidence.mode)
-    return not _is_surely_stable(matrix, system.time)
+    from nrs_design.proof.evidence.unstable_mode import matrix_of
+
+    matrix = matrix_of(system, evidence.mode)
+    return matrix is not None and not _is_surely_stable(matrix, system.time)
 
 
 def _is_mixture_unstable(system: SwitchedSystem, evidence: UnstableMixture) -> bool:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
@@ -35,7 +35,8 @@ class SwitchedSystem:
     switching : Switching
         The signals that are possible.
     contact : Contact or None
-        How contact is lost; None where it is kept, or where there is none to lose.
+        How contact is lost; None where it is kept, where there is none to lose, or where free
+        motion is among the modes.
     sample_time : Fraction or None
         Time from one step to the next in s, in discrete time, if there is such a time.
     channels : tuple of Channel
@@ -53,6 +54,8 @@ class SwitchedSystem:
         Which modes take turns, in discrete time; None lets all of them be in force at every step.
     saturation : Saturation or None
         Signals that are cut off at limits; only statements that say so are about that.
+    flights : Flights or None
+        Which modes are free motion, where it is among them and its loss must be covered.
     """
 
     name: str
@@ -70,6 +73,7 @@ class SwitchedSystem:
     clock: Clock | None = None
     axes: int | None = None
     saturation: Saturation | None = None
+    flights: Flights | None = None
 
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
@@ -86,6 +90,11 @@ class SwitchedSystem:
             Their rules.
         """
         return SwitchedSystem(self.name, self.time, states, modes, self.assumptions, switching)
+
+    @property
+    def is_losable(self) -> bool:
+        """Whether a statement must cover the loss of contact."""
+        return self.flights is not None or (self.contact is not None and self.contact.required)
 
     @property
     def order(self) -> int:

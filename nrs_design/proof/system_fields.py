@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
     read_integer,
@@ -48,6 +48,7 @@ def system_fields(system: SwitchedSystem) -> Fields:
         "modes": _mode_fields(system.modes),
         "switching": _switching_fields(system.switching),
         **({} if system.contact is None else {"contact": _contact_fields(system.contact)}),
+        **({} if system.flights is None else {"flights": _flight_fields(system.flights)}),
         **_channel_fields(system),
         **({} if system.sample_time is None else {"sample_time": str(system.sample_time)}),
         **({} if system.clock is None else {"clock": _clock_fields(system.clock)}),
@@ -111,6 +112,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
         clock=_read_clock(fields["clock"]) if "clock" in fields else None,
         axes=read_integer(fields["axes"]) if "axes" in fields else None,
         saturation=_read_saturation(fields["saturation"]) if "saturation" in fields else None,
+        flights=_read_flights(fields["flights"]) if "flights" in fields else None,
     )
 
 
@@ -239,7 +241,21 @@ def _contact_fields(contact: Contact) -> Fields:
         "pulls": [_matrix_fields(row) for row in contact.pulls],
         "required": contact.required,
         **({"pushed": True} if contact.pushed else {}),
+        "loss": str(contact.loss),
     }
+
+
+def _flight_fields(flights: Flights) -> Fields:
+    return {
+        "touching": list(flights.touching),
+        "flying": list(flights.flying),
+        "pulls": [_matrix_fields(row) for row in flights.pulls],
+    }
+
+
+def _read_flights(fields: Mapping[str, Any]) -> Flights:
+    pulls = tuple(_read_matrix(item) for item in _read_list(fields["pulls"]))
+    return Flights(_read_texts(fields["touching"]), _read_texts(fields["flying"]), pulls)
 
 
 def _read_contact(fields: Mapping[str, Any]) -> Contact:
@@ -250,7 +266,8 @@ def _read_contact(fields: Mapping[str, Any]) -> Contact:
     pushed = fields.get("pushed", False)
     if not isinstance(pushed, bool):
         raise TypeError("whether a constant force pushes in is not true or false")
-    return Contact(_read_modes(fields["free"]), pulls, required, pushed)
+    loss = read_text(fields["loss"])
+    return Contact(_read_modes(fields["free"]), pulls, required, pushed, loss)
 
 
 def _clock_fields(clock: Clock) -> Fields:

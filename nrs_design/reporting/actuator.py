@@ -39,7 +39,10 @@ def actuator_report(found: ActuatorIdentification) -> Report:
         name="actuator",
         title=f"Velocity model of order {fit.order} with Coulomb friction and dead time",
         claim=f"{', '.join(values)}. {found.reason}",
-        remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
+        remarks=(
+            *(f"Remark: {remark}." for remark in found.remarks),
+            *(f"Doubt: {doubt}." for doubt in found.doubts),
+        ),
         sources=found.sources,
         sections=(
             Section("Fits", (_fits(found), *_ranges(found), *_derived(found))),

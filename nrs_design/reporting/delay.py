@@ -41,7 +41,10 @@ def delay_report(found: DelayIdentification) -> Report:
         f"[{number(samples.low, 4)}, {number(samples.high, 4)}] samples of "
         f"{number(record.step, 4)} s, beside {found.chosen.follower.name}. Whole samples that hold "
         f"it and every part of the record: {low} to {high}.",
-        remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
+        remarks=(
+            *(f"Remark: {remark}." for remark in found.remarks),
+            *(f"Doubt: {doubt}." for doubt in found.doubts),
+        ),
         sources=[record.source],
         sections=(
             Section("Models", (table,)),

@@ -76,7 +76,7 @@ def _named(figure: Figure) -> Iterator[dict[str, str]]:
 
 def _is_themed(figure: Figure) -> bool:
     """Tell whether the page's colours suit a figure; those of a heat map have a meaning."""
-    from matplotlib.collections import QuadMesh
+    from nrs_design.plotting import QuadMesh
 
     meshes = (item for axes in figure.axes for item in axes.collections)
     return not any(axes.images for axes in figure.axes) and not any(
@@ -101,7 +101,7 @@ def _axes(figure: Figure) -> list[list[float | bool]]:
 
 def _is_numeric(axes: Axes) -> bool:
     """Tell whether places on both axes are numbers, not names."""
-    from matplotlib.ticker import FixedFormatter
+    from nrs_design.plotting import FixedFormatter
 
     return not any(
         isinstance(axis.get_major_formatter(), FixedFormatter) for axis in (axes.xaxis, axes.yaxis)

@@ -61,7 +61,7 @@ def _box_lines(margins: ProofMargins, at: _At, ranges: str) -> Iterator[Sentence
     beyond: tuple[str, ...] = (f"; {box.end}",) if box.end else ()
     if box.refuted is not None:
         refuted = at(rounded_up(box.refuted), ranges)
-        beyond = ("; scaled by ", refuted, " they are refuted")
+        beyond = ("; scaled by ", refuted, f" they are refuted{_in(box.refuted_in)}")
     if box.proved is None or box.proof is None:
         yield Sentence("largest box: not even the nominal values are proved", *beyond)
         return
@@ -85,7 +85,7 @@ def _dwell_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
     refuted: tuple[str, ...] = () if dwell.proved == 0 else ("; no dwell time was refuted",)
     if dwell.refuted is not None:
         end = at(rounded_down(dwell.refuted, "s"), "switching")
-        refuted = ("; ", end, " and all shorter ones are refuted")
+        refuted = ("; ", end, f" and all shorter ones are refuted{_in(dwell.refuted_in)}")
     yield Sentence("shortest dwell time: ", *proved, *refuted)
 
 
@@ -129,9 +129,15 @@ def _delays(bracket: Bracket, at: _At) -> tuple[str, ...]:
         None if end is None else at(_samples(end), "sampling", "delay")
         for end in (bracket.proved, bracket.refuted)
     )
+    where = _in(bracket.refuted_in)
     said = ("none is proved",) if proved is None else ("proved up to ", proved)
-    end = (bracket.end,) if refuted is None else ("refuted from ", refuted)
+    end = (bracket.end,) if refuted is None else ("refuted from ", refuted, where)
     return (*said, ", ", *end)
+
+
+def _in(contact: str) -> str:
+    """Say in which contact alone something is refuted, if it is not in any."""
+    return f" {contact}" if contact else ""
 
 
 def _samples(count: Fraction) -> str:
@@ -144,6 +150,7 @@ def _periods(bracket: Bracket, at: _At) -> tuple[str, ...]:
         None if end is None else at(nearly(end, "s"), "sampling", "period")
         for end in (bracket.proved, bracket.refuted)
     )
+    where = _in(bracket.refuted_in)
     said = ("none is proved",) if proved is None else (proved, " is proved")
-    end = (bracket.end,) if refuted is None else (refuted, " is refuted")
+    end = (bracket.end,) if refuted is None else (refuted, f" is refuted{where}")
     return (*said, ", ", *end)

@@ -7,7 +7,7 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.certificate import Verdict, refutes_in_contact
 from nrs_design.proof.mode import Time
 from nrs_design.spec import RobotSpec
 
@@ -48,6 +48,7 @@ def _steps(
     certification, spec = result.certification, result.loaded.spec
     command = f"nrs-design certify-switching {name}"
     evidence = certification.evidence
+    evidence = evidence or refutes_in_contact(certification.system, certification.statements)
     alone = evidence is not None and evidence.names_unstable_mode
     if alone:
         yield (

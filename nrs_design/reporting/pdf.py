@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from nrs_design.output import MAKER
-from nrs_design.plotting import load_matplotlib
 from nrs_design.reporting.document import (
     Block,
     Bullets,
@@ -61,12 +60,11 @@ def render_pdf(report: Report) -> bytes:
     """
     import typst
 
-    load_matplotlib()
-    import matplotlib
+    from nrs_design.plotting import get_data_path
 
     template = files("nrs_design.reporting").joinpath("templates/report.typ").read_bytes()
     # The font that matplotlib brings along has Greek letters and is free.
-    folder = str(Path(matplotlib.get_data_path()) / "fonts" / "ttf")
+    folder = str(Path(get_data_path()) / "fonts" / "ttf")
     fonts = typst.Fonts(
         include_system_fonts=False, include_embedded_fonts=False, font_paths=[folder]
     )

@@ -19,9 +19,10 @@ _DECLARED = (
     "--certificate."
 )
 _MEANING = (
-    "A violation of the stiffness is claimed only where a whole interval lies outside the range. "
-    "Intervals hold at 95 % for all windows together, with noise in force and deflection.",
-    "Undecided: an interval lies across the end of the range, or too little moved.",
+    "Estimated: a window shows how much the torque changes with the angle, and the range bounds "
+    "their ratio. Where the stiffness changes inside its range, the two differ, so no window is "
+    "called inside or outside.",
+    "Undecided: more than one reading of the log is possible.",
     "Not judged: the log lacks a column, or a bound is not known. Not modelled: the model takes "
     "for granted that there is none of it.",
 )
@@ -68,6 +69,7 @@ def _tables(found: RunJudgement) -> Iterator[Block]:
     )
     if left:
         yield Bullets("First violations", left)
+    yield Bullets("", (f"{found.estimates[0].upper()}{found.estimates[1:]}.",))
 
 
 def _claim(found: RunJudgement) -> str:
@@ -83,8 +85,9 @@ def _figures(found: RunJudgement) -> Iterator[Illustration]:
     if found.windows:
         yield Illustration(
             "stiffness",
-            "Stiffness in windows",
-            "Bars: intervals at 95 % for all windows together. Shaded: the range.",
+            "Slope in windows",
+            "Slope of torque over angle. Bars: how far noise may have moved it. Shaded: the range "
+            "of their ratio.",
             draw_stiffness(found),
         )
     yield Illustration(

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from functools import wraps
 from typing import TYPE_CHECKING, Any, ParamSpec
 
-from nrs_design.plotting import load_matplotlib
 from nrs_design.reporting.text import wrapped_label
 
 if TYPE_CHECKING:
@@ -85,8 +84,7 @@ P = ParamSpec("P")
 @contextmanager
 def figure_style() -> Iterator[None]:
     """Use the report's settings whatever any matplotlib file says."""
-    load_matplotlib()
-    from matplotlib import style
+    from nrs_design.plotting import style
 
     with style.context(["default", _SETTINGS]):
         yield
@@ -129,7 +127,7 @@ def settle(figure: Figure) -> None:
 
 def new_figure(height: float = 3.9) -> Figure:
     """Return an empty figure of the report's width and a height in inches."""
-    from matplotlib.figure import Figure
+    from nrs_design.plotting import Figure
 
     return Figure(figsize=(_WIDTH, height), layout="constrained")
 

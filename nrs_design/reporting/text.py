@@ -32,10 +32,6 @@ def wrapped_label(text: str, width: int) -> str:
 
 @cache
 def _letters() -> frozenset[int]:
-    from nrs_design.plotting import load_matplotlib
-
-    load_matplotlib()
-    from matplotlib.font_manager import findfont
-    from matplotlib.ft2font import FT2Font
+    from nrs_design.plotting import FT2Font, findfont
 
     return frozenset(FT2Font(findfont("DejaVu Sans")).get_charmap())

@@ -18,7 +18,7 @@ _DIGITS = ((30.0, (1, 2, 3, 4, 6)), (200.0, (1, 3)))
 
 def write_ticks_in_full(figure: Figure) -> None:
     """Replace the formatters of all numeric axes: no offset, no common factor in a corner."""
-    from matplotlib.ticker import LogFormatter, ScalarFormatter
+    from nrs_design.plotting import LogFormatter, ScalarFormatter
 
     for axes in figure.axes:
         for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
@@ -56,7 +56,7 @@ def _trimmed(digits: str) -> str:
 
 
 def _plain() -> Formatter:
-    from matplotlib.ticker import Formatter
+    from nrs_design.plotting import Formatter
 
     class InFull(Formatter):
         """Writes all ticks at once: to find their distance anew for each would be slow."""
@@ -70,7 +70,7 @@ def _plain() -> Formatter:
 
 def _write_logarithmic(axis: Axis, low: float, high: float) -> None:
     """Write 0.6 rather than 6 times a power of ten where the axis spans few decades."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
+    from nrs_design.plotting import FuncFormatter, NullFormatter
 
     digits = next((digits for span, digits in _DIGITS if high <= span * low), None)
     if digits is None:

@@ -39,6 +39,7 @@ def rows() -> tuple[ReproducedValue, ...]:
             Tolerance(1e-3),
             right="72.77",
             note="The factor below 4.8 is upside down: K_m* = pi K_B K_m/(30 N).",
+            errata=("4.8",),
         ),
         misprint(
             "armature resistance R",
@@ -49,6 +50,7 @@ def rows() -> tuple[ReproducedValue, ...]:
             Tolerance(1e-4),
             right="3.7454",
             note="tau_m/K_m = I_r R/K_T with the printed tau_m gives 3.7454; one digit differs.",
+            errata=("R",),
         ),
         misprint(
             "speed/torque gradient",
@@ -59,5 +61,6 @@ def rows() -> tuple[ReproducedValue, ...]:
             Tolerance(1e-3),
             right="2.7044e5",
             note="It inherits the wrong digit of R.",
+            errata=("R",),
         ),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 
@@ -14,20 +14,22 @@ Printed = str | tuple[str, ...]
 
 # Digits that a recomputed value shows, unless the print has more.
 DIGITS = 6
-# One standard for all prints: a number is reproduced if it is this near, relative to it, or nearer
-# than one unit of its last printed digit.
+# The precision that a print is read with: a number is reproduced if it is this near, relative to
+# it, or nearer than one unit of its last printed digit. How far our own value may be from the
+# reference that this package has on record is another thing: the `Tolerance` of each row.
 STANDARD = 1e-3
 CUT_OFF = "Cut off in print, not rounded."
+BECAUSE = "Not reproducible, because"
 
 
 class PrintVerdict(StrEnum):
     """What the comparison of print and recomputed value says."""
 
     REPRODUCED = "reproduced"
-    PRINT_IS_WRONG = "print is wrong"
+    PRINTED_DIFFERENTLY = "printed differently"
+    FITTED = "fitted"
     DERIVED = "derived"
-    HARDWARE_ONLY = "hardware only"
-    NEEDS_DATA = "needs data"
+    NOT_REPRODUCIBLE = "not reproducible"
     DRIFT = "drift"
 
 
@@ -53,9 +55,19 @@ class ReproducedValue:
     verdict : PrintVerdict
         ``drift`` says that the package no longer computes what this row has on record.
     note : str
-        Where the print is wrong: what is right, and why.
-    tolerance : str
-        How far the value may be from what it is held against; empty where words are compared.
+        What is right, and why; or why nothing can be recomputed.
+    precision : str
+        How near to the print a value must be to reproduce it, number by number: a part of the
+        print, or a unit of its last digit; empty where words are compared.
+    drift : float or None
+        As `deviation`, but from the reference that this package has on record for its own value,
+        which is the print where nothing else is.
+    limit : str
+        The largest such difference that is no drift.
+    fitted : str
+        Constants that were fitted to prints and that the value rests on, with their numbers.
+    errata : tuple of str
+        Errors of the print that the row touches, see `nrs_design.reproduction.errata`.
     """
 
     name: str
@@ -66,12 +78,16 @@ class ReproducedValue:
     deviation: float | None
     verdict: PrintVerdict
     note: str
-    tolerance: str = ""
+    precision: str = ""
+    drift: float | None = None
+    limit: str = ""
+    fitted: str = ""
+    errata: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """How far a value may be from its target, entry by entry: relative to it, or absolute."""
+    """How far a value may be from our reference, entry by entry: relative to it, or absolute."""
 
     relative: float = 0.0
     absolute: float = 0.0
@@ -101,12 +117,13 @@ def reproduced(
     *,
     right: Printed | None = None,
     note: str = "",
+    errata: tuple[str, ...] = (),
 ) -> ReproducedValue:
     """Return the row of a print that the recomputed value confirms.
 
     Parameters
     ----------
-    name, section, unit, note : str
+    name, section, unit, note, errata
         See `ReproducedValue`.
     printed : str or tuple of str
         Numbers, ``a +- bj`` for a pair of poles.
@@ -115,15 +132,45 @@ def reproduced(
     tolerance : Tolerance
         A value outside it makes the row a drift.
     right : str or tuple of str, optional
-        More digits than the print has; the tolerance then is about these.
+        Our reference, where it has more digits than the print; the tolerance is about it.
     """
-    values, target = _sequence(value), _numbers(right or printed)
+    values, reference = _sequence(value), right or printed
     near = not _is_numeric(printed) or meets_standard(values, printed)
-    agrees = near and tolerance.allows(values, target)
+    agrees = near and tolerance.allows(values, _numbers(reference))
     verdict = PrintVerdict.REPRODUCED if agrees else PrintVerdict.DRIFT
     if agrees and _is_cut_off(values, printed):
         note = f"{note} {CUT_OFF}".strip()
-    return _row(name, section, printed, values, unit, verdict, note, tolerance)
+    found = _row(name, section, printed, values, unit, verdict, note, tolerance, reference)
+    return replace(found, errata=errata)
+
+
+def fitted(
+    name: str,
+    section: str,
+    printed: Printed,
+    value: Value,
+    unit: str,
+    tolerance: Tolerance,
+    *,
+    constants: str,
+    right: Printed | None = None,
+    note: str = "",
+    errata: tuple[str, ...] = (),
+) -> ReproducedValue:
+    """Return the row of a print that is met because a constant was fitted for it.
+
+    Parameters
+    ----------
+    name, section, printed, value, unit, tolerance, right, note, errata
+        As for `reproduced`.
+    constants : str
+        What was fitted, with its number.
+    """
+    values, reference = _sequence(value), right or printed
+    agrees = tolerance.allows(values, _numbers(reference))
+    verdict = PrintVerdict.FITTED if agrees else PrintVerdict.DRIFT
+    found = _row(name, section, printed, values, unit, verdict, note, tolerance, reference)
+    return replace(found, fitted=constants, errata=errata)
 
 
 def derived(
@@ -137,6 +184,7 @@ def derived(
     tolerance: Tolerance | None = None,
     holds: bool = True,
     note: str,
+    errata: tuple[str, ...] = (),
 ) -> ReproducedValue:
     """Return the row of a result that the thesis prints no number for.
 
@@ -156,15 +204,31 @@ def derived(
         Whether the computation still says so; if not, the row is a drift.
     note : str
         What it means.
+    errata : tuple of str
+        As for `reproduced`.
     """
     if isinstance(value, str):
         verdict = PrintVerdict.DERIVED if holds else PrintVerdict.DRIFT
-        return ReproducedValue(name, section, printed, value, unit, None, verdict, note)
+        return ReproducedValue(
+            name, section, printed, value, unit, None, verdict, note, errata=errata
+        )
     values, tolerance = _sequence(value), tolerance or Tolerance(STANDARD)
-    confirmed = holds and tolerance.allows(values, _numbers(right or ()))
+    reference = _numbers(right or ())
+    confirmed = holds and tolerance.allows(values, reference)
     verdict = PrintVerdict.DERIVED if confirmed else PrintVerdict.DRIFT
-    text = ", ".join(format_number(number) for number in values)
-    return ReproducedValue(name, section, printed, text, unit, None, verdict, note, str(tolerance))
+    return ReproducedValue(
+        name,
+        section,
+        printed,
+        ", ".join(format_number(number) for number in values),
+        unit,
+        None,
+        verdict,
+        note,
+        drift=_deviation(values, reference),
+        limit=str(tolerance),
+        errata=errata,
+    )
 
 
 def near(
@@ -175,21 +239,33 @@ def near(
     unit: str,
     tolerance: Tolerance,
     *,
-    note: str,
+    right: Printed,
+    because: str,
+    note: str = "",
+    constants: str = "",
 ) -> ReproducedValue:
-    """Return the row of a print that is met but for data which the thesis does not give.
+    """Return the row of a print that is only come near, for want of data in the thesis.
+
+    The row is a drift if the value leaves the tolerance around our reference, or if it meets the
+    print after all.
 
     Parameters
     ----------
-    name, section, printed, value, unit, tolerance
-        As for `reproduced`; the tolerance is wider than the standard.
-    note : str
-        What is missing.
+    name, section, printed, value, unit, tolerance, note
+        As for `reproduced`.
+    right : str or tuple of str
+        Our reference.
+    because : str
+        What is missing; a clause, to which `note` adds sentences.
+    constants : str
+        As for `fitted`.
     """
     values = _sequence(value)
-    confirmed = tolerance.allows(values, _numbers(printed)) and not meets_standard(values, printed)
-    verdict = PrintVerdict.NEEDS_DATA if confirmed else PrintVerdict.DRIFT
-    return _row(name, section, printed, values, unit, verdict, note, tolerance)
+    confirmed = tolerance.allows(values, _numbers(right)) and not meets_standard(values, printed)
+    verdict = PrintVerdict.NOT_REPRODUCIBLE if confirmed else PrintVerdict.DRIFT
+    note = f"{BECAUSE} {because}. {note}".strip()
+    found = _row(name, section, printed, values, unit, verdict, note, tolerance, right)
+    return replace(found, fitted=constants)
 
 
 def misprint(
@@ -202,6 +278,7 @@ def misprint(
     *,
     right: Printed,
     note: str,
+    errata: tuple[str, ...],
 ) -> ReproducedValue:
     """Return the row of a print that is wrong; parameters as in `reproduced`.
 
@@ -216,12 +293,16 @@ def misprint(
         What should be printed.
     note : str
         Why.
+    errata : tuple of str
+        The errors behind it.
     """
     values = _sequence(value)
     confirmed = tolerance.allows(values, _numbers(right))
-    printed_right = _is_numeric(printed) and meets_standard(values, printed)
-    verdict = PrintVerdict.PRINT_IS_WRONG if confirmed and not printed_right else PrintVerdict.DRIFT
-    return _row(name, section, printed, values, unit, verdict, note, tolerance)
+    if _is_numeric(printed) and meets_standard(values, printed):
+        confirmed = False
+    verdict = PrintVerdict.PRINTED_DIFFERENTLY if confirmed else PrintVerdict.DRIFT
+    found = _row(name, section, printed, values, unit, verdict, note, tolerance, right)
+    return replace(found, errata=errata)
 
 
 def meets_standard(values: Sequence[Number], printed: Printed) -> bool:
@@ -264,12 +345,13 @@ def claim(
     verdict: PrintVerdict,
     holds: bool,
     note: str,
+    errata: tuple[str, ...] = (),
 ) -> ReproducedValue:
     """Return the row of a statement in words.
 
     Parameters
     ----------
-    name, section, printed, value, unit, note : str
+    name, section, printed, value, unit, note, errata
         See `ReproducedValue`; `value` says what was found.
     verdict : PrintVerdict
         What is on record.
@@ -277,37 +359,28 @@ def claim(
         Whether the computation still says so; if not, the row is a drift.
     """
     verdict = verdict if holds else PrintVerdict.DRIFT
-    return ReproducedValue(name, section, printed, value, unit, None, verdict, note)
+    return ReproducedValue(name, section, printed, value, unit, None, verdict, note, errata=errata)
 
 
-def hardware_only(
-    name: str, section: str, printed: str, unit: str, note: str = ""
+def omitted(
+    name: str,
+    section: str,
+    printed: str,
+    unit: str,
+    because: str,
+    errata: tuple[str, ...] = (),
 ) -> ReproducedValue:
-    """Return the row of a measurement on the robot.
+    """Return the row of a print that cannot be recomputed.
 
     Parameters
     ----------
-    name, section, printed, unit
+    name, section, printed, unit, errata
         As for `reproduced`.
-    note : str
-        What it would take.
+    because : str
+        Why not: what is missing, or that only the machine can show it; a clause.
     """
-    return ReproducedValue(
-        name, section, printed, None, unit, None, PrintVerdict.HARDWARE_ONLY, note
-    )
-
-
-def omitted(name: str, section: str, printed: str, unit: str, note: str) -> ReproducedValue:
-    """Return the row of a number whose data the thesis does not give.
-
-    Parameters
-    ----------
-    name, section, printed, unit
-        As for `reproduced`.
-    note : str
-        What is missing.
-    """
-    return ReproducedValue(name, section, printed, None, unit, None, PrintVerdict.NEEDS_DATA, note)
+    verdict, note = PrintVerdict.NOT_REPRODUCIBLE, f"{BECAUSE} {because}."
+    return ReproducedValue(name, section, printed, None, unit, None, verdict, note, errata=errata)
 
 
 def drifted(rows: Sequence[ReproducedValue]) -> tuple[ReproducedValue, ...]:
@@ -331,14 +404,33 @@ def _row(
     verdict: PrintVerdict,
     note: str,
     tolerance: Tolerance,
+    reference: Printed,
 ) -> ReproducedValue:
     text = printed if isinstance(printed, str) else ", ".join(printed)
-    deviation = _deviation(values, _numbers(printed)) if _is_numeric(printed) else None
-    digits = max(DIGITS, _significant_digits(text)) if _is_numeric(printed) else DIGITS
-    value = ", ".join(format_number(number, digits) for number in values)
+    numeric = _is_numeric(printed)
+    digits = max(DIGITS, _significant_digits(text)) if numeric else DIGITS
     return ReproducedValue(
-        name, section, text, value, unit, deviation, verdict, note, str(tolerance)
+        name,
+        section,
+        text,
+        ", ".join(format_number(number, digits) for number in values),
+        unit,
+        _deviation(values, _numbers(printed)) if numeric else None,
+        verdict,
+        note,
+        precision=_precision(printed) if numeric else "",
+        drift=_deviation(values, _numbers(reference)),
+        limit=str(tolerance),
     )
+
+
+def _precision(printed: Printed) -> str:
+    """Write what `meets_standard` asks for, number by number; equal ones once."""
+    found = (
+        f"{digit:g}" if digit > STANDARD * abs(number) else str(Tolerance(STANDARD))
+        for number, digit in zip(_numbers(printed), map(_last_digit, _texts(printed)), strict=True)
+    )
+    return ", ".join(dict.fromkeys(found))
 
 
 def _deviation(values: Sequence[Number], printed: Sequence[Number]) -> float | None:

@@ -45,6 +45,7 @@ def rows() -> tuple[ReproducedValue, ...]:
             Tolerance(1e-3),
             right="0.741",
             note=note,
+            errata=("6.33",),
         ),
         misprint(
             "natural frequency at Kp = 0.02",
@@ -55,6 +56,7 @@ def rows() -> tuple[ReproducedValue, ...]:
             Tolerance(1e-3),
             right="54.9",
             note=note,
+            errata=("6.33",),
         ),
         *_offset_rows(),
     )

@@ -5,27 +5,24 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.margins import stiffness_limit
+from nrs_design.controllers.laws import Admittance
 from nrs_design.design.passivity import passive_band
 from nrs_design.design.root_locus import motion_loop_response
-from nrs_design.models.contact import Elastic
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.comparison import ReproducedValue, Tolerance, derived
 
 # Mt in kg m^2 and Bt in kg m^2/s of each experiment.
 ADMITTANCES = ((1, 4), (2, 4), (3, 4), (1, 8), (2, 8), (3, 8))
 PRINTED = "Mt 1, 2, 3, 1, 2, 3; Bt 4, 4, 4, 8, 8, 8"
-# Any stiffness will do: the limit does not hang on it.
-LOOP = ImpedanceLoop(thesis.EXACT_LOOP, Elastic(float(thesis.SOFT)))
 
 
 def rows() -> tuple[ReproducedValue, ReproducedValue, ReproducedValue]:
     """Compute the poles of G Y, the hand that destabilizes the robot, and where it is passive."""
     poles = tuple(-Bt / Mt for Mt, Bt in ADMITTANCES)
     motion = motion_loop_response(thesis.EXACT_LOOP).poles
-    limits = tuple(stiffness_limit(LOOP, Mt, Bt) for Mt, Bt in ADMITTANCES)
-    bands = [passive_band(thesis.CLOSED_LOOP, Fraction(Mt), Fraction(Bt)) for Mt, Bt in ADMITTANCES]
+    limits = tuple(thesis.stiffness_limit(Mt, Bt) for Mt, Bt in ADMITTANCES)
+    laws = (Admittance(Fraction(Mt), Fraction(Bt)) for Mt, Bt in ADMITTANCES)
+    bands = [passive_band(thesis.AXIS, law, {}) for law in laws]
     passive = tuple(float(band.passive or 0) / (2 * math.pi) for band in bands)
     return (
         derived(

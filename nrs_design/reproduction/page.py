@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from nrs_design import __version__
 from nrs_design.reproduction.comparison import ReproducedValue
-from nrs_design.reproduction.table import count_verdicts
+from nrs_design.reproduction.table import (
+    CONVERTED,
+    count_verdicts,
+    counts_line,
+    printed_errors,
+)
 
 
 def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) -> str:
@@ -25,12 +30,29 @@ def render_page(table: tuple[ReproducedValue, ...], gallery: str | None = None) 
         undefined=StrictUndefined,
         keep_trailing_newline=True,
     )
-    environment.filters["deviation"] = format_deviation
+    environment.globals["within"] = format_within
     template = environment.get_template("reproduce.html.j2")
-    counts = count_verdicts(table)
-    return template.render(rows=table, counts=counts, gallery=gallery, version=__version__)
+    return template.render(
+        rows=table,
+        counts=count_verdicts(table),
+        errors=printed_errors(table),
+        summary=counts_line(table),
+        converted=CONVERTED,
+        gallery=gallery,
+        version=__version__,
+    )
 
 
-def format_deviation(deviation: float | None) -> str:
-    """Write a deviation with two digits, and none at all as nothing."""
-    return "" if deviation is None else f"{deviation:.1e}" if deviation else "0"
+def format_within(deviation: float | None, limit: str) -> str:
+    """Write a deviation with two digits and what it may be; none at all as nothing.
+
+    Parameters
+    ----------
+    deviation : float or None
+        Relative, or absolute where what it is from is zero.
+    limit : str
+        What it is held to.
+    """
+    if deviation is None:
+        return ""
+    return f"{f'{deviation:.1e}' if deviation else '0'} ({limit})"

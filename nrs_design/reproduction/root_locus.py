@@ -52,6 +52,7 @@ def _design() -> tuple[ReproducedValue, ...]:
             note=f"For tau_m = 0.0351 s, whose zero would be at {rounded.zero:.4f} 1/s. The zero "
             "of 4.29 is that of the pole at 28.4767 1/s, whose angle is "
             f"{degrees(unrounded.zero_angle):.4f} deg.",
+            errata=("4.28",),
         ),
         reproduced("zero", "4.29", "56.9706", unrounded.zero, "1/s", Tolerance(5e-4)),
         derived(
@@ -64,6 +65,7 @@ def _design() -> tuple[ReproducedValue, ...]:
             right="2065.4",
             note="2060 is read off the drawn locus and rounded. "
             "What follows in the thesis, and here, uses 2060.",
+            errata=("4.30",),
         ),
         reproduced(
             "Kp = K z",

@@ -59,7 +59,8 @@ def _as_printed() -> ReproducedValue:
         "6.3.2.2",
         STABLE,
         _describe(found),
-        verdict=PrintVerdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINTED_DIFFERENTLY,
+        errata=("A(2,1)", "6.3.1 k_soft"),
         holds=found.verdict == "refuted",
         note="Neither printed matrix is Hurwitz: the sign of entry (2, 1) is wrong.",
     )
@@ -72,7 +73,8 @@ def _zero_mass() -> ReproducedValue:
         "6.3.2.1",
         "Mt = 0 must be avoided",
         f"Mt = 0: {_describe(without)}; Mt = 0.01: {_describe(with_mass)}",
-        verdict=PrintVerdict.PRINT_IS_WRONG,
+        verdict=PrintVerdict.PRINTED_DIFFERENTLY,
+        errata=("6.3.2.1",),
         holds=without.verdict == with_mass.verdict == "proved",
         note="Stability under switching is no reason to avoid Mt = 0: with it, too, the pair has "
         "a common quadratic function.",

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
+from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.actuator import Actuator, MotorConstants
-from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
+from nrs_design.models.contact import Elastic
+from nrs_design.models.motion_loop import MotionLoop, close_motion_loop, realize
+from nrs_design.switched.cut_loop import ContinuousAxis, Place
 
 # Thesis 4.1: table 4.1, gearhead 181:1, break frequency and low-frequency gain of figure 4.3.
 MOTOR_INERTIA, GEARHEAD_INERTIA = 14.5e-7, 0.31e-7
@@ -37,6 +40,8 @@ EXACT_LOOP = TransferFunction(
     tuple(map(float, CLOSED_LOOP.numerator)), tuple(map(float, CLOSED_LOOP.denominator))
 )
 
+AXIS = ContinuousAxis((Place(ACTUATOR),), realize(CLOSED_LOOP))
+
 # Thesis 6.13 and 6.14: the realization with the digits of the print.
 REALIZED_LOOP = MotionLoop(
     numerator=(Fraction("28.4160"), Fraction("1618.80")),
@@ -45,3 +50,15 @@ REALIZED_LOOP = MotionLoop(
 
 # Thesis 6.3.3.1, in rad/(N m).
 FORCE_GAIN = Fraction("0.02")
+
+
+def stiffness_limit(Mt: float, Bt: float) -> float:
+    """Return the largest stable stiffness of an elastic contact in N m/rad.
+
+    Parameters
+    ----------
+    Mt, Bt : float
+        kg m^2 and N m s/rad.
+    """
+    # Any stiffness will do: the limit does not hang on it.
+    return LoopFamily(AXIS, Elastic(SOFT), Fraction(0), AXIS.places[0]).stiffness_limit(Mt, Bt)

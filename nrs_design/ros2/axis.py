@@ -225,8 +225,11 @@ def assumptions(around: Surroundings) -> tuple[str, ...]:
         "lost and made at the reference",
         f"the period is always the same; measured offset and force are {age} old",
         follows,
-        "each axis acts by itself: the control frame is aligned with the base, the Jacobian is "
+        "each axis acts by itself: the control frame is aligned with the base (it may be turned "
+        "where masses are equal, and in all cases since ros2_controllers 6.4.0), the Jacobian is "
         "square and regular and does not change, and its damped inverse (alpha) is its inverse",
+        "the measured force is that of the contact: nothing scales or filters it before this "
+        "controller",
         "the parameters are those of this file, and are not changed while the controller runs",
         "nothing is limited on the way, and arithmetic is not rounded",
     )

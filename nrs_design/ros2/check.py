@@ -10,20 +10,27 @@ from pathlib import Path
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation, SpecOutcome, Status
-from nrs_design.gating.rules import ROS_AXIS, ROS_PARAMETERS
+from nrs_design.gating.rules import ROS_AXIS, ROS_OTHERS, ROS_PARAMETERS
 from nrs_design.progress import Progress
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.ros2.axis import Surroundings, assumptions, close_axis
-from nrs_design.ros2.law import CHAIN, LAW, TYPE, AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.law import LAW, AdmittanceLaw, Axis, is_admittance, read_law
+from nrs_design.ros2.managers import (
+    MANAGER,
+    PassedOver,
+    find_undecided,
+    kind_of,
+    managers_of,
+)
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
-from nrs_design.ros2.traps import find_traps, has_chain
+from nrs_design.ros2.quantities import RATE, ROTATIONAL, STIFFNESS
+from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.margin import find_margin
 
-MANAGER = "controller_manager"
 # For each of the proofs by which a safe range is looked for.
 MARGIN_BUDGET = 2.0
 # Of the ends of a range that was looked for.
@@ -83,12 +90,16 @@ class _Asker:
         )
 
     def _decide(self, law: AdmittanceLaw, axis: Axis, around: Surroundings) -> tuple[Status, str]:
-        if axis.selected and has_chain(law):
-            return Status.INCONCLUSIVE, "its force passes through a filter chain: not modelled"
+        if axis.selected and law.force_from is not None:
+            words = f"its force comes through {law.force_from}, another controller: not modelled"
+            return Status.INCONCLUSIVE, words
         met = around.of(axis)
         if met is None:
-            option = "--rotational-stiffness" if axis.rotates else "--stiffness"
-            return Status.INCONCLUSIVE, f"nothing is said of what it touches: give {option}"
+            option, kind = ("--stiffness", STIFFNESS)
+            if axis.rotates:
+                option, kind = ("--rotational-stiffness", ROTATIONAL)
+            words = f"nothing is said of what it touches: give {option} '{kind.example}'"
+            return Status.INCONCLUSIVE, words
         numbers = (axis.mass, axis.damping_ratio, axis.stiffness, axis.selected, axis.rotates, met)
         key = (*numbers, law.joint_damping, law.filter_coefficient, around.period)
         if key not in self.known:
@@ -176,7 +187,8 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         If the file cannot be read, holds no admittance controller, or does not say its rate.
     """
     nodes = read_nodes(path)
-    controllers = [n for n in nodes if is_admittance(n, _types(_managers_of(n, nodes)))]
+    others = (node for node in nodes if node.base_name != MANAGER)
+    controllers = [node for node in others if is_admittance(node, kind_of(node, nodes))]
     if not controllers:
         names = ", ".join(node.name for node in nodes)
         raise SpecError(
@@ -188,16 +200,17 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
     obligations: list[Obligation] = []
     cautions: list[Caution] = []
     notes: dict[str, None] = {}
+    beside = [*find_undecided(nodes, controllers)]
     for node in controllers:
         if shared := [*_shared(node, nodes)]:
             obligations += [_unreadable(path, node, fault) for fault in shared]
             continue
         try:
-            law = read_law(node)
+            law = read_law(node, {n.base_name for n in nodes} | {other.name for other in beside})
         except SpecError as error:
             obligations += [_unreadable(path, node, fault) for fault in error.faults]
             continue
-        managers = _managers_of(node, nodes)
+        managers = managers_of(node, nodes)
         manager = managers[0] if len(managers) == 1 else None
         asked = () if manager is None or question.rate is not None else _shared_rate(manager, nodes)
         if rates := [*asked]:
@@ -210,28 +223,12 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
         obligations.append(_readable(path, node))
         obligations += [asker.obligation(law, axis, around) for axis in law.axes]
         cautions += find_traps(law, path)
-    cautions += _absent(path, nodes)
-    verdicts = {item.status for item in obligations if item.rule is ROS_AXIS}
-    worst = next((status for status in _ORDER if status in verdicts), None)
-    verdict = None if worst is None else str(worst)
-    outcome = SpecOutcome(path, tuple(obligations), verdict=verdict, cautions=tuple(cautions))
-    return GateOutcome((outcome,), tuple(f"taken for granted: {note}" for note in notes))
-
-
-def _managers_of(node: RosNode, nodes: tuple[RosNode, ...]) -> list[RosNode]:
-    """Return the controller managers in the namespace of a node, or all."""
-    managers = [n for n in nodes if n.base_name == MANAGER]
-    return [n for n in managers if n.namespace == node.namespace] or managers
-
-
-def _types(managers: Iterable[RosNode]) -> dict[str, str]:
-    """Return the types of controllers, as their managers say."""
-    types: dict[str, str] = {}
-    for name, value in (pair for manager in managers for pair in manager.values.items()):
-        listed = texts(value)
-        if name.endswith(".type") and listed:
-            types[name.removesuffix(".type")] = listed[0].text
-    return types
+    obligations += [_undecided(path, other) for other in beside if not other.silent]
+    outcome = SpecOutcome(
+        path, tuple(obligations), verdict=_verdict(obligations), cautions=tuple(cautions)
+    )
+    granted = (f"taken for granted: {note}" for note in notes)
+    return GateOutcome((outcome,), (*granted, *_silent(beside)))
 
 
 def _shared_rate(manager: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
@@ -241,7 +238,7 @@ def _shared_rate(manager: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault
             yield other.fault(
                 "update_rate",
                 f"counts for {manager.name}, too; if both say it, releases differ in which counts",
-                f"write it at {manager.name} alone, or give the rate as --rate",
+                f"write it at {manager.name} alone, or give the rate as {RATE}",
             )
 
 
@@ -251,7 +248,7 @@ def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
         if other is node or other.base_name == MANAGER or not node.may_share(other):
             continue
         for name in other.values:
-            if name in LAW or name.startswith(f"{CHAIN}."):
+            if name in LAW:
                 yield other.fault(
                     name,
                     f"counts for {node.name}, too; if both say it, releases differ in which counts",
@@ -259,17 +256,25 @@ def _shared(node: RosNode, nodes: tuple[RosNode, ...]) -> Iterator[Fault]:
                 )
 
 
-def _absent(path: Path, nodes: tuple[RosNode, ...]) -> Iterator[Caution]:
-    """Yield the admittance controllers that a manager runs, and this file says nothing of."""
-    named = {node.base_name for node in nodes}
-    for manager in (node for node in nodes if node.base_name == MANAGER):
-        for name, kind in _types([manager]).items():
-            if kind == TYPE and not named & {name, "**"}:
-                place = manager.place(f"{name}.type")
-                message = (
-                    f"{name}: runs as an admittance controller, but no node of this name is here"
-                )
-                yield Caution(path, message, place.line, place.column)
+def _undecided(path: Path, other: PassedOver) -> Obligation:
+    message = f"{other.name}: passed over, so undecided: {other.why}"
+    place = other.position
+    return Obligation(
+        ROS_OTHERS, path, other.name, Status.INCONCLUSIVE, message, place.line, place.column
+    )
+
+
+def _silent(others: Iterable[PassedOver]) -> Iterator[str]:
+    """Say what was passed over because it commands nothing."""
+    if names := ", ".join(other.name for other in others if other.silent):
+        yield f"passed over, because they command nothing: {names}"
+
+
+def _verdict(obligations: Iterable[Obligation]) -> str | None:
+    """Return the worst of what was decided; None where something could not be read."""
+    found = {item.status for item in obligations} - {Status.MET}
+    worst = next((status for status in _ORDER if status in found), None)
+    return None if worst in (None, Status.ERROR) else str(worst)
 
 
 def _rate(
@@ -286,7 +291,7 @@ def _rate(
             path=path,
             line=law.node.position.line,
             column=law.node.position.column,
-            remedy="give --rate '500 1/s', or add update_rate of controller_manager",
+            remedy=f"give {RATE}, or add update_rate of controller_manager",
         )
     if 0 < own < found and found % own:
         place = law.node.place("update_rate")
@@ -296,7 +301,8 @@ def _rate(
             path=path,
             line=place.line,
             column=place.column,
-            remedy="write a rate that divides it, or give the rate at which it runs as --rate",
+            remedy="write a rate that divides it, or give the rate at which it runs, such as "
+            f"--rate '{own} 1/s'",
         )
     return min(found, own) if own else found
 

@@ -265,7 +265,7 @@ def _header(
         "samples old",
         f"touched: {float(met[0])!r} to {float(met[1])!r} N*m/rad",
         "units: kg*m^2, N*m/rad, joint_damping in 1/s",
-        *(f"taken for granted: {text}" for text in (*system.assumptions, *_kept(certificate))),
+        *(f"taken for granted: {text}" for text in (*certificate.granted, *_kept(certificate))),
         *(f"outside the proof: {text}" for text in OUTSIDE),
         *(
             (f"outside the proof: {not_for_ranges(ranged)}",)

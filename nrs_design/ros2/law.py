@@ -6,7 +6,7 @@ Names, types and bounds are those of the parameters that it declares
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fractions import Fraction
@@ -19,7 +19,6 @@ from nrs_design.spec.document import Position, Scalar
 AXES = ("x", "y", "z", "rx", "ry", "rz")
 TYPE = "admittance_controller/AdmittanceController"
 FILTER = "ft_sensor.filter_coefficient"
-CHAIN = "sensor_filter_chain"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +129,8 @@ class AdmittanceLaw:
         Share of the new sample in the smoothed force, in each period.
     values : mapping of str to tuple of Fraction
         Everything that was read, defaults filled in.
+    force_from : str or None
+        Another controller, if the force comes through one, which may filter or scale it.
     """
 
     node: RosNode
@@ -137,26 +138,33 @@ class AdmittanceLaw:
     joint_damping: Fraction
     filter_coefficient: Fraction
     values: Mapping[str, tuple[Fraction, ...]]
+    force_from: str | None = None
 
 
-def is_admittance(node: RosNode, types: Mapping[str, str]) -> bool:
+def is_admittance(node: RosNode, kind: str | None) -> bool:
     """Tell whether a node is an admittance controller, by its type or by what it is given.
 
     Parameters
     ----------
     node : RosNode
         The node.
-    types : mapping of str to str
-        What a controller manager says of its controllers.
+    kind : str or None
+        Its type, if the file says it.
     """
-    kind = types.get(node.base_name)
     if kind is not None:
         return kind == TYPE
     return any(name.startswith("admittance.") for name in node.values)
 
 
-def read_law(node: RosNode) -> AdmittanceLaw:
+def read_law(node: RosNode, others: Collection[str] = ()) -> AdmittanceLaw:
     """Read the law of an admittance controller.
+
+    Parameters
+    ----------
+    node : RosNode
+        Its parameters.
+    others : collection of str
+        Names of all controllers of the file.
 
     Raises
     ------
@@ -187,8 +195,20 @@ def read_law(node: RosNode) -> AdmittanceLaw:
         for i, name in enumerate(AXES)
     )
     return AdmittanceLaw(
-        node, axes, values["admittance.joint_damping"][0], values[FILTER][0], values
+        node,
+        axes,
+        values["admittance.joint_damping"][0],
+        values[FILTER][0],
+        values,
+        _force_from(node, others),
     )
+
+
+def _force_from(node: RosNode, others: Collection[str]) -> str | None:
+    """Return the controller whose interfaces ``ft_sensor.name`` begins with."""
+    listed = texts(node.values["ft_sensor.name"]) if "ft_sensor.name" in node.values else None
+    source = listed[0].text.strip("/").partition("/")[0] if listed else ""
+    return source if source in others else None
 
 
 def _read(
@@ -239,4 +259,4 @@ def _bounded(item: Scalar, parameter: Parameter) -> Fraction:
 def unknown_names(node: RosNode) -> list[str]:
     """Return the parameters that the controller passes over without a word."""
     known = {*LAW, *OTHERS}
-    return [n for n in node.values if n not in known and not n.startswith(f"{CHAIN}.")]
+    return [name for name in node.values if name not in known]

@@ -7,8 +7,11 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from nrs_design.gating.obligations import Caution
-from nrs_design.ros2.law import CHAIN, FILTER, LAW, OTHERS, AdmittanceLaw, unknown_names
+from nrs_design.ros2.law import FILTER, LAW, OTHERS, AdmittanceLaw, unknown_names
+from nrs_design.ros2.parameters import RosNode, texts
 
+# Of the broadcaster, which publishes what it filters.
+CHAIN = "sensor_filter_chain"
 RETUNING = "enable_parameter_update_without_reactivation"
 Trap = tuple[str, int | None, str]
 
@@ -32,12 +35,13 @@ def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
     yield from _damping(law)
     yield from _filter(law)
     masses = {axis.mass for axis in law.axes[:3]}, {axis.mass for axis in law.axes[3:]}
-    if any(len(values) > 1 for values in masses):
+    if any(len(values) > 1 for values in masses) and not _same_frame(law.node):
         yield (
             "admittance.mass",
             None,
-            "masses differ; they act along the axes of the base, stiffness and damping along those "
-            "of the control frame, so axes are coupled wherever the two are turned",
+            "masses differ: since ros2_controllers 6.4.0 they act along the axes of the control "
+            "frame, as stiffness and damping do; before, along those of the base, so axes are "
+            "coupled wherever the two frames are turned, which no verdict here covers",
         )
     if law.values[RETUNING][0]:
         said = "is on" if RETUNING in law.node.values else "is on by default"
@@ -50,10 +54,28 @@ def _traps(law: AdmittanceLaw) -> Iterator[Trap]:
     yield from _unknown(law)
 
 
+def _same_frame(node: RosNode) -> bool:
+    """Tell whether the control frame is the base."""
+    frames = [
+        texts(node.values[name]) if name in node.values else None
+        for name in ("control.frame.id", "kinematics.base")
+    ]
+    names = [listed[0].text for listed in frames if listed]
+    return len(names) == len(frames) and names[0] == names[1]
+
+
 def _unknown(law: AdmittanceLaw) -> Iterator[Trap]:
     """Yield names that may be slips of the pen, and the others together."""
     known, others = sorted({*LAW, *OTHERS}), []
-    for name in unknown_names(law.node):
+    unknown = unknown_names(law.node)
+    if chain := [name for name in unknown if name.startswith(f"{CHAIN}.")]:
+        yield (
+            chain[0],
+            None,
+            "is for force_torque_sensor_broadcaster: this controller passes over it, and filters "
+            f"by {FILTER} alone",
+        )
+    for name in (name for name in unknown if name not in chain):
         if near := get_close_matches(name, known, n=1, cutoff=0.85):
             yield name, None, f"is not known to the controller; did you mean {near[0]}?"
         else:
@@ -89,12 +111,6 @@ def _damping(law: AdmittanceLaw) -> Iterator[Trap]:
 def _filter(law: AdmittanceLaw) -> Iterator[Trap]:
     c = law.filter_coefficient
     if FILTER not in law.node.values:
-        if not has_chain(law):
-            yield FILTER, None, "is not given; the default 0.05 smooths the force over 20 periods"
+        yield FILTER, None, "is not given; the default 0.05 smooths the force over 20 periods"
     elif not 0 < c <= 1:
         yield FILTER, None, f"{float(c):g} is no share of the new sample: write 0 < c <= 1"
-
-
-def has_chain(law: AdmittanceLaw) -> bool:
-    """Tell whether the force passes through filters that are not modelled."""
-    return any(name.startswith(f"{CHAIN}.") for name in law.node.values)

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from dataclasses import field
 
-from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict, deciding
+from nrs_design.certificates.certificate import (
+    CommonQuadraticStatus,
+    Verdict,
+    deciding,
+    granted,
+    refuted_in,
+)
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import GIGABYTE
 from nrs_design.search.gradient_settings import Gradient
+from nrs_design.work import GIGABYTE
 
 DEFAULT_BUDGET = 60.0
 DEFAULT_MEMORY = 2 * GIGABYTE
@@ -24,7 +30,7 @@ class Limits:
     max_degree : int or None
         Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
     budget : float
-        Time in s. Steps that are predicted not to fit are not begun, others are stopped.
+        Work, in units (`nrs_design.work`). Steps that are predicted not to fit are not begun.
     memory : float
         Steps that are predicted to need more bytes are not begun.
     optimize_rate : bool
@@ -42,11 +48,15 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One rung: what was tried, how it ended, and its time in s."""
+    """One rung: what was tried, how it ended, its time in s, and its work in units.
+
+    The time differs from run to run, and decides nothing.
+    """
 
     step: str
     outcome: str
     seconds: float
+    work: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,4 +93,14 @@ class Certification:
     @property
     def evidence(self) -> AbstractEvidence | None:
         """The statement that decides the verdict, or None."""
-        return deciding(self.statements)
+        return deciding(self.system, self.statements)
+
+    @property
+    def refuted_in(self) -> str | None:
+        """Of what it is refuted, if that leaves the loss of contact open; None elsewhere."""
+        return refuted_in(self.system, self.statements)
+
+    @property
+    def granted(self) -> tuple[str, ...]:
+        """What the statements take for granted."""
+        return granted(self.system, self.statements)

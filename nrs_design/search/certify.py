@@ -12,6 +12,7 @@ from numpy.linalg import LinAlgError
 from nrs_design.certificates.certificate import (
     Verdict,
     common_quadratic_of,
+    refuted_in,
     verdict_of,
 )
 from nrs_design.errors import DISAGREE, DesignError, InternalError
@@ -21,7 +22,6 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.exact import TooLargeError
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.family import Family, floats_in_silence
@@ -31,6 +31,7 @@ from nrs_design.search.ladder import applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.rate_limit import rate_limit
 from nrs_design.search.structure import merge_equal_modes, stand_in, triangular_blocks
+from nrs_design.work import Allowance, Fuse, NotAffordableError
 
 # The end of a search that had a solution, but no rate to claim for it.
 NO_RATE = "what was found shows no rate of decay"
@@ -72,11 +73,13 @@ def certify(
     DesignError
         If the method does not apply to the system, or settings of the gradient iteration do not
         apply to the method or the modes.
+    ClockError
+        If the clock stopped the search: what it would have found is not known.
     InternalError
         If two exact computations disagree.
     """
     limits = limits or Limits()
-    allowance = Allowance(limits.budget, limits.memory)
+    allowance = _allowance(limits)
     if method is not Method.AUTO and method not in applicable_methods(system):
         raise DesignError(
             f"the method {method} does not apply to this kind of switching and time",
@@ -87,7 +90,8 @@ def certify(
     merged = merge_equal_modes(system) if simple else system
     limits = _limits_for(merged, system, limits)
     # Lost contact, what the arithmetic rounds and other axes are matters of the whole state.
-    simple = simple and system.contact is None and not (system.roundings or system.couplings)
+    simple = simple and system.contact is None and system.flights is None
+    simple = simple and not (system.roundings or system.couplings)
     blocks = triangular_blocks(merged) if simple else (tuple(range(system.order)),)
     if len(blocks) == 1:
         result = _climb(merged, method, limits, allowance, progress)
@@ -114,24 +118,36 @@ def certify(
     return replace(result, system=system, statements=statements, rate_limit=limit)
 
 
-def is_refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> bool:
-    """Tell whether a mode, or a round of two, grows: of those that floating point suspects.
+def refuted_at_once(system: SwitchedSystem, limits: Limits | None = None) -> str | None:
+    """Tell in which contact a mode, or a round of two, grows: of those that are suspected.
+
+    Floating point suspects. Empty for any contact, None if none grows.
 
     Parameters
     ----------
     system : SwitchedSystem
         The modes and their switching.
     limits : Limits, optional
-        Time and memory for the exact tests.
+        Work and memory for the exact tests.
+
+    Raises
+    ------
+    ClockError
+        If the clock stopped it.
     """
     from nrs_design.search.rounds import search_rounds
     from nrs_design.search.unstable_mode import examine_suspicious_modes
 
     limits = limits or Limits()
     with floats_in_silence():
-        family = Family.of(system, Allowance(limits.budget, limits.memory))
+        family = Family.of(system, _allowance(limits))
     search = examine_suspicious_modes if system.clock is None else search_rounds
-    return _take(partial(search, family), system)[0] is not None
+    evidence, _ = _take(partial(search, family), system, family.allowance)
+    return None if evidence is None else refuted_in(system, (evidence,)) or ""
+
+
+def _allowance(limits: Limits) -> Allowance:
+    return Allowance(limits.budget, limits.memory, Fuse.of(limits.budget))
 
 
 def _bounds(
@@ -155,7 +171,7 @@ def _bounds(
         progress(name)
         own = allowance.part(1 / (len(pairs) - count))
         search = partial(search_ellipsoid, system, channels, output, own)
-        evidence, attempt = _attempted(name, search, system)
+        evidence, attempt = _attempted(name, search, system, own)
         found += evidence
         attempts += attempt
     return tuple(found), tuple(attempts)
@@ -174,7 +190,8 @@ def _settling(
     from nrs_design.search.constant_force import search_constant_force
 
     progress(CONSTANT_FORCE)
-    return _attempted(CONSTANT_FORCE, partial(search_constant_force, system, allowance), system)
+    search = partial(search_constant_force, system, allowance)
+    return _attempted(CONSTANT_FORCE, search, system, allowance)
 
 
 def _saturated(
@@ -186,16 +203,20 @@ def _saturated(
     from nrs_design.search.saturated_ellipsoid import search_saturated
 
     progress(SATURATION)
-    return _attempted(SATURATION, partial(search_saturated, system, allowance), system)
+    search = partial(search_saturated, system, allowance)
+    return _attempted(SATURATION, search, system, allowance)
 
 
 def _attempted(
-    name: str, search: Callable[[], Candidates[AbstractEvidence]], system: SwitchedSystem
+    name: str,
+    search: Callable[[], Candidates[AbstractEvidence]],
+    system: SwitchedSystem,
+    allowance: Allowance,
 ) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
     """Take the first candidate that holds, and say how it went."""
-    start = perf_counter()
-    evidence, outcome = _take(search, system)
-    attempt = Attempt(name, outcome, perf_counter() - start)
+    start, before = perf_counter(), allowance.charged
+    evidence, outcome = _take(search, system, allowance)
+    attempt = Attempt(name, outcome, perf_counter() - start, allowance.charged - before)
     return () if evidence is None else (evidence,), (attempt,)
 
 
@@ -266,31 +287,38 @@ def _climb(
         )
     attempts: list[Attempt] = []
     remarks: list[AbstractEvidence] = []
-    for name, search in steps(system, method, limits, allowance, lambda: bool(remarks)):
-        start = perf_counter()
+    for name, search in steps(system, method, limits, allowance, lambda: _known(system, remarks)):
         if attempts and allowance.left <= 0:
-            spent = f"not begun: the budget of {allowance.total:g} s is used up (--budget)"
+            spent = f"not begun: the budget of {allowance.total:g} is used up (--budget)"
             attempts.append(Attempt(name, spent, 0.0))
             break
         progress(name)
-        evidence, outcome = _take(partial(search, family), system)
-        attempts.append(Attempt(name, outcome, perf_counter() - start))
-        if evidence is None:
+        found, attempt = _attempted(name, partial(search, family), system, allowance)
+        attempts += attempt
+        if not found:
             continue
-        if evidence.shows is Shows.NO_COMMON_QUADRATIC:
+        (evidence,) = found
+        # Growth that the environment would have to pull for is none that ends the search.
+        if evidence.shown(system) in (Shows.NO_COMMON_QUADRATIC, Shows.INSTABILITY_IN_CONTACT):
             remarks.append(evidence)
             continue
         return _conclude(system, name, (evidence, *remarks), tuple(attempts))
     return _conclude(system, str(method), tuple(remarks), tuple(attempts))
 
 
+def _known(system: SwitchedSystem, remarks: Sequence[AbstractEvidence]) -> frozenset[Shows]:
+    return frozenset(evidence.shown(system) for evidence in remarks)
+
+
 def _take(
-    search: Callable[[], Candidates[AbstractEvidence]], system: SwitchedSystem
+    search: Callable[[], Candidates[AbstractEvidence]],
+    system: SwitchedSystem,
+    allowance: Allowance,
 ) -> tuple[AbstractEvidence | None, str]:
     """Make one search; where it is not affordable, or floating point fails, nothing is found."""
     try:
         with floats_in_silence():
-            return first_accepted(search(), system)
+            return first_accepted(search(), system, allowance)
     except TooLargeError as error:
         return None, f"not tried: {error}"
     except NotAffordableError as reason:
@@ -300,7 +328,9 @@ def _take(
 
 
 def first_accepted(
-    candidates: Candidates[AbstractEvidence], system: SwitchedSystem
+    candidates: Candidates[AbstractEvidence],
+    system: SwitchedSystem,
+    allowance: Allowance | None = None,
 ) -> tuple[AbstractEvidence | None, str]:
     """Return the first candidate that the exact check accepts, and in words how the search ended.
 
@@ -312,7 +342,10 @@ def first_accepted(
         As a search yields them; no more than needed are asked for.
     system : SwitchedSystem
         What they are to be evidence about.
+    allowance : Allowance, optional
+        The checks are charged to it; none is left out for it.
     """
+    charge = (allowance or Allowance()).charge
     fault: str | None = None
     while True:
         try:
@@ -320,7 +353,7 @@ def first_accepted(
         except StopIteration as end:
             refused = f"a candidate was found, but {fault}" if fault else NO_RATE
             return None, end.value or refused
-        fault = find_fault(candidate.evidence, system)
+        fault = find_fault(candidate.evidence, system, charge)
         if fault is None:
             return candidate.evidence, candidate.words
 
@@ -332,7 +365,9 @@ def _conclude(
     attempts: tuple[Attempt, ...],
 ) -> Certification:
     status = common_quadratic_of(system, statements)
-    return Certification(system, verdict_of(statements), status, method, statements, attempts)
+    return Certification(
+        system, verdict_of(system, statements), status, method, statements, attempts
+    )
 
 
 def _spread(

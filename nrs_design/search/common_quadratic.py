@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
+from nrs_design.work import Allowance, NotAffordableError
 
 BACK_OFF = Fraction(1999, 2000)
 # The largest rate is bracketed to this share of the slowest mode's.
@@ -49,7 +49,7 @@ def search_by_lmi(family: Family) -> Candidates[CommonQuadratic]:
 
 
 def _fastest(family: Family) -> Iterator[Candidate[CommonQuadratic]]:
-    """Yield functions for the largest rates that fit into the time."""
+    """Yield functions for the largest rates that fit into the budget."""
     time = family.system.time
 
     def solve(rate: float, allowance: Allowance) -> Array | None:

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewiseModeQuadratic
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, stand_ins
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
-from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.search.sdp import begin, maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 # What a condition takes from the functions and multipliers, by their places.
@@ -122,9 +122,9 @@ class ConewiseModeProgram:
         Raises
         ------
         NotAffordableError
-            If time or memory do not suffice.
+            If work or memory do not suffice.
         """
-        allowance.take(*self.cost())
+        begun = begin(allowance, *self.cost())
         m, f, n = len(self.contact), len(self.free), self.n
         outer, inner = symmetric_basis(n), symmetric_basis(n - 1)
         widths = [len(outer)] * m + [len(inner)] * f + [1] * f
@@ -151,7 +151,7 @@ class ConewiseModeProgram:
         for _, terms in self.conditions(np.array([outer] * m), np.array([inner] * f), rate):
             add(terms, margin=1.0)
         offset = np.concatenate(offsets)
-        x = maximize_margin(np.vstack(rows), offset, cones, time_limit=allowance.left)
+        x = maximize_margin(np.vstack(rows), offset, cones, begun)
         if x is None or x[-1] <= 0:
             return None
         found = [
@@ -211,7 +211,7 @@ def search_conewise_modes(family: Family) -> Candidates[ConewiseModeQuadratic]:
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     time = family.system.time
     if not np.isfinite(family.limit):

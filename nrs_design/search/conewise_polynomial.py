@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import CommonPolynomial, ConewisePolynomial
 from nrs_design.proof.evidence.conewise_polynomial import flight, without_last
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import bisect_position
 from nrs_design.search.family import Family
@@ -30,7 +29,8 @@ from nrs_design.search.polynomial import (
     shown_rate,
 )
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
-from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.search.sdp import begin, maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.work import Allowance, Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 
@@ -82,9 +82,9 @@ class ConewisePolynomialProgram:
         Raises
         ------
         NotAffordableError
-            If time or memory do not suffice.
+            If work or memory do not suffice.
         """
-        allowance.take(*conewise_cost(self.system, self.contact.degree))
+        begun = begin(allowance, *conewise_cost(self.system, self.contact.degree))
         time, K, k = self.system.time, len(self.contact.exponents), len(self.kept)
         basis = symmetric_basis(K)
         size, own = len(basis), len(self.contact.matrices) * len(self.contact.vanishing)
@@ -98,7 +98,7 @@ class ConewisePolynomialProgram:
         offset = np.zeros(len(rows))
         offset[:size] = pack(np.eye(K))
         cones = [K] * (2 + len(touching)) + [k] * len(flying)
-        x = maximize_margin(rows, offset, cones, time_limit=allowance.left)
+        x = maximize_margin(rows, offset, cones, begun)
         if x is None or x[-1] <= 0:
             return None
         Q = np.tensordot(x[:size], basis, axes=1)

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.sdp import pack, symmetric_basis
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ def find_conewise_quadratic(
     rate : float
         Decay rate in 1/s, or contraction per step.
     allowance : Allowance, optional
-        Time and memory; unlimited by default.
+        Work and memory; unlimited by default.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def find_conewise_quadratic(
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     allowance = allowance or Allowance()
     unit = time_unit(motions.contact, motions.time)
@@ -139,12 +139,12 @@ def find_conewise_quadratic(
     images[-1, :counted] = constant[:counted] - np.eye(n)
     step = step_cost(len(images), len(constant), n)
     described = f"a program of {len(images)} unknowns and {len(constant)} blocks"
-    allowance.require(Cost(FEWEST_STEPS * step.seconds, step.memory), described)
+    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), described)
     cones = Cones(constant, images)
     start = np.concatenate([pack(np.eye(n) / 2), np.ones(len(separations)), [0.0]])
     here = cones.at(start)[:counted]
     start[-1] = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
-    y = maximize_last(cones, start, lambda: allowance.goes_on(step.seconds), SMALLEST_MARGIN)
+    y = maximize_last(cones, start, lambda: allowance.goes_on(step.work), SMALLEST_MARGIN)
     if not y[-1] > 0:
         return None
     Q = np.asarray(np.tensordot(y[: len(basis)], basis, axes=1))

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import (
     ConewiseSolution,
@@ -24,6 +23,7 @@ from nrs_design.search.conewise_program import (
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import claims, digits, rate_at, round_rate, unscale
+from nrs_design.work import Allowance, NotAffordableError
 
 Array = NDArray[np.float64]
 # What the arithmetic rounds takes a little more than in the first order.
@@ -117,7 +117,7 @@ def _search(family: Family, errors: RoundingErrors | None) -> Candidates[Quadrat
 def _fastest(
     family: Family, own: Motions, T: Array, errors: RoundingErrors | None
 ) -> Iterator[Candidate[Quadratic]]:
-    """Yield functions for the largest rates that fit into the time."""
+    """Yield functions for the largest rates that fit into the budget."""
 
     def solve(rate: float, allowance: Allowance) -> ConewiseSolution | None:
         return find_conewise_quadratic(own, rate, allowance)

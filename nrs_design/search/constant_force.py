@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ConstantForce
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import (
     FEWEST_STEPS,
@@ -27,6 +26,7 @@ from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.rounding import digits, unscale
 from nrs_design.search.sdp import pack, symmetric_basis
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
@@ -41,12 +41,12 @@ def search_constant_force(
     system : SwitchedSystem
         In continuous time, with contact that can be lost.
     allowance : Allowance
-        Time and memory.
+        Work and memory.
 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     family = Family.of(system)
     motions = Motions.of(family)
@@ -77,12 +77,12 @@ def find_constant_force(A: Array, allowance: Allowance | None = None) -> tuple[A
     A : ndarray, shape (m, n, n)
         Modes in contact, of like norms and of rates about one.
     allowance : Allowance, optional
-        Time and memory; unlimited by default.
+        Work and memory; unlimited by default.
 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     allowance, (m, n) = allowance or Allowance(), A.shape[:2]
     basis = symmetric_basis(n)
@@ -103,12 +103,12 @@ def find_constant_force(A: Array, allowance: Allowance | None = None) -> tuple[A
     constant[-1, 0, 0], constant[-1, 1, 1] = 0.0, LARGEST_MULTIPLIER
     step = step_cost(len(images), len(constant), n)
     described = f"a program of {len(images)} unknowns and {len(constant)} blocks"
-    allowance.require(Cost(FEWEST_STEPS * step.seconds, step.memory), described)
+    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), described)
     cones = Cones(constant, images)
     start = np.concatenate([pack(np.eye(n) / 2), [1.0, 0.0]])
     here = cones.at(start)[:counted]
     start[-1] = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
-    y = maximize_last(cones, start, lambda: allowance.goes_on(step.seconds), SMALLEST_MARGIN)
+    y = maximize_last(cones, start, lambda: allowance.goes_on(step.work), SMALLEST_MARGIN)
     if not y[-1] > 0:
         return None
     return np.asarray(np.tensordot(y[: len(basis)], basis, axes=1)), float(y[-2])

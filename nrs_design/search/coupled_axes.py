@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from typing import Any
@@ -18,15 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import CoupledAxes
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family, to_floats
-from nrs_design.search.raw import LOADING, PER_PROGRAM
+from nrs_design.search.raw import LOADING, PER_PROGRAM, solve_by_cvxpy
 from nrs_design.search.rounding import claims, rate_at, unscale
-from nrs_design.search.sdp import program_cost
+from nrs_design.search.sdp import begin, program_cost
+from nrs_design.work import Allowance, Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 
@@ -125,7 +125,7 @@ def _fastest(
     solve: Callable[[float, Allowance], CoupledSolution | None],
     T: Array,
 ) -> Iterator[Candidate[CoupledAxes]]:
-    """Yield functions for the largest rates that fit into the time."""
+    """Yield functions for the largest rates that fit into the budget."""
     given = family.limit, family.system.time, family.allowance
     try:
         for solution, claim in fastest_first(
@@ -204,8 +204,9 @@ def _solve(problem: CoupledProblem, rate: float, allowance: Allowance) -> Couple
     n, c = motions.contact.shape[-1], len(problem.scales)
     unknowns = n * (n + 1) // 2 + c + f * p + 1
     cost = program_cost(unknowns, unknowns, [(n + c, unknowns)] * (m + f * (1 + p) + 2))
-    cost = Cost(PER_PROGRAM + cost.seconds, cost.memory)
-    allowance.take(cost, f"a program of {unknowns - 1} unknowns and {m + f * (1 + p)} blocks")
+    cost = replace(cost, work=PER_PROGRAM + cost.work)
+    what = f"a program of {unknowns - 1} unknowns and {m + f * (1 + p)} blocks"
+    begun = begin(allowance, cost, what)
     Q, t, identity = cp.Variable((n, n), symmetric=True), cp.Variable(), np.eye(n)
     taus, multipliers = cp.Variable(c), cp.Variable(max(f * p, 1), nonneg=True)
     conditions = [Q << identity, Q >> t * identity]
@@ -221,7 +222,7 @@ def _solve(problem: CoupledProblem, rate: float, allowance: Allowance) -> Couple
     try:
         # That a solution may be inaccurate is no news: no solver is trusted.
         with warnings.catch_warnings(action="ignore"):
-            program.solve(solver=cp.CLARABEL, max_threads=1, time_limit=allowance.left)
+            solve_by_cvxpy(program, begun)
     except cp.SolverError:
         return None
     found = Q.value, taus.value, multipliers.value if f * p else np.zeros(0), t.value

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import CoupledAxes
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.decay import bisect_position
@@ -26,6 +25,7 @@ from nrs_design.search.disturbed import (
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import claims, rate_at
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 

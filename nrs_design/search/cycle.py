@@ -10,8 +10,8 @@ from itertools import islice
 
 import numpy as np
 
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.graph import Array, Cycle, Graph, Jump
+from nrs_design.work import Allowance
 
 MAX_CYCLES = 120
 MAX_LENGTH = 64
@@ -25,7 +25,7 @@ STARTS = 4
 def growing_cycles(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, Array]]:
     """Yield the elementary cycles that seem to grow the most, or to decay the least.
 
-    When time is over, those that have been looked at are compared.
+    When the work is used up, those that have been looked at are compared.
 
     Yields
     ------

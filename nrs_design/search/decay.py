@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.lmi import decreases
 from nrs_design.search.rounding import claims, rate_at
+from nrs_design.work import Allowance, NotAffordableError
 
 # A position is bracketed to this share of itself, or given up as nil below the smallest one.
 RESOLUTION = 2.0**-12
@@ -62,7 +62,7 @@ def fastest_first(
     time : Time
         Continuous or discrete.
     allowance : Allowance
-        Time and memory.
+        Work and memory.
     resolution, smallest
         As for `bisect_position`.
     nearest, few
@@ -71,7 +71,7 @@ def fastest_first(
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice for another solution.
+        If work or memory do not suffice for another solution.
     """
     half = allowance.part(0.5)
     best = bisect_position(

@@ -15,10 +15,10 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.decay import limit_rate
 from nrs_design.search.gradient_settings import Gradient
+from nrs_design.work import Allowance
 
 # Modes that differ by less, relative to their largest entries, are nearly the same.
 NEARLY = 1e-12
@@ -39,7 +39,7 @@ class Family:
     limit : float
         Rate of the slowest mode that need never be left; without one, a rate out of reach.
     allowance : Allowance
-        Time and memory for the searches; unlimited by default.
+        Work and memory for the searches; unlimited by default.
     optimize_rate : bool
         Look for the largest provable decay rate, not only for some.
     gradient : Gradient

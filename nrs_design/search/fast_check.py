@@ -19,18 +19,50 @@ from nrs_design.proof.system import SwitchedSystem
 CLEAR_BITS = 28
 # From this order on, packed products are faster than plain ones.
 PACKED_ORDER = 10
+# Work per candidate, and per form: for itself, and per product of entries and square of their bits.
+# What a motion does during a stay is enclosed anew for each form.
+PER_CANDIDATE = 1e-3
+PER_FORM, PER_ENCLOSED_FORM = 1e-4, 4e-3
+PER_PRODUCT = 1.5e-7
+PER_SQUARED_BITS = 2e-13
+
+Forms = Iterator[tuple[str, IntegerMatrix]]
 
 
-def find_fault(evidence: AbstractEvidence, system: SwitchedSystem) -> str | None:
+def find_fault(
+    evidence: AbstractEvidence,
+    system: SwitchedSystem,
+    charge: Callable[[float], None] = lambda work: None,
+) -> str | None:
     """Say why evidence does not hold for a system, or None: `AbstractEvidence.find_fault`, sooner.
 
     Forms that are clearly positive definite are passed over; the plain test decides the others.
+
+    Parameters
+    ----------
+    evidence : AbstractEvidence
+        What is checked.
+    system : SwitchedSystem
+        What it is to be about.
+    charge : callable
+        Told the work of the check, form by form.
     """
+    charge(PER_CANDIDATE)
     if (unfit := evidence.find_unfit(system)) is not None:
         return unfit
     packed = _PACKED.get(type(evidence)) if system.order >= PACKED_ORDER else None
     forms = packed(evidence, system) if packed else evidence.forms(system)
-    return find_indefinite(item for item in forms if not is_clearly_positive_definite(item[1]))
+    # Evidence that encloses what happens during a stay says in how many pieces.
+    encloses = getattr(evidence, "pieces", 1) > 1
+    counted = _counted(forms, PER_ENCLOSED_FORM if encloses else PER_FORM, charge)
+    return find_indefinite(item for item in counted if not is_clearly_positive_definite(item[1]))
+
+
+def _counted(forms: Forms, each: float, charge: Callable[[float], None]) -> Forms:
+    """Charge every form as it is made."""
+    for name, M in forms:
+        charge(each + len(M) ** 3 * (PER_PRODUCT + PER_SQUARED_BITS * bit_length(M) ** 2))
+        yield name, M
 
 
 def is_clearly_positive_definite(M: IntegerMatrix) -> bool:

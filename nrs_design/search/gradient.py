@@ -13,15 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import mean_norm, own_norm, round_coordinates
 from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.rounding import rate_at
+from nrs_design.work import Allowance, NotAffordableError
 
-# Seconds per round and per multiplication in it.
-PER_ROUND = 2e-5
+# Work per round and per multiplication in it.
+PER_ROUND = 4e-5
 PER_PRODUCT = 1e-8
 # The largest v is told after so many updates each time, then whenever they have grown by a part.
 TOLD_ONE_BY_ONE = 100
@@ -50,12 +50,12 @@ def find_by_gradient(family: Family, allowance: Allowance | None = None) -> Grad
     family : Family
         Stable modes, with the settings.
     allowance : Allowance, optional
-        Time; unlimited by default.
+        Work; unlimited by default.
 
     Raises
     ------
     NotAffordableError
-        If the time is over.
+        If the work is used up.
     """
     T = _coordinates(family, mean_norm(family.matrices, family.system.time))
     return _iterate_in(T, family, family.matrices, family.gradient, allowance)
@@ -71,7 +71,7 @@ def find_faster_by_gradient(
     Parameters
     ----------
     family, allowance
-        As for `find_by_gradient`; if the time is over, the bisection ends early.
+        As for `find_by_gradient`; if the work is used up, the bisection ends early.
     found : ndarray, shape (n, n)
         A Q for some rate.
 
@@ -138,12 +138,12 @@ def iterate_gradient(
     start : int
         Which mode gives the first Q.
     allowance : Allowance, optional
-        Time; unlimited by default.
+        Work; unlimited by default.
 
     Raises
     ------
     NotAffordableError
-        If the time is over.
+        If the work is used up.
     """
     allowance, m = allowance or Allowance(), len(matrices)
     Q = own_norm(matrices[start], time)

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Cost
 from nrs_design.search.flows import ComplexArray, Flows, spectral_radii
+from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 # Jumps in order, each into the mode that the next one leaves; the last into that of the first.
 Cycle = tuple[int, ...]
 
 TIMES = 48
-# Seconds for the eigenvalues of a product, and per multiplication in them.
+# Work for the eigenvalues of a product, and per multiplication in them.
 PER_PRODUCT = 2e-6
 PER_OPERATION = 3e-8
 # Entries of the products that are looked at together.

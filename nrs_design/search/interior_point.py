@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.noun import dataclass
-from nrs_design.search.allowance import Cost
 from nrs_design.search.sdp import pack, unpack
+from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 
@@ -27,10 +27,12 @@ STEP_SHARE = 0.95
 GAP_FLOOR = 1e-12
 # The value is good enough where no other one can be larger by more than this factor.
 GOOD_FACTOR = 2.0
-# Seconds per multiplication, and per step; bytes per entry of the images, with their copies.
-PER_PRODUCT = 2e-10
-PER_STEP = 1e-3
-PER_ENTRY = 32
+# Work per step, per multiplication in it, and per entry of the images; and bytes per entry, with
+# their copies.
+PER_STEP = 3e-4
+PER_PRODUCT = 2.2e-11
+PER_ENTRY = 2.2e-8
+BYTES_PER_ENTRY = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,8 @@ def step_cost(variables: int, cones: int, order: int) -> Cost:
     """
     entries = variables * cones * order**2
     products = 2 * variables**2 * cones * order * (order + 1) / 2 + 4 * entries * order
-    return Cost(PER_STEP + PER_PRODUCT * products, PER_ENTRY * entries)
+    work = PER_STEP + PER_PRODUCT * products + PER_ENTRY * entries
+    return Cost(work, BYTES_PER_ENTRY * entries)
 
 
 def maximize_last(

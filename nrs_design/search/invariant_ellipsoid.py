@@ -19,7 +19,6 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.disturbed import (
@@ -32,6 +31,7 @@ from nrs_design.search.disturbed import (
 )
 from nrs_design.search.family import Family
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
@@ -61,12 +61,12 @@ def search_ellipsoid(
     output : Output
         What they move.
     allowance : Allowance
-        Time and memory.
+        Work and memory.
 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     family = Family.of(system)
     motions = Motions.of(family)

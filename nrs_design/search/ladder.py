@@ -6,14 +6,15 @@ from collections.abc import Callable, Iterator
 from itertools import islice, zip_longest
 from typing import Any
 
+from nrs_design.proof.evidence import Shows
 from nrs_design.proof.late import late_function
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.search.rung import Facts, Rung, Step, _always
+from nrs_design.work import Allowance
 
-# Seconds of a degree of what is tried before the cheaper rungs.
+# Work of a degree of what is tried before the cheaper rungs.
 QUICK = 0.5
 
 
@@ -92,6 +93,30 @@ LADDER: tuple[Rung, ...] = (
         _in("conewise_polynomial", "search_conewise_polynomial"),
         cost=_in("conewise_polynomial", "conewise_cost"),
         first=QUICK,
+    ),
+    # After what proves through the loss of contact, before what speaks of kept contact.
+    Rung(
+        "free motion",
+        None,
+        lambda f: f.may_lose_contact and f.is_losable,
+        _in("unstable_contact", "examine_free_motion"),
+        coupled=True,
+        in_kept_contact=False,
+    ),
+    *(
+        Rung(
+            name,
+            Method.PERIOD,
+            lambda f: f.is_losable,
+            _in("unstable_contact", "search_contact"),
+            coupled=True,
+            clocked=clocked,
+            in_kept_contact=False,
+        )
+        for clocked, name in (
+            (False, "growth with loss of contact"),
+            (True, "rounds with loss of contact"),
+        )
     ),
     Rung(
         "lmi",
@@ -196,7 +221,7 @@ def steps(
     method: Method,
     limits: Limits,
     allowance: Allowance,
-    has_no_quadratic: Callable[[], bool],
+    known: Callable[[], frozenset[Shows]],
 ) -> Iterator[Step]:
     """Yield the names of the rungs with their searches, in the order in which they are tried.
 
@@ -210,16 +235,19 @@ def steps(
         How far to go.
     allowance : Allowance
         What is left of the budget when a step is asked for decides how far degrees rise.
-    has_no_quadratic : callable
-        Tells whether it has been shown by now that there is no common quadratic function.
+    known : callable
+        Tells what has been shown by now: where there is no common quadratic function, none is
+        searched for; where it is not stable in kept contact, only growth with contact that is lost.
     """
     facts = Facts.of(system)
     rising = []
     for rung in LADDER:
-        if not rung.is_wanted(facts, method) or (rung.only_quadratic and has_no_quadratic()):
+        if not rung.is_wanted(facts, method) or rung.is_idle(known()):
             continue
         own = rung.steps(system, limits, allowance)
         yield from islice(own, rung.count_first(system))
         rising.append(own)
     for higher in zip_longest(*rising):
+        if Shows.INSTABILITY_IN_CONTACT in known():
+            return
         yield from (step for step in higher if step is not None)

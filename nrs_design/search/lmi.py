@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.sdp import (
+    begin,
     maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
 )
+from nrs_design.work import Allowance, Cost
 
 Matrices = NDArray[np.float64]
 Solve = Callable[[Matrices, Time, float, Matrices, Allowance], Matrices | None]
@@ -88,7 +89,7 @@ def find_common_quadratic(
         Solves the margin form for some of the modes, beginning at a Q between 0 and I; a method
         of our own by default.
     allowance : Allowance, optional
-        Time and memory; unlimited by default.
+        Work and memory; unlimited by default.
 
     Returns
     -------
@@ -98,7 +99,7 @@ def find_common_quadratic(
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice, and nothing was found.
+        If work or memory do not suffice, and nothing was found.
     """
     solve, allowance = solve or solve_by_interior_point, allowance or Allowance()
     unit = time_unit(matrices, time)
@@ -143,11 +144,11 @@ def solve_by_interior_point(
     Q : ndarray, shape (n, n)
         Where to begin.
     allowance : Allowance
-        Time and memory that are left.
+        Work and memory that are left.
     """
     m, n = matrices.shape[:2]
     step = step_cost(n * (n + 1) // 2 + 1, m + 2, n)
-    allowance.require(Cost(FEWEST_STEPS * step.seconds, step.memory), _described(m, n))
+    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), _described(m, n))
     basis, identity = symmetric_basis(n), np.eye(n)
     constant, images = np.zeros((m + 2, n, n)), np.zeros((len(basis) + 1, m + 2, n, n))
     constant[1] = identity
@@ -157,7 +158,7 @@ def solve_by_interior_point(
     here = decreases(matrices, Q, time, rate)
     below = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
     start = np.append(pack(Q), below)
-    y = maximize_last(Cones(constant, images), start, lambda: allowance.goes_on(step.seconds))
+    y = maximize_last(Cones(constant, images), start, lambda: allowance.goes_on(step.work))
     return np.asarray(np.tensordot(y[:-1], basis, axes=1))
 
 
@@ -177,12 +178,12 @@ def solve_by_clarabel(
     Q : ndarray, shape (n, n)
         A place to begin, which this solver does not need.
     allowance : Allowance
-        Time and memory that are left.
+        Work and memory that are left.
     """
     m, n = matrices.shape[:2]
     unknowns = n * (n + 1) // 2 + 1
     cost = program_cost(unknowns, unknowns, [(n, unknowns)] * (m + 2))
-    allowance.take(cost, _described(m, n))
+    begun = begin(allowance, cost, _described(m, n))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
     images = decreases(matrices, basis[:, None], time, rate)
@@ -191,7 +192,7 @@ def solve_by_clarabel(
     margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])
     rows = np.column_stack([columns, margin])
-    x = maximize_margin(rows, offset, [n] * (m + 2), time_limit=allowance.left)
+    x = maximize_margin(rows, offset, [n] * (m + 2), begun)
     return None if x is None else np.tensordot(x[:-1], basis, axes=1)
 
 

@@ -13,6 +13,7 @@ from nrs_design.search.tried import Tried, sharpen
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.abstract import Bound
+    from nrs_design.search.tried import Found
 
 # A period is multiplied or divided by two so often, and then bisected.
 DOUBLINGS, STEPS = 4, 4
@@ -30,11 +31,14 @@ class Bracket:
         Delays in samples, periods in s.
     end : str
         Where the search for a refutation ended, and why there, if it found none.
+    refuted_in : str
+        In which contact alone it is refuted, where its loss must be covered; empty for any.
     """
 
     proved: Fraction | None
     refuted: Fraction | None
     end: str = ""
+    refuted_in: str = ""
 
 
 @dataclass(frozen=True)
@@ -77,9 +81,9 @@ def find_longest_delay(
     shortest: int,
     declared: int,
     longest: int,
-    decide: Callable[[int], Verdict | str],
-    is_unstable: Callable[[int], bool],
-    known: Verdict | None = None,
+    decide: Callable[[int], Found],
+    unstable_in: Callable[[int], str | None],
+    known: Found | None = None,
     progress: Progress = silent,
 ) -> Bracket:
     """Find the longest delay with a proof, and the shortest that is refuted, in samples.
@@ -99,9 +103,10 @@ def find_longest_delay(
         That is decided.
     decide : callable
         Gives the verdict on a largest age, or says why it makes no loop.
-    is_unstable : callable
-        Tells whether the loop is refuted where all samples have one age, by a test that is quick.
-    known : Verdict, optional
+    unstable_in : callable
+        Tells in which contact the loop is refuted where all samples have one age, by a test that is
+        quick; empty for any contact, None where it is not.
+    known : Certification or Verdict, optional
         On the declared delay, perhaps by a longer search.
     progress : callable
         Told each delay, and what is known by then.
@@ -121,10 +126,13 @@ def find_longest_delay(
             _halve(below, beyond, lambda delay: not tried.is_refuted(delay))
     proved = max(tried.that_are(Verdict.PROVED), default=None)
     refuted = min(tried.that_are(Verdict.REFUTED), default=None)
+    where = tried.refuted_in(refuted)
     if refuted is None:
-        refuted = _first_unstable(longest, is_unstable)
+        refuted = _first_unstable(longest, lambda delay: unstable_in(delay) is not None)
+        where = "" if refuted is None else unstable_in(refuted) or ""
     ends = [None if delay is None else Fraction(delay) for delay in (proved, refuted)]
-    return Bracket(ends[0], ends[1], "" if refuted is not None else _end_of_delays(tried))
+    end = "" if refuted is not None else _end_of_delays(tried)
+    return Bracket(ends[0], ends[1], end, where)
 
 
 def _end_of_delays(tried: Tried[int]) -> str:
@@ -159,8 +167,8 @@ def _first_unstable(stable: int, is_unstable: Callable[[int], bool]) -> int | No
 
 def find_longest_period(
     period: Fraction,
-    decide: Callable[[Fraction], Verdict | str],
-    known: Verdict | None = None,
+    decide: Callable[[Fraction], Found],
+    known: Found | None = None,
     progress: Progress = silent,
 ) -> Bracket:
     """Find a long period with a proof and a short one that is refuted, each for itself.
@@ -173,7 +181,7 @@ def find_longest_period(
         Of the spec, in s.
     decide : callable
         Gives the verdict on a period, or says why it makes no system.
-    known : Verdict, optional
+    known : Certification or Verdict, optional
         On the period of the spec, perhaps by a longer search.
     progress : callable
         Told each period, and what is known by then.
@@ -196,7 +204,7 @@ def find_longest_period(
     proved = _bisect(tried, Verdict.PROVED)
     refuted = _bisect(tried, Verdict.REFUTED)
     end = "" if refuted is not None else tried.end("of up to", "a longer one makes no loop")
-    return Bracket(proved, refuted, end)
+    return Bracket(proved, refuted, end, tried.refuted_in(refuted))
 
 
 def _bisect(tried: Tried[Fraction], verdict: Verdict) -> Fraction | None:

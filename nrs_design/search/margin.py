@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Verdict
+from nrs_design.certificates.certificate import Verdict, refutes_in_contact
 from nrs_design.errors import AssemblyError
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
@@ -46,12 +46,15 @@ class BoxMargin:
         At the scale `proved`.
     end : str
         Where the search for a refutation ended, and why there, if it found none.
+    refuted_in : str
+        In which contact alone it is refuted, where its loss must be covered; empty for any.
     """
 
     proved: Fraction | None
     refuted: Fraction | None
     proof: Certification | None
     end: str = ""
+    refuted_in: str = ""
 
 
 def find_margin(
@@ -84,21 +87,21 @@ def find_margin(
     """
     proofs = {} if known is None else {Fraction(1): known}
 
-    def decide(scale: Fraction) -> Verdict | str:
+    def decide(scale: Fraction) -> Certification | str:
         system = _assembled(scale, assemble)
         if isinstance(system, AssemblyError):
             return system.message
         proofs[scale] = certify(system)
-        return proofs[scale].verdict
+        return proofs[scale]
 
     tried = Tried(decide, progress, "box scaled by")
     if known is not None:
-        tried.remember(Fraction(1), known.verdict)
+        tried.remember(Fraction(1), known)
     elif tried.makes_no_system(Fraction(0)):
         assemble(Fraction(0))  # Raises what is wrong, and where.
     if not tried.that_are(Verdict.PROVED) and not tried.is_proved(Fraction(0)):
         refuted = _smallest_refuted(tried, assemble)
-        return BoxMargin(None, refuted, None, _end(tried, refuted))
+        return BoxMargin(None, refuted, None, _end(tried, refuted), tried.refuted_in(refuted))
     high = Fraction(1)
     while high <= LARGEST_SCALE and tried.is_proved(high):
         high *= 2
@@ -106,7 +109,7 @@ def find_margin(
         sharpen(max(tried.that_are(Verdict.PROVED)), high, STEPS, tried.is_proved)
     refuted = _smallest_refuted(tried, assemble)
     low = max(tried.that_are(Verdict.PROVED))
-    return BoxMargin(low, refuted, proofs[low], _end(tried, refuted))
+    return BoxMargin(low, refuted, proofs[low], _end(tried, refuted), tried.refuted_in(refuted))
 
 
 def _assembled(scale: Fraction, assemble: Assemble) -> SwitchedSystem | AssemblyError:
@@ -161,12 +164,15 @@ class DwellMargin:
         At `proved`.
     longest : Fraction
         Longest dwell time that the search has decided about, from zero on.
+    refuted_in : str
+        As of `BoxMargin`.
     """
 
     proved: Fraction | None
     refuted: Fraction | None
     proof: Certification | None
     longest: Fraction
+    refuted_in: str = ""
 
 
 def find_shortest_dwell(
@@ -197,30 +203,33 @@ def find_shortest_dwell(
     """
     proofs: dict[Fraction, Certification] = {}
 
-    def decide(dwell: Fraction) -> Verdict:
+    def decide(dwell: Fraction) -> Certification:
         switching = replace(system.switching, dwell_time=dwell, stays=())
         # From where motions decay under saturation is no matter of a margin.
         proofs[dwell] = certify(replace(system, switching=switching, saturation=None))
-        return proofs[dwell].verdict
+        return proofs[dwell]
 
     tried, longest = Tried(decide, progress, "dwell time", "s"), Fraction(LONGEST_DWELL)
     if known is not None and (dwell := _common_dwell(system, known)) is not None:
-        tried.remember(dwell, known.verdict)
+        tried.remember(dwell, known)
         proofs[dwell] = known
     if tried.is_proved(Fraction(0)):
         return DwellMargin(Fraction(0), None, proofs[Fraction(0)], tried.longest())
     if _has_unstable_mode(proofs[Fraction(0)]):
-        return DwellMargin(None, longest, None, longest)
+        return DwellMargin(None, longest, None, longest, tried.refuted_in(Fraction(0)))
     proved = min(tried.that_are(Verdict.PROVED), default=None) or _widen(tried, system)
     if proved is None:
-        return DwellMargin(None, _longest_refuted(tried), None, longest)
+        refuted = _longest_refuted(tried)
+        return DwellMargin(None, refuted, None, longest, tried.refuted_in(refuted))
     for _ in range(HALVINGS):
         if not tried.is_proved(proved / 2):
             break
         proved /= 2
     low = max(dwell for dwell in tried.all() if dwell < proved)
     proved = sharpen(proved, low, DWELL_STEPS, tried.is_proved)
-    return DwellMargin(proved, _longest_refuted(tried), proofs[proved], tried.longest())
+    refuted = _longest_refuted(tried)
+    where = tried.refuted_in(refuted)
+    return DwellMargin(proved, refuted, proofs[proved], tried.longest(), where)
 
 
 def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | None:
@@ -232,14 +241,16 @@ def _common_dwell(system: SwitchedSystem, known: Certification) -> Fraction | No
     times = [stay.shortest for stay in system.stays().values()]
     if known.verdict is Verdict.PROVED:
         return max(times)
-    if known.verdict is Verdict.REFUTED or min(times) == max(times):
+    refuted = known.verdict is Verdict.REFUTED or known.refuted_in is not None
+    if refuted or min(times) == max(times):
         return min(times)
     return None
 
 
 def _has_unstable_mode(found: Certification) -> bool:
     """Tell whether a refutation holds for every dwell time."""
-    return found.evidence is not None and found.evidence.names_unstable_mode
+    evidence = found.evidence or refutes_in_contact(found.system, found.statements)
+    return evidence is not None and evidence.names_unstable_mode
 
 
 def _widen(tried: Tried[Fraction], system: SwitchedSystem) -> Fraction | None:

@@ -12,15 +12,18 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import UnstableMixture
 from nrs_design.proof.evidence.unstable_mixture import mixture
 from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
 SHARES = 128
 MAX_PAIRS = 300
 RANDOM_MIXTURES = 2000
+# Work for the eigenvalues of an average, and per multiplication in making it and in them.
+PER_MATRIX = 5e-6
+PER_PRODUCT = 3e-8
 # Entries of the averages that are looked at together.
 CHUNK_ENTRIES = 2_000_000
 DENOMINATORS = (16, 64, 1024, 2**20)
@@ -31,7 +34,7 @@ SLACK = 1e-9
 def search_mixture(family: Family) -> Candidates[UnstableMixture]:
     """Scan pairs of modes and random mixtures for a spectral abscissa that is not negative.
 
-    When the time is over, the search ends with what it has seen.
+    When the work is used up, the search ends with what it has seen.
     """
     system, matrices = family.system, family.matrices
     weights, abscissa = _least_stable(matrices, family.allowance)
@@ -52,6 +55,7 @@ def search_mixture(family: Family) -> Candidates[UnstableMixture]:
 def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
     """Return the weights of the average with the largest spectral abscissa, and that abscissa."""
     m, n = matrices.shape[:2]
+    per_average = PER_MATRIX + PER_PRODUCT * (n**3 + m * n**2)
     found, largest = np.ones(m) / m, -np.inf
     for weights in weights_tried(m, max(1, CHUNK_ENTRIES // max(n * n, m))):
         averages = np.tensordot(weights, matrices, axes=1)
@@ -59,7 +63,7 @@ def _least_stable(matrices: Array, allowance: Allowance) -> tuple[Array, float]:
         best = int(abscissas.argmax())
         if abscissas[best] > largest:
             found, largest = weights[best], float(abscissas[best])
-        if not allowance.goes_on():
+        if not allowance.goes_on(len(weights) * per_average):
             break
     return found, largest
 

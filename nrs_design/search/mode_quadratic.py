@@ -22,7 +22,6 @@ from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import fastest_first
@@ -32,11 +31,13 @@ from nrs_design.search.lmi import decreases, time_unit
 from nrs_design.search.polynomial import make_vanish
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import (
+    begin,
     maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
 )
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
@@ -53,8 +54,7 @@ NEAREST_ENCLOSED = 0.9
 FEWEST_BITS_ENCLOSED = 12
 # What floating point hides where functions need not decrease, relative to their size.
 SLACK = 1e-9
-# Seconds to check that a form is positive in exact arithmetic, per entry of its matrix: measured at
-# 1 ms for order 4, 2 ms for order 6.
+# Work of checking that a form is positive in exact arithmetic, per entry of its matrix.
 PER_CHECK = 6e-5
 
 
@@ -74,7 +74,7 @@ def search_mode_functions(family: Family, degree: int = 1) -> Candidates[Functio
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice for another solution.
+        If work or memory do not suffice for another solution.
     """
     system, allowance = family.system, family.allowance
     stand_ins = family.stand_ins() if degree == 1 else {}
@@ -83,7 +83,7 @@ def search_mode_functions(family: Family, degree: int = 1) -> Candidates[Functio
         kept = tuple(mode for mode in system.modes if mode.name in stand_ins.values())
         system = system.with_modes(kept, system.states, system.switching)
     cost, what = functions_cost(system, degree)
-    checked = replace(cost, seconds=cost.seconds + _seconds_of_checks(family.system, degree))
+    checked = replace(cost, work=cost.work + _work_of_checks(family.system, degree))
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
     problem = _Problem(system, degree, stand_ins)
     first = problem.solve(rate_at(0.0, family.limit, system.time), allowance)
@@ -121,8 +121,8 @@ def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
     return program_cost(shared + forms * decreases, shared, cones), what
 
 
-def _seconds_of_checks(system: SwitchedSystem, degree: int) -> float:
-    """Predict how long what is found is checked, by us and by the second library."""
+def _work_of_checks(system: SwitchedSystem, degree: int) -> float:
+    """Predict the work of checking what is found, by us and by the second library."""
     n = max(mode.A.shape[0] for mode in system.modes)
     order = comb(n + degree - 1, degree)
     return 2 * _count_decreases(system) * PER_CHECK * order**2
@@ -193,7 +193,7 @@ class _Problem:
 
     def solve(self, rate: float, allowance: Allowance) -> _Solution | None:
         """Maximize the margin for a rate; None if it is not positive."""
-        allowance.take(*self.cost)
+        begun = begin(allowance, *self.cost)
         sizes = [len(A) for A in self.matrices]
         bases, forms = [symmetric_basis(n) for n in sizes], self._vanishing_forms()
         wanted = list(self._decreases(bases, rate**self.degree))
@@ -220,9 +220,7 @@ class _Problem:
             images = [(columns[j], part) for j, part in parts]
             images.append((columns[len(bases) + k], forms[i]))
             add_cone(sizes[i], images, 1.0 if strict else 0.0, 0.0)
-        x = maximize_margin(
-            np.vstack(rows), np.concatenate(offsets), cones, time_limit=allowance.left
-        )
+        x = maximize_margin(np.vstack(rows), np.concatenate(offsets), cones, begun)
         if x is None or x[-1] <= 0:
             return None
         spans = bases + [forms[i] for i, _, _ in wanted]

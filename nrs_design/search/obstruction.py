@@ -14,18 +14,19 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.rounding import digits
 from nrs_design.search.sdp import (
+    begin,
     maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
     unpack,
 )
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     time : Time
         Continuous or discrete.
     allowance : Allowance, optional
-        Time and memory; unlimited by default.
+        Work and memory; unlimited by default.
 
     Returns
     -------
@@ -63,13 +64,13 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     allowance = allowance or Allowance()
     m, n = matrices.shape[:2]
     own = n * (n + 1) // 2
     cost = program_cost(m * own + 1, own, [(n, 2 * own)] * (m + 1))
-    allowance.take(cost, f"a program of {m * own + 1} unknowns and {m + 1} blocks")
+    begun = begin(allowance, cost, f"a program of {m * own + 1} unknowns and {m + 1} blocks")
     matrices = np.ldexp(matrices, time_unit(matrices, time))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
@@ -85,7 +86,7 @@ def solve_dual(matrices: Array, time: Time, allowance: Allowance | None = None) 
     rows = np.vstack([trace, positive, total])
     offset = np.zeros(len(rows))
     offset[0] = 1.0
-    x = maximize_margin(rows, offset, [n] * (m + 1), 1, allowance.left)
+    x = maximize_margin(rows, offset, [n] * (m + 1), begun, 1)
     if x is None or x[-1] <= 0:
         return None
     return unpack(x[:-1].reshape(m, size), n)

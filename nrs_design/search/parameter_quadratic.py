@@ -9,18 +9,19 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ParameterQuadratic
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import decreases, time_unit
 from nrs_design.search.rounding import digits, unscale
 from nrs_design.search.sdp import (
+    begin,
     maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
 )
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ def _solve(pairs: Array, rate: float, allowance: Allowance) -> Array | None:
     n, unit = pairs.shape[-1], time_unit(pairs, Time.CONTINUOUS)
     unknowns, blocks = n * (n + 1) + 1, 4 + 3 * len(pairs)
     cost = program_cost(unknowns, unknowns, [(n, unknowns)] * blocks)
-    allowance.take(cost, f"a program of {unknowns} unknowns and {blocks} blocks")
+    begun = begin(allowance, cost, f"a program of {unknowns} unknowns and {blocks} blocks")
     pairs, rate = np.ldexp(pairs, unit), float(np.ldexp(rate, unit))
     basis, identity = symmetric_basis(n), pack(np.eye(n))
     size = len(basis)
@@ -78,9 +79,7 @@ def _solve(pairs: Array, rate: float, allowance: Allowance) -> Array | None:
         add_cone(None, at_high, 1.0, 0.0)
         add_cone(at_high, at_low, 1.0, 0.0)
     sizes = [n] * len(rows)
-    x = maximize_margin(
-        np.vstack(rows), np.concatenate(constants), sizes, time_limit=allowance.left
-    )
+    x = maximize_margin(np.vstack(rows), np.concatenate(constants), sizes, begun)
     if x is None or x[-1] <= 0:
         return None
     return np.tensordot(x[:-1].reshape(2, size), basis, axes=1)

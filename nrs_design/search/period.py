@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.cycle import growing_cycles
@@ -22,6 +21,7 @@ from nrs_design.search.graph import Cycle, Graph
 from nrs_design.search.rounding import digits
 from nrs_design.search.walk import growing_walks
 from nrs_design.search.words import growing_words
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 Signal = tuple[Cycle, Array]
@@ -35,8 +35,11 @@ MAX_DOUBLED = 8
 CHANGES = (1, 2, 4, 8, -1, -2, -4, -8)
 ROUNDS = 40
 LONGEST_STEPS = 2000
-# About so many times are looked at to refine those of one cycle.
+# About so many times are looked at to refine those of one cycle; work for each jump of each look,
+# and for each mode in each step of a greedy signal.
 LOOKS = 600
+PER_LOOK = 4e-5
+PER_GREEDY = 8e-6
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 
 
@@ -46,7 +49,7 @@ def search_period(family: Family) -> Candidates[UnstablePeriod]:
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice for another signal.
+        If work or memory do not suffice for another signal.
     """
     system, allowance = family.system, family.allowance
     if system.time is Time.DISCRETE and system.switching.is_arbitrary:
@@ -78,7 +81,8 @@ def _signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) -> Iter
         times = graph.admissible(cycle, start)
         if graph.growth(cycle, times) > 0:
             yield cycle, times
-        allowance.take(graph.cost(LOOKS * len(cycle)), "refining a cycle")
+        looks = LOOKS * len(cycle)
+        allowance.take(Cost(graph.cost(looks).work + PER_LOOK * looks), "refining a cycle")
         better = refine(graph, cycle, times)
         if graph.growth(cycle, better) > 0:
             yield cycle, better
@@ -89,6 +93,7 @@ def _longer_signals(system: SwitchedSystem, graph: Graph, allowance: Allowance) 
     if system.time is Time.DISCRETE:
         yield from growing_walks(graph, allowance)
     elif system.switching.is_arbitrary:
+        allowance.charge(PER_GREEDY * GREEDY_STEPS * len(graph.flows.matrices))
         yield from _greedy_signals(graph)
     else:
         walks = growing_walks(graph, allowance)

@@ -18,7 +18,6 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import PeriodicQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.balance import own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions
@@ -33,7 +32,8 @@ from nrs_design.search.conewise_quadratic import (
 from nrs_design.search.decay import fastest_first, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.rounding import claims, digits, rate_at, round_form, round_rate
-from nrs_design.search.sdp import maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.search.sdp import begin, maximize_margin, pack, program_cost, symmetric_basis
+from nrs_design.work import Allowance, Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 # Where unknowns begin, and what a form takes from each of them.
@@ -191,9 +191,9 @@ class PeriodicProgram:
         Raises
         ------
         NotAffordableError
-            If time or memory do not suffice.
+            If work or memory do not suffice.
         """
-        allowance.take(*self.cost())
+        begun = begin(allowance, *self.cost())
         basis, N = symmetric_basis(self.n), self.clock.length
         own, lost = len(basis), self.per_step
         unknowns = N * (own + lost) + 1
@@ -219,9 +219,7 @@ class PeriodicProgram:
             before = item.step * own, rate**2 * item.before(basis)
             after = (item.step + 1) % N * own, -item.after(basis)
             add([before, after, *crossings], before[1].shape[-1], margin=1.0)
-        x = maximize_margin(
-            np.vstack(rows), np.concatenate(offsets), sizes, time_limit=allowance.left
-        )
+        x = maximize_margin(np.vstack(rows), np.concatenate(offsets), sizes, begun)
         if x is None or x[-1] <= 0:
             return None
         functions = [np.tensordot(c, basis, axes=1) for c in x[: N * own].reshape(N, own)]
@@ -313,7 +311,7 @@ def _crossing(last: Array, row: Array) -> Array:
 def _fastest(
     program: PeriodicProgram, limit: float, *, errors: bool
 ) -> Iterator[Candidate[PeriodicQuadratic]]:
-    """Yield functions for the largest rates that fit into half of the time."""
+    """Yield functions for the largest rates that fit into half of the budget."""
     half = program.family.allowance.part(0.5)
     try:
         for solution, claim in fastest_first(
@@ -340,7 +338,7 @@ def search_periodic_quadratic(family: Family) -> Candidates[PeriodicQuadratic]:
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     system, clock = family.system, family.system.clock
     if clock is None:

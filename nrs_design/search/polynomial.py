@@ -24,7 +24,6 @@ from nrs_design.proof.evidence.common_polynomial import (
 )
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import bisect_position
 from nrs_design.search.family import Family
@@ -32,11 +31,13 @@ from nrs_design.search.lifted import Lift, Pair, lift_family, orthonormal, produ
 from nrs_design.search.lmi import decreases
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import (
+    begin,
     maximize_margin,
     pack,
     program_cost,
     symmetric_basis,
 )
+from nrs_design.work import Allowance, Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 
@@ -142,7 +143,7 @@ def find_common_polynomial(
     rate : float
         alpha in 1/s, or rho per step.
     allowance : Allowance, optional
-        Time and memory; unlimited by default.
+        Work and memory; unlimited by default.
 
     Returns
     -------
@@ -152,10 +153,10 @@ def find_common_polynomial(
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     allowance = allowance or Allowance()
-    allowance.take(*polynomial_cost(lift.variables, len(lift.matrices), lift.degree))
+    begun = begin(allowance, *polynomial_cost(lift.variables, len(lift.matrices), lift.degree))
     m, K = lift.matrices.shape[:2]
     basis, identity = symmetric_basis(K), pack(np.eye(K))
     size, forms = len(basis), len(lift.vanishing)
@@ -164,9 +165,7 @@ def find_common_polynomial(
     bounds[:size, :size], bounds[size:, :size] = np.eye(size), -np.eye(size)
     blocks = decrease_blocks(lift, basis, time, rate, size, width)
     offset = np.concatenate([identity, np.zeros(size * (m + 1))])
-    x = maximize_margin(
-        np.vstack([bounds, *blocks]), offset, [K] * (m + 2), time_limit=allowance.left
-    )
+    x = maximize_margin(np.vstack([bounds, *blocks]), offset, [K] * (m + 2), begun)
     if x is None or x[-1] <= 0:
         return None
     return PolynomialSolution(np.tensordot(x[:size], basis, axes=1), vanishing_in(lift, x[size:-1]))

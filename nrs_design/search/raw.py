@@ -6,19 +6,20 @@ For conditions off the hot path: to load CVXPY takes longer than most proofs.
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.lmi import find_common_quadratic
-from nrs_design.search.sdp import program_cost
+from nrs_design.search.sdp import Begun, begin, program_cost
+from nrs_design.work import Allowance, Cost
 
 Matrices = NDArray[np.float64]
 
-# Seconds to load the library, and to bring one program into the form of the solver.
+# Work to load the library, and to bring one program into the form of the solver.
 LOADING = 2.0
 PER_PROGRAM = 0.05
 
@@ -37,7 +38,7 @@ def find_raw_quadratic(
     rate : float
         Decay rate in 1/s, or contraction per step.
     allowance : Allowance
-        Time and memory.
+        Work and memory.
 
     Returns
     -------
@@ -47,7 +48,7 @@ def find_raw_quadratic(
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     allowance.take(Cost(LOADING), "loading CVXPY")
     return find_common_quadratic(matrices, time, rate, _solve, allowance)
@@ -65,8 +66,8 @@ def _solve(
     m, n = matrices.shape[:2]
     unknowns = n * (n + 1) // 2 + 1
     cost = program_cost(unknowns, unknowns, [(n, unknowns)] * (m + 2))
-    cost = Cost(PER_PROGRAM + cost.seconds, cost.memory)
-    allowance.take(cost, f"a program of {unknowns - 1} unknowns and {m + 2} blocks")
+    cost = replace(cost, work=PER_PROGRAM + cost.work)
+    begun = begin(allowance, cost, f"a program of {unknowns - 1} unknowns and {m + 2} blocks")
     Q, t, identity = cp.Variable((n, n), symmetric=True), cp.Variable(), np.eye(n)
     conditions = [Q >> 0, Q << identity]
     for A in matrices:
@@ -79,8 +80,27 @@ def _solve(
     try:
         # That a solution may be inaccurate is no news: no solver is trusted.
         with warnings.catch_warnings(action="ignore"):
-            problem.solve(solver=cp.CLARABEL, max_threads=1, time_limit=allowance.left)
+            solve_by_cvxpy(problem, begun)
     except cp.SolverError:
         return None
     found = Q.value
     return found if found is not None and np.isfinite(found).all() else None
+
+
+def solve_by_cvxpy(problem: Any, begun: Begun) -> None:
+    """Solve a program of CVXPY by Clarabel, within the steps that it may make.
+
+    Raises
+    ------
+    cvxpy.SolverError
+        If the solver fails.
+    """
+    import cvxpy as cp
+
+    problem.solve(
+        solver=cp.CLARABEL,
+        max_threads=1,
+        max_iter=begun.most_steps,
+        time_limit=begun.seconds,
+    )
+    begun.end(problem.solver_stats.num_iters)

@@ -27,7 +27,7 @@ def search_rounds(family: Family) -> Candidates[UnstablePeriod]:
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice for longer signals.
+        If work or memory do not suffice for longer signals.
     """
     system, clock = family.system, family.system.clock
     if clock is None:

@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from math import inf
 
-from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
+from nrs_design.work import Allowance, Cost
 
 # Degrees that are tried before the rungs below, which are quicker than higher ones.
 FIRST_DEGREES = 2
@@ -70,6 +70,11 @@ class Facts:
     def may_lose_contact(self) -> bool:
         """Whether the system says how contact is lost."""
         return self.system.contact is not None
+
+    @property
+    def is_losable(self) -> bool:
+        """Whether the loss of contact must be covered."""
+        return self.system.is_losable
 
     @property
     def rounds(self) -> bool:
@@ -135,12 +140,14 @@ class Rung:
     only_quadratic : bool
         Left out once it is known that there is no common quadratic function.
     first : float
-        A degree that is predicted to take more seconds is tried with the higher ones, at last.
+        A degree that is predicted to take more work is tried with the higher ones, at last.
     coupled : bool
         What it finds of one axis says something about all axes that act on each other; other rungs
         are not tried where they do.
     clocked : bool
         It is for modes that take turns, and for no others.
+    in_kept_contact : bool
+        What it finds is refuted by growth in kept contact, or is such growth itself.
     """
 
     name: str
@@ -153,6 +160,18 @@ class Rung:
     first: float = inf
     coupled: bool = False
     clocked: bool = False
+    in_kept_contact: bool = True
+
+    def is_idle(self, known: frozenset[Shows]) -> bool:
+        """Tell whether it can find nothing more.
+
+        Parameters
+        ----------
+        known : frozenset of Shows
+            What has been shown.
+        """
+        without_quadratic = self.only_quadratic and Shows.NO_COMMON_QUADRATIC in known
+        return without_quadratic or (self.in_kept_contact and Shows.INSTABILITY_IN_CONTACT in known)
 
     def count_first(self, system: SwitchedSystem) -> int:
         """Return how many steps are made before the rungs below: of the first degrees, the quick.
@@ -165,7 +184,7 @@ class Rung:
         if self.cost is None or self.first == inf:
             return FIRST_DEGREES
         degrees = range(2, 2 + FIRST_DEGREES)
-        return sum(self.cost(system, d)[0].seconds <= self.first for d in degrees)
+        return sum(self.cost(system, d)[0].work <= self.first for d in degrees)
 
     def is_wanted(self, facts: Facts, method: Method) -> bool:
         """Tell whether to try it, given what was asked for."""

@@ -22,12 +22,12 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import SaturatedEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.balance import round_coordinates
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import round_rate, unscale
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
 
@@ -162,12 +162,12 @@ def search_saturated(
     system : SwitchedSystem
         Stable, in continuous time, with what saturates.
     allowance : Allowance
-        Time and memory.
+        Work and memory.
 
     Raises
     ------
     NotAffordableError
-        If time or memory do not suffice.
+        If work or memory do not suffice.
     """
     assert system.saturation is not None  # who asks has looked
     family, raw = Family.of(system), Problem.of(system)

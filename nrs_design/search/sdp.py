@@ -8,22 +8,31 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cache
-from math import inf
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.proof.noun import dataclass
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
-# Seconds per multiplication in the factorizations of a whole solution, and per program.
-PER_PRODUCT = 5e-9
-PER_PROGRAM = 2e-3
+# Work per program, per cone of it and per entry of its constraints; and in each step of the solver,
+# per entry of the blocks that cones add to its equations, and per multiplication in their
+# factorization.
+PER_PROGRAM = 1e-3
+PER_CONE = 5e-5
+PER_ENTRY = 5e-8
+PER_STEP = 1e-5
+PER_BLOCK_ENTRY = 7.5e-8
+PER_PRODUCT = 3e-11
+# A prediction counts so many steps; the solver makes fewer or more, and ever at most the last.
+STEPS = 15
+MOST_STEPS = 200
 # Bytes for each entry of the dense constraints (with the copies), and of the factors.
-PER_ENTRY = 24
-PER_FACTOR_ENTRY = 20
+BYTES_PER_ENTRY = 24
+BYTES_PER_FACTOR_ENTRY = 20
 
 
 def symmetric_basis(n: int) -> Array:
@@ -85,14 +94,71 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
     cones : iterable of (int, int)
         Order of each cone, and how many unknowns it depends on.
     """
-    rows, products, factor = 0.0, shared**3 / 3, shared**2 / 2
+    rows, entries, products, factor = 0.0, 0.0, shared**3 / 3, shared**2 / 2
+    count = 0
     for order, touched in cones:
         size = order * (order + 1) / 2
+        count += 1
         rows += size
+        entries += size**2
         products += size**3 / 3 + size * touched * (size + touched)
         factor += size * (size / 2 + touched)
-    memory = PER_ENTRY * rows * variables + PER_FACTOR_ENTRY * factor
-    return Cost(PER_PROGRAM + PER_PRODUCT * products, memory)
+    memory = BYTES_PER_ENTRY * rows * variables + BYTES_PER_FACTOR_ENTRY * factor
+    step = PER_STEP + PER_BLOCK_ENTRY * entries + PER_PRODUCT * products
+    built = PER_PROGRAM + PER_CONE * count + PER_ENTRY * rows * variables
+    return Cost(built + STEPS * step, memory, step)
+
+
+@dataclass(frozen=True, slots=True)
+class Begun:
+    """A program whose predicted work has been charged, and that a solver is to solve.
+
+    Parameters
+    ----------
+    allowance : Allowance
+        What may still be done.
+    per_step : float
+        Work of each step of the solver.
+    """
+
+    allowance: Allowance
+    per_step: float
+
+    @property
+    def most_steps(self) -> int:
+        """How many steps the solver may make: then it ends with what it has."""
+        more = self.allowance.left / self.per_step if self.per_step else MOST_STEPS
+        return STEPS + int(min(more, MOST_STEPS - STEPS))
+
+    @property
+    def seconds(self) -> float:
+        """After which the fuse blows."""
+        return self.allowance.fuse.left
+
+    def end(self, steps: int) -> None:
+        """Charge the steps that were made instead of those that were predicted."""
+        self.allowance.charge((steps - STEPS) * self.per_step)
+
+
+def begin(allowance: Allowance, cost: Cost, what: str) -> Begun:
+    """Charge the work that a program is predicted to take, if it fits.
+
+    Parameters
+    ----------
+    allowance : Allowance
+        What may still be done.
+    cost : Cost
+        As `program_cost` predicts it.
+    what : str
+        The program, in words.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    allowance.take(cost, what)
+    return Begun(allowance, cost.per_step)
 
 
 def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) -> Array | None:
@@ -103,7 +169,7 @@ def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) ->
     blocks : sequence of (ndarray, ndarray), shapes (m, m) and (N, m, m)
         A constant, and what every unknown adds to it.
     allowance : Allowance
-        Time and memory.
+        Work and memory.
 
     Returns
     -------
@@ -112,12 +178,12 @@ def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) ->
     """
     unknowns = len(blocks[0][1])
     cost = program_cost(unknowns, unknowns, [(len(constant), unknowns) for constant, _ in blocks])
-    allowance.take(cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
+    begun = begin(allowance, cost, f"a program of {unknowns} unknowns and {len(blocks)} blocks")
     return maximize_margin(
         np.concatenate([-pack(images).T for _, images in blocks]),
         np.concatenate([pack(constant) for constant, _ in blocks]),
         [len(constant) for constant, _ in blocks],
-        time_limit=allowance.left,
+        begun,
     )
 
 
@@ -125,8 +191,8 @@ def maximize_margin(
     rows: Array,
     offset: Array,
     sizes: Sequence[int],
+    begun: Begun,
     equalities: int = 0,
-    time_limit: float = inf,
 ) -> Array | None:
     """Maximize the last variable subject to ``offset - rows x`` in a product of cones.
 
@@ -138,10 +204,10 @@ def maximize_margin(
         Right-hand side.
     sizes : sequence of int
         Order of each cone.
+    begun : Begun
+        The program: how many steps the solver may make.
     equalities : int
         Number of equations.
-    time_limit : float
-        The solver ends after so many seconds, with what it has.
 
     Returns
     -------
@@ -159,7 +225,8 @@ def maximize_margin(
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     settings.max_threads = 1
-    settings.time_limit = time_limit
+    settings.max_iter = begun.most_steps
+    settings.time_limit = begun.seconds
     solution: Any = clarabel.DefaultSolver(
         sparse.csc_matrix((variables, variables)),
         objective,
@@ -168,5 +235,6 @@ def maximize_margin(
         cones,
         settings,
     ).solve()
+    begun.end(solution.iterations)
     x = np.asarray(solution.x, dtype=float)
     return x if x.shape == (variables,) and np.isfinite(x).all() else None

@@ -31,7 +31,10 @@ def merge_equal_modes(system: SwitchedSystem) -> SwitchedSystem:
     if len(first) == len(system.modes):
         return system
     modes = tuple(system.modes[index] for index in first.values())
-    return replace(system, modes=modes, channels=(), outputs=(), saturation=None)
+    flights = system.flights
+    if flights is not None:
+        flights = flights.among(mode.name for mode in modes)
+    return replace(system, modes=modes, channels=(), outputs=(), saturation=None, flights=flights)
 
 
 def stand_in(name: str | None, system: SwitchedSystem, merged: SwitchedSystem) -> str | None:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import nearly
+
+if TYPE_CHECKING:
+    from nrs_design.search.certification import Certification
+
+    Found = Certification | Verdict | str
 
 Number = TypeVar("Number", int, Fraction)
 
@@ -16,10 +21,13 @@ Number = TypeVar("Number", int, Fraction)
 class Tried(Generic[Number]):
     """The verdict at every number that was tried, or why it makes no system.
 
+    What is refuted in kept contact counts as refuted; `refuted_in` says so.
+
     Parameters
     ----------
     decide : callable
-        Gives the verdict at a number, or says why the number makes no system.
+        Gives the verdict at a number, alone or with all that was found, or says why the number
+        makes no system.
     progress : callable
         Told each number before it is decided, and what is known by then.
     what, unit : str
@@ -28,26 +36,37 @@ class Tried(Generic[Number]):
 
     def __init__(
         self,
-        decide: Callable[[Number], Verdict | str],
+        decide: Callable[[Number], Found],
         progress: Progress = silent,
         what: str = "",
         unit: str = "",
     ) -> None:
-        self._decide: Callable[[Number], Verdict | str] = decide
+        self._decide: Callable[[Number], Found] = decide
         self._progress = progress
         self._what, self._unit = what, unit
         self._found: dict[Number, Verdict | str] = {}
+        self._refuted_in: dict[Number, str] = {}
 
     def __call__(self, number: Number) -> Verdict | str:
         """Return what is found at a number; it is decided if it was not yet."""
         if number not in self._found:
             self._progress(f"{self._what} {self._text(number)}{self._known()}")
-            self._found[number] = self._decide(number)
+            self.remember(number, self._decide(number))
         return self._found[number]
 
-    def remember(self, number: Number, found: Verdict | str) -> None:
+    def remember(self, number: Number, found: Found) -> None:
         """Keep what is known of a number without a decision."""
-        self._found[number] = found
+        if isinstance(found, str):
+            self._found[number] = found
+            return
+        self._found[number] = found.verdict
+        if found.refuted_in is not None:
+            self._found[number] = Verdict.REFUTED
+            self._refuted_in[number] = found.refuted_in
+
+    def refuted_in(self, number: Number | None) -> str:
+        """Say in which contact alone there is a refutation at a number; empty for any contact."""
+        return "" if number is None else self._refuted_in.get(number, "")
 
     def is_proved(self, number: Number) -> bool:
         """Tell whether there is a proof at a number."""

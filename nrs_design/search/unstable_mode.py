@@ -15,13 +15,13 @@ from nrs_design.proof.evidence.unstable_mode import (
 )
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.search.allowance import Cost
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
+from nrs_design.work import Cost
 
 # Modes nearer to the stability limit than this, relative to their norm, get an exact test first.
 SUSPICION = 1e-7
-# Exact tests of a mode that are predicted to take no more seconds are always made.
+# Exact tests of a mode that are predicted to take no more work are always made.
 ALWAYS_TESTED = 0.05
 
 
@@ -33,20 +33,28 @@ def examine_suspicious_modes(family: Family) -> Candidates[UnstableMode]:
         for mode, ok in zip(family.system.modes, seems_stable(family), strict=True)
         if not ok and mode.name in lasting
     ]
-    return (yield from _unstable_modes(suspicious, family))
+    return (yield from unstable_modes(suspicious, family))
 
 
 def examine_every_mode(family: Family) -> Candidates[UnstableMode]:
     """Test exactly every mode that need never be left."""
     lasting = family.system.lasting_modes()
-    outcome = yield from _unstable_modes(lasting, family)
+    outcome = yield from unstable_modes(lasting, family)
     if outcome and (left := len(family.system.modes) - len(lasting)):
         outcome += f"; {left} not tested, they must be left and may be unstable"
     return outcome
 
 
-def _unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[UnstableMode]:
-    """Decide exactly, mode by mode; in the end say how many are stable, if all are."""
+def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[UnstableMode]:
+    """Decide exactly, mode by mode; in the end say how many are stable, if all are.
+
+    Parameters
+    ----------
+    modes : iterable of Mode
+        Each may be in force for ever.
+    family : Family
+        With the time and what is left of the budget.
+    """
     time, count, skipped, found = family.system.time, 0, 0, False
     for mode, fits in affordable(modes):
         if not fits:
@@ -54,7 +62,7 @@ def _unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[Unstabl
             continue
         count += 1
         cost = exact_test_cost(mode.A)
-        if cost.seconds > ALWAYS_TESTED:
+        if cost.work > ALWAYS_TESTED:
             family.allowance.take(cost, f"the exact test of mode {mode.name}")
         if not is_stable(mode.A, time):
             evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))

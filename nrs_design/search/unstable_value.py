@@ -22,6 +22,7 @@ from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.search.mixture import search_mixture
 from nrs_design.search.period import search_period
+from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,9 @@ GOLDEN_STEPS = 40
 GOLDEN = (5**0.5 - 1) / 2
 # Shorter shares first: they make shorter numbers in the certificate.
 DENOMINATORS = (1, 4, 16, 64, 256, 2**12, 2**20, 2**32, 2**48)
+# Work for the eigenvalues of a mode at a value, and per multiplication in them.
+PER_MATRIX = 5e-6
+PER_PRODUCT = 3e-8
 # What rounding hides, relative to the size of the matrices.
 SLACK = 1e-9
 # Shares at which switching is looked at: the ends have no mixture rung of their own.
@@ -48,6 +52,7 @@ def search_value(family: Family) -> Candidates[UnstableValue]:
     lows, highs = _ends(system, matrices)
     count = max(COARSE_GRID, min(GRID, EVALUATIONS // len(lows)))
     shares = np.linspace(0, 1, count)
+    family.allowance.take(_cost(len(lows), count, lows.shape[-1]), f"looking at {count} values")
     found = False
     for k, start in _peaks(lows, highs, shares, system.time):
         share, growth = _refined(lows[k], highs[k], (start, float(shares[1])), system.time)
@@ -71,6 +76,11 @@ def search_switching_at_values(family: Family) -> Candidates[UnstableValue]:
             yield from _at(share, search_mixture(at_share))
         yield from _at(share, search_period(at_share))
     return "nothing grows at the values tried"
+
+
+def _cost(pairs: int, shares: int, order: int) -> Cost:
+    """Predict what looking at all pairs of ends takes, at shares and closely at the peaks."""
+    return Cost((pairs * shares + 2 * PEAKS * GOLDEN_STEPS) * (PER_MATRIX + PER_PRODUCT * order**3))
 
 
 def _at(

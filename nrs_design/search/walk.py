@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, Cost
 from nrs_design.search.balance import mean_norm_coordinates
 from nrs_design.search.flows import spectral_radii
 from nrs_design.search.graph import Array, Cycle, Graph
+from nrs_design.work import Allowance, Cost
 
 Indices = NDArray[np.int64]
 
@@ -45,6 +45,7 @@ def growing_walks(graph: Graph, allowance: Allowance) -> Iterator[tuple[Cycle, A
         walks = beam.extended(walks.best(beam.growth(walks), BEAM))
         if not len(walks.jumps):
             return
+        allowance.charge(graph.cost(len(walks.jumps)).work)
         rates, closing = beam.rates(walks)
         closable = np.flatnonzero(rates > -np.inf)
         for k in closable[np.argsort(-rates[closable], kind="stable")][:CLOSED]:

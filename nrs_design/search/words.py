@@ -8,13 +8,13 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.search.allowance import Allowance, Cost
+from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
 
 MAX_WORDS = 20_000
 MAX_WORD_LENGTH = 16
-# Seconds for the eigenvalues of a matrix, and per multiplication in them.
+# Work for the eigenvalues of a matrix, and per multiplication in them.
 PER_MATRIX = 5e-6
 PER_PRODUCT = 3e-8
 
@@ -27,7 +27,7 @@ def growing_words(matrices: Array, allowance: Allowance) -> Iterator[tuple[tuple
     matrices : ndarray, shape (m, n, n)
         The modes.
     allowance : Allowance
-        Words of a length for which time or memory do not suffice end the search.
+        Words of a length for which work or memory do not suffice end the search.
 
     Yields
     ------

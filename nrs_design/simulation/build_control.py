@@ -36,7 +36,7 @@ def build_control(
         What is touched in that scenario.
     """
     first = next(iter(spec.controllers))
-    thresholds = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
+    thresholds = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
     if written is None:
         return by_logic(spec) if thresholds else _usual(spec, first)
     if written.fixed is not None:
@@ -126,8 +126,8 @@ def _by_contact(contacts: Mapping[str, str], surfaces: Sequence[Surface]) -> Ite
 def by_logic(spec: InteractionDesignSpec) -> Control:
     """Return the thresholds and timers of the mode logic of a spec."""
     assert spec.mode_logic is not None
-    assert spec.mode_logic.type == "thresholds"
-    logic = ThresholdLogic.of(spec.mode_logic)
+    assert spec.mode_logic.thresholds is not None
+    logic = ThresholdLogic.of(spec.mode_logic.thresholds)
     switches = (
         Switch(source, target, tuple(Condition(signal, *ends) for signal, ends in bounds.items()))
         for source, target, bounds in logic.conditions()

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from nrs_design.errors import DataError
-from nrs_design.models.contact import HuntCrossley
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractContactLaw, Element
 from nrs_design.models.plant import Plant
@@ -273,15 +272,9 @@ _PICKS: Mapping[str, Pick] = {
 def _law(
     written: EnvironmentSpec, environment: Environment, pick: Pick
 ) -> tuple[AbstractContactLaw, Element | None]:
-    """Return the law with every parameter picked from its range; a power law is not linear."""
-    if written.model == "hunt-crossley":
-        tangent = written.exact_at_pivot()
-        about = written.about.si
-        if written.lever_arm is not None:
-            about /= written.lever_arm.si
-        exponent = Interval(written.exponent.nominal, *written.exponent.range)
-        k, b = pick(tangent["stiffness"]), pick(tangent["damping"])
-        return HuntCrossley.through(k, b, pick(exponent), about), None
+    """Return the law with every parameter picked from its range; only a linear one has parts."""
+    if environment.nonlinear is not None:
+        return environment.nonlinear.drawn(written.drawn_at_pivot(pick)), None
     law = environment.law(*(pick(interval) for interval in environment.ranges))
     return law, law.element
 

@@ -132,7 +132,7 @@ def _differences(
         yield "contact is lost or made, and the proof takes it for kept"
     yield from _surroundings(spec, scenario)
     control = scenario.control
-    thresholds = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
+    thresholds = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
     # Who stays keeps all rules but one: that a controller has to be left.
     left = spec.switching.longest_dwell_time is not None
     changes = bool(control.switches or control.schedule)

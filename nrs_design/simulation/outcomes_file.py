@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from nrs_design.errors import DataError, OutputError
 from nrs_design.files import open_regular
@@ -24,8 +24,9 @@ _NAMES = {
     "commands_sha256": "recorded commands, by their SHA-256",
     "runs": "number of runs",
 }
-# Longer files are none of ours: a million runs of a few hundred letters.
-_MOST = 2**30
+# A run is a few hundred letters.
+_LONGEST = 2**20
+MOST_RUNS = 1_000_000
 
 
 def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
@@ -49,32 +50,48 @@ def read_outcomes(path: Path, head: Mapping[str, Any]) -> list[Outcome]:
         return []
     try:
         with open_regular(path) as stream:
-            content = stream.read(_MOST + 1)
+            return _read(stream, path, head)
     except OSError as error:
         message = f"cannot be read ({error.strerror})"
         raise DataError(message, path=path, remedy="name another file") from error
-    if not content.startswith(_BEGINNING) or len(content) > _MOST:
-        raise DataError("keeps no runs of a study", path=path, remedy="name another file")
-    lines = content.split(b"\n")[:-1]
-    if not lines:
-        message = "is cut off within its first line, so it keeps no runs"
-        raise DataError(message, path=path, remedy="delete it, or name another file")
-    try:
-        first, *rest = [json.loads(line) for line in lines]
-        outcomes = [Outcome(**line) for line in rest]
-        known = isinstance(first, dict) and all(o.peaks.keys() == PEAKS.keys() for o in outcomes)
-        known &= all(isinstance(o.uncovered, list) for o in outcomes)
-        known &= [one.index for one in outcomes] == list(range(len(outcomes)))
     except (ValueError, TypeError, AttributeError, RecursionError) as error:
         message = f"keeps no runs of a study that can be read ({error})"
         raise DataError(message, path=path, remedy=_ELSE) from None
-    if not known:
-        raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)
+
+
+def _read(stream: BinaryIO, path: Path, head: Mapping[str, Any]) -> list[Outcome]:
+    """Read line by line, and not one more than the study has runs: so long is a file of ours."""
+    if stream.read(len(_BEGINNING)) != _BEGINNING:
+        raise DataError("keeps no runs of a study", path=path, remedy="name another file")
+    stream.seek(0)
+    lines = _whole_lines(stream)
+    line = next(lines, None)
+    if line is None:
+        message = "is cut off within its first line, so it keeps no runs"
+        raise DataError(message, path=path, remedy="delete it, or name another file")
+    first = json.loads(line)
+    if not isinstance(first, dict) or not _header(head).keys() <= first.keys():
+        raise ValueError("its first line does not say of what they are")
     for key, value in _header(head).items():
         if first.get(key) != value:
             message = f"was begun with {_difference(key, first.get(key), value)}"
             raise DataError(message, path=path, remedy=_ELSE)
+    outcomes: list[Outcome] = []
+    for line in lines:
+        one = Outcome(**json.loads(line))
+        known = one.peaks.keys() == PEAKS.keys() and isinstance(one.uncovered, list)
+        if not known or one.index != len(outcomes) or one.index >= head.get("runs", MOST_RUNS):
+            raise DataError("does not keep the runs of a study in order", path=path, remedy=_ELSE)
+        outcomes.append(one)
     return outcomes
+
+
+def _whole_lines(stream: BinaryIO) -> Iterator[bytes]:
+    while line := stream.readline(_LONGEST + 1):
+        if len(line) > _LONGEST:
+            raise ValueError(f"a line is longer than {_LONGEST} bytes")
+        if line.endswith(b"\n"):
+            yield line
 
 
 def _difference(key: str, was: object, now: object) -> str:

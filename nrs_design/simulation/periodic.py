@@ -48,7 +48,12 @@ class PeriodicRun:
     radius: float
 
 
-def periodic_run(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -> PeriodicRun:
+def periodic_run(
+    system: SwitchedSystem,
+    steps: Steps,
+    edges: Sequence[int] = (),
+    eigenvalue: float | None = None,
+) -> PeriodicRun:
     """Simulate a periodic signal until its growth can be seen.
 
     The run ends when the state has grown a hundredfold, but not before three periods (if that is
@@ -62,11 +67,16 @@ def periodic_run(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()
         Mode and time in it, over one period.
     edges : sequence of int
         For each step, which reset to the next mode is taken; empty where there is no choice.
+    eigenvalue : float, optional
+        Of one period: the run begins in the direction of the nearest one; by default, in that of
+        the largest.
     """
     legs = _legs(system, steps, edges)
     monodromy = reduce(lambda product, leg: leg.whole @ product, legs, np.eye(system.order))
     values, vectors = np.linalg.eig(monodromy)
     leading = int(np.abs(values).argmax())
+    if eigenvalue is not None:
+        leading = int(np.abs(values - eigenvalue).argmin())
     radius = float(np.abs(values[leading]))
     initial = vectors[:, leading].real
     initial = initial / np.linalg.norm(initial)

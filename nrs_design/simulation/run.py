@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from nrs_design.simulation.time_response import TimeResponse
@@ -33,7 +34,13 @@ LEFT_OUT_ON_LINKS = (
     "springs and counter-masses of a balance, and tissue that couples the axes",
     "gain and time constant of the motors other than the nominal ones",
 )
-ESTIMATOR_LEFT_OUT = "the estimator of the mode logic, which would choose the controller"
+# Of a mode logic, by its type.
+LOGIC_LEFT_OUT: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "thresholds": (),
+        "estimator": ("the estimator of the mode logic, which would choose the controller",),
+    }
+)
 ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
 
 

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Annotated, Any
 
 from pydantic import Field, WithJsonSchema
 
-from nrs_design.spec import kinds
+from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
-from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import quantity_schema, read_quantity
 
 HIGHEST_DEGREE = 64
 # A spec may come from anyone: who runs the command may allow more, the spec may not.
-LONGEST_BUDGET = 600
+LARGEST_BUDGET = 600
+_BUDGET_SCHEMA: dict[str, Any] = {
+    "type": "number",
+    "exclusiveMinimum": 0,
+    "maximum": LARGEST_BUDGET,
+}
 _DEGREE_SCHEMA: dict[str, Any] = {"type": "integer", "minimum": 2, "maximum": HIGHEST_DEGREE}
 
 
@@ -29,12 +33,18 @@ def _read_degree(value: object) -> int:
     return int(number)
 
 
-def _read_budget(value: object) -> Quantity:
-    budget = read_quantity(value, kinds.SEARCH_BUDGET, positive=True)
-    if budget.exact > LONGEST_BUDGET:
+def _read_budget(value: object) -> Fraction:
+    if isinstance(value, str) and value.strip().endswith("s"):
         raise fault(
-            f"{budget.text!r} is beyond {LONGEST_BUDGET} s",
-            "write less here; the option --budget allows more",
+            f"{quoted(value)} is a time, and a budget counts work, which is the same on every "
+            "machine",
+            "write a number without a unit, such as 30; one of work takes about a second",
+        )
+    budget = read_exact(value)
+    if not 0 < budget <= LARGEST_BUDGET:
+        raise fault(
+            f"{value} is not above 0 and at most {LARGEST_BUDGET}",
+            "write such a number here; the option --budget allows more",
         )
     return budget
 
@@ -47,10 +57,10 @@ class CertificationSpec(SpecModel):
         description="highest degree of a polynomial Lyapunov function, even, at most 64; default: "
         "as high as the budget allows",
     )
-    budget: Annotated[
-        Quantity | None,
-        ReadBy(_read_budget),
-        WithJsonSchema(quantity_schema(kinds.SEARCH_BUDGET)),
-    ] = Field(
-        default=None, description="time for the search, at most 600 s; default 60 s, such as '30 s'"
+    budget: Annotated[Fraction | None, ReadBy(_read_budget), WithJsonSchema(_BUDGET_SCHEMA)] = (
+        Field(
+            default=None,
+            description="work of the search, counted in units of about a second, the same on every "
+            "machine; at most 600, default 60",
+        )
     )

@@ -21,6 +21,7 @@ from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, Spri
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import Switch
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Decay,
     Duration,
@@ -124,6 +125,11 @@ class AbstractControllerSpec(SpecModel):
         """Where it takes an offset of its command from; None where there is no such offset."""
         return None
 
+    @property
+    def displayed(self) -> Quantity | Fraction | None:
+        """The impedance that it is to display, or that over torque/velocity; None without one."""
+        return None
+
     def gains(self) -> dict[str, GainSpec]:
         """Return the gains that the design may choose, or that may be retuned, by name."""
         values = ((name, getattr(self, name)) for name in type(self).model_fields)
@@ -171,6 +177,12 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         default_factory=CostWeights, description="weights of the design cost, no unit"
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
+
+    @property
+    def displayed(self) -> Quantity | Fraction:
+        """As its spec says; torque over velocity itself by default."""
+        ratio = self.desired_impedance_ratio
+        return self.desired_impedance or (Fraction(1) if ratio is None else ratio)
 
     @field_validator("Kt")
     @classmethod

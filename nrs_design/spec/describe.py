@@ -10,7 +10,6 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
 from nrs_design.spec.controllers import (
     ControllerSpec,
-    ImpedanceControllerSpec,
     contact_names,
 )
 from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
@@ -27,7 +26,7 @@ from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import SwitchingSpec
-from nrs_design.spec.units import BASE_UNITS
+from nrs_design.spec.units import BASE_UNITS, THESIS_COMMAND
 
 if TYPE_CHECKING:
     from nrs_design.spec.load import Spec
@@ -138,7 +137,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
 
 
 def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
-    if actuator.command != "rpm":
+    if actuator.command != THESIS_COMMAND:
         yield Line("actuator.command", actuator.command, "", "")
     for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
         written = getattr(actuator, name)
@@ -244,8 +243,8 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
         return
     yield Line(f"{name}.environment", controller.environment, "", "")
     yield Line(f"{name}.contacts", ", ".join(contact_names(controller.contacts)), "", "")
-    if controller.type == "impedance":
-        yield _desired_impedance(f"{name}.desired_impedance", controller, limits)
+    if controller.displayed is not None:
+        yield _desired_impedance(f"{name}.desired_impedance", controller.displayed, limits)
     for key in type(controller).model_fields:
         if key not in _LISTED:
             yield from _own_field(f"{name}.{key}", getattr(controller, key))
@@ -273,12 +272,11 @@ def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Line]:
         yield from describe_model(goals, name)
 
 
-def _desired_impedance(name: str, controller: ImpedanceControllerSpec, limits: LimitsSpec) -> Line:
-    if controller.desired_impedance is not None:
-        return _row(name, controller.desired_impedance, kinds.IMPEDANCE)
-    ratio = controller.desired_impedance_ratio
-    written = "torque/velocity" if ratio is None else f"{exact_text(ratio)} * torque/velocity"
-    value = float(1 if ratio is None else ratio) * limits.torque.si / limits.velocity.si
+def _desired_impedance(name: str, displayed: Quantity | Fraction, limits: LimitsSpec) -> Line:
+    if isinstance(displayed, Quantity):
+        return _row(name, displayed, kinds.IMPEDANCE)
+    written = "torque/velocity" if displayed == 1 else f"{exact_text(displayed)} * torque/velocity"
+    value = float(displayed) * limits.torque.si / limits.velocity.si
     return Line(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
 

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec.plausible import doubt_sizes
 from nrs_design.spec.quantity import is_less
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.load import Spec
 
-# Beyond a lever arm in m, a time constant in s, and a force that a motion begins with, in limits of
-# the torque, another unit was probably meant.
-_LONGEST, _SLOWEST, _HARDEST = 2, 1, 10
+# Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
+_HARDEST = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +40,7 @@ class Doubt:
 
 def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     """Yield what is doubtful about a spec, before anything is designed."""
+    yield from (Doubt(at, text) for at, text in doubt_sizes(spec))
     if spec.kind != "interaction-design":
         return
     for at, item in spec.identified.items():
@@ -56,7 +57,6 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
                 f"environment {name} is touched by no controller, so nothing is shown about it "
                 "(list it in the contacts of a controller, or remove it)",
             )
-    yield from _doubt_units(spec)
     yield from _doubt_thresholds(spec)
     yield from _doubt_command(spec)
     yield from _doubt_initial_force(spec)
@@ -64,28 +64,11 @@ def doubt_spec(spec: Spec) -> Iterator[Doubt]:
     yield from _doubt_continuous(spec)
 
 
-def _doubt_units(spec: InteractionDesignSpec) -> Iterator[Doubt]:
-    """Yield what is far beyond the size or slowness of a surgical robot."""
-    slowness = spec.actuator.time_constant
-    if slowness.range[1].exact > _SLOWEST:
-        yield Doubt(
-            ("actuator", "time_constant"),
-            f"the motor needs {slowness.nominal.text} to follow: is that its unit?",
-        )
-    for name, environment in spec.environments.items():
-        arm = environment.lever_arm
-        if arm is not None and arm.exact > _LONGEST:
-            yield Doubt(
-                ("environments", name, "lever_arm"),
-                f"the lever arm of {name} is {arm.text}: is that its unit? Stiffness and damping "
-                "at the pivot grow with its square",
-            )
-
-
 def _doubt_thresholds(spec: InteractionDesignSpec) -> Iterator[Doubt]:
     """Yield thresholds that the torque reaches only where it is too large already."""
-    logic, limit = spec.mode_logic, spec.limits.torque
-    if logic is None or logic.type != "thresholds":
+    logic = None if spec.mode_logic is None else spec.mode_logic.thresholds
+    limit = spec.limits.torque
+    if logic is None:
         return
     for index, switch in enumerate(logic.switches, 1):
         torque = switch.torque

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from typing import Annotated, ClassVar, Literal, Self, TypeVar
 
@@ -121,6 +122,16 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
             )
             for name, value in self.parameters().items()
         }
+
+    def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
+        """Return one number for each parameter, and whatever else the law takes, for a rotation.
+
+        Parameters
+        ----------
+        pick : callable
+            Takes a range and returns a number within; asked in the order of the parameters.
+        """
+        return {name: pick(interval) for name, interval in self.exact_at_pivot().items()}
 
     def at_pivot(self) -> dict[str, RangedQuantity]:
         """Return the parameters for a rotation as quantities, for people to read."""
@@ -276,6 +287,19 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
     def is_spring(self) -> bool:
         """Whether there is no damping."""
         return not any(q.exact for q in (self.damping.nominal, *self.damping.range))
+
+    def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
+        """Return the tangent, the exponent, and the angle at which the tangent is given.
+
+        Parameters
+        ----------
+        pick : callable
+            Takes a range and returns a number within; asked in the order of the parameters.
+        """
+        tangent = super().drawn_at_pivot(pick)
+        arm = 1.0 if self.lever_arm is None else self.lever_arm.si
+        exponent = pick(Interval(self.exponent.nominal, *self.exponent.range))
+        return {**tangent, "exponent": exponent, "about": self.about.si / arm}
 
     @property
     def linear_model(self) -> str:

@@ -53,6 +53,20 @@ class EstimatorSpec(SpecModel):
         description="shortest time in s from one change of the environment to the next"
     )
 
+    @property
+    def thresholds(self) -> None:
+        """There are none that a program could follow."""
+        return
+
+    def check_names(self, controllers: Mapping[str, ControllerSpec]) -> None:
+        """Accept any names: it has none of its own."""
+
+    def rules_among(
+        self, controllers: Mapping[str, ControllerSpec], environments: Mapping[str, EnvironmentSpec]
+    ) -> SwitchingSpec:
+        """Return the rules that it keeps among them; as `rules_of` says."""
+        return decide(self, controllers, environments).rules()
+
 
 @dataclass(frozen=True, slots=True)
 class EstimatorDecision:

@@ -191,7 +191,7 @@ def _check_dwell_times(spec: AbstractInteractionSpec) -> None:
 
 def _check_scenarios(spec: AbstractInteractionSpec) -> None:
     """Refuse scenarios that do not fit the rest of the spec."""
-    logic = spec.mode_logic is not None and spec.mode_logic.type == "thresholds"
+    logic = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
     given = (spec.controllers, spec.environments, spec.limits.velocity)
     robot = spec.coupling is not None and spec.coupling.robot is not None
     all_of(

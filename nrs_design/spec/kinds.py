@@ -28,7 +28,6 @@ DURATION = QuantityKind(
     "0.0351 s",
     dict.fromkeys(("Hz", "1/s"), "that is a frequency: write the time, one over it"),
 )
-SEARCH_BUDGET = QuantityKind("a budget of time", ("s",), "60 s")
 DWELL_TIME = QuantityKind("a dwell time", ("s",), "2.76 s")
 DERIVATIVE_GAIN = QuantityKind(
     "a derivative gain",

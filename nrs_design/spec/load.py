@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from dataclasses import field
 from functools import cache
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.robot import RobotSpec
     from nrs_design.spec.switched_system import SwitchedSystemSpec
 
-    Spec = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
+    Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
 SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 
@@ -73,6 +74,13 @@ class LoadedSpec:
     def root(self) -> Node:
         """The text as a tree, in which everything has its line and column."""
         return self.parsed or parse_document(self.text, self.path)
+
+    @property
+    def robot(self) -> Path | None:
+        """The file of the robot whose bounds it names; None if it names none."""
+        coupling = self.spec.coupling if self.spec.kind == "interaction-design" else None
+        named = None if coupling is None else coupling.robot
+        return None if named is None else self.path.parent / named
 
     def place(self, *at: str | int) -> Position:
         """Line and column of a key or an item, or of what holds it if it is not written out."""
@@ -136,19 +144,19 @@ def parse_spec(text: str, path: Path | None = None) -> Spec:
     return _validate(*parse_with_faults(text, path), path)
 
 
+# Where the model of each kind is.
+_MODELS = {
+    "interaction-design": ("interaction", "InteractionDesignSpec"),
+    "robot": ("robot", "RobotSpec"),
+    "switched-system": ("switched_system", "SwitchedSystemSpec"),
+}
+
+
 def model_of(kind: str) -> type[Spec]:
     """Return the model of a kind of spec; a command pays only for the kind that it reads."""
-    if kind == "interaction-design":
-        from nrs_design.spec.interaction import InteractionDesignSpec
-
-        return InteractionDesignSpec
-    if kind == "robot":
-        from nrs_design.spec.robot import RobotSpec
-
-        return RobotSpec
-    from nrs_design.spec.switched_system import SwitchedSystemSpec
-
-    return SwitchedSystemSpec
+    module, name = _MODELS[kind]
+    found: type[Spec] = getattr(import_module(f"nrs_design.spec.{module}"), name)
+    return found
 
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:

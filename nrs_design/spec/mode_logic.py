@@ -9,8 +9,8 @@ from pydantic import Discriminator
 
 from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.environment_estimator import EstimatorSpec, decide
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.environment_estimator import EstimatorSpec
+from nrs_design.spec.faults import fault
 from nrs_design.spec.switching import SwitchingSpec
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 
@@ -39,9 +39,7 @@ def rules_of(
     PydanticCustomError
         If it does not fit.
     """
-    if logic.type == "estimator":
-        return decide(logic, controllers, environments).rules()
-    return logic.rules()
+    return logic.rules_among(controllers, environments)
 
 
 def check_kept(
@@ -65,11 +63,7 @@ def check_kept(
     """
     if logic is None:
         return
-    if logic.type == "thresholds":
-        for name in logic.controllers:
-            if name not in controllers:
-                remedy = did_you_mean(name, controllers)
-                raise fault(f"there is no controller {name!r}", remedy, "mode_logic")
+    logic.check_names(controllers)
     kept = rules_of(logic, controllers, environments)
     if rules.names_contacts != kept.names_contacts and not rules.is_arbitrary:
         raise fault("the rules are not about what the mode logic decides", _REMEDY, "switching")

@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.plausible import unusual
 from nrs_design.spec.quantity import Quantity
 
 MAX_SOURCES = 1000
@@ -65,15 +66,15 @@ class IdentifiedSpec(SpecModel):
     )
     accept_doubt: Title | None = Field(
         default=None,
-        description="why the values are used despite the doubts: one line, which is printed with "
-        "every proof; the gate then passes",
+        description="why the values are used despite the doubts, or without any despite their "
+        "unusual sizes: one line, which is printed with every proof; the gate then passes",
     )
 
     @model_validator(mode="after")
     def _check_acceptance(self) -> Self:
         if self.accept_doubt is None:
             return self
-        if not self.doubts:
+        if not self.doubts and not unusual(self):
             raise fault("there are no doubts to accept", "remove accept_doubt", "accept_doubt")
         if not self.accept_doubt.strip():
             raise fault("no reason is given", "say in one line why", "accept_doubt")

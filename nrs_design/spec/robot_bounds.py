@@ -24,8 +24,8 @@ from nrs_design.spec.fields import HASH_PATTERN, NAME_PATTERN
 from nrs_design.spec.meaning import hash_meaning
 
 SCHEMA = "nrs-design/robot-bounds/1"
-# How assumptions say that bounds are these.
-COMPUTED = "computed by interval arithmetic"
+# How assumptions say that bounds are these: whoever reads a spec does not compute them.
+ON_TRUST = "taken on trust from the file of bounds"
 SUFFIX = ".bounds.json"
 SPEC_SUFFIX = ".nrs.yaml"
 MAX_BYTES = 2**20
@@ -94,7 +94,8 @@ def read_bounds(file: Path) -> tuple[RobotBounds, Mapping[str, Any]]:
     Raises
     ------
     SpecError
-        If it is missing, or is no such file, or has been altered.
+        If it is missing, or is no such file, or has been altered, or names a pose that exceeds one
+        of its bounds.
     """
     remedy = REMEDY.format(robot=file.name.removesuffix(SUFFIX) + SPEC_SUFFIX)
     try:
@@ -111,6 +112,7 @@ def read_bounds(file: Path) -> tuple[RobotBounds, Mapping[str, Any]]:
         light, heavy, turning, weight = (parse_exact(bounds[key]) for key in UNITS)
         if min(light, turning, weight) < 0 or light > heavy:
             raise ValueError("a bound is negative, or the lightest is above the heaviest")
+        _check_found(bounds, document["found"])
         found = RobotBounds(
             name=_matching(robot["name"], NAME_PATTERN),
             sha256=_matching(robot["sha256"], HASH_PATTERN),
@@ -141,6 +143,16 @@ def _check_workspace(space: Mapping[str, Any]) -> None:
     phi, psi, low, high = map(parse_exact, (space["phi_deg"], space["psi_deg"], *space["d_mm"]))
     if not (0 < phi < 90 and 0 < psi < 90 and 0 < low < high):
         raise ValueError("its angles are not between 0 and 90 deg, or its depths are no range")
+
+
+def _check_found(bounds: Mapping[str, Any], found: Mapping[str, Any]) -> None:
+    for key in UNITS:
+        bound, value = parse_exact(bounds[key]), parse_exact(found[key]["value"])
+        if value < bound if key == "lightest" else value > bound:
+            raise ValueError(
+                f"{key.replace('_', ' ')} is said to be bounded by {bounds[key]}, and "
+                f"{found[key]['value']} was found at a pose"
+            )
 
 
 def workspace_text(document: Mapping[str, Any]) -> str:

@@ -225,6 +225,30 @@ class ThresholdLogicSpec(SpecModel):
         )
 
     @property
+    def thresholds(self) -> ThresholdLogicSpec:
+        """What a program of the logic follows: itself."""
+        return self
+
+    def check_names(self, controllers: Mapping[str, object]) -> None:
+        """Refuse names of controllers that there are not.
+
+        Parameters
+        ----------
+        controllers : mapping of str
+            Those of the spec.
+        """
+        for name in self.controllers:
+            if name not in controllers:
+                remedy = did_you_mean(name, controllers)
+                raise fault(f"there is no controller {name!r}", remedy, "mode_logic")
+
+    def rules_among(
+        self, controllers: Mapping[str, object], environments: Mapping[str, object]
+    ) -> SwitchingSpec:
+        """Return the rules that it keeps, whatever is touched; as `rules_of` says."""
+        return self.rules()
+
+    @property
     def controllers(self) -> tuple[str, ...]:
         """Names of the controllers in the order in which they are named."""
         ends = (name for switch in self.switches for name in (switch.source, switch.target))

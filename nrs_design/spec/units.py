@@ -18,6 +18,8 @@ from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 
 COMMAND_UNITS = ("rpm", "V", "A", "counts")
+# Of the thesis, and of a spec that names none.
+THESIS_COMMAND = "rpm"
 BASE_UNITS = ("kg", "m", "s", "rad", *COMMAND_UNITS)
 MAX_UNIT_LENGTH = 60
 MAX_UNIT_EXPONENT = 9

@@ -100,7 +100,7 @@ CONTACTS = AssumptionKind(
     "nothing else is touched",
     "the contacts that the spec lists for a controller",
     "Any other contact is a mode that nothing is said about.",
-    "by procedure; nrs-design audit LOG SPEC compares the stiffness met with each controller",
+    "by procedure; nrs-design audit LOG SPEC estimates the stiffness met with each controller",
 )
 TISSUE = AssumptionKind(
     "environments follow their models in their ranges",
@@ -112,7 +112,7 @@ PRELOAD = AssumptionKind(
     "the deflection stays within its preload",
     "the preload of the environment",
     "Beyond the preload the force is not that of the ranges; nothing is said.",
-    "log the deflection: nrs-design audit LOG SPEC",
+    "log the deflection, counted from the surface: its least and its largest value",
 )
 LINEARIZED = AssumptionKind(
     "motions about a linearization are small",

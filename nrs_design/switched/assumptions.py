@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.interval import Interval
+from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched import assumption_kinds as kinds
 from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.parameters import UncertainParameter
@@ -188,7 +189,7 @@ def command_texts(command: str) -> Iterator[Assumption]:
     command : str
         That unit.
     """
-    if command != "rpm":
+    if command != THESIS_COMMAND:
         yield kinds.COMMAND_UNIT.says(
             f"{_TAKES}{command}: Kp of the motion controller is in "
             f"{command}/rad, Kd in {command}*s/rad."
@@ -198,11 +199,12 @@ def command_texts(command: str) -> Iterator[Assumption]:
 def command_in(statements: Iterable[str]) -> str:
     """Return the unit of commands that `command_texts` has put among the assumptions."""
     found = (re.match(_TAKES + "(.+?):", text) for text in statements)
-    return next((match[1] for match in found if match), "rpm")
+    return next((match[1] for match in found if match), THESIS_COMMAND)
 
 
 def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Say what identified ranges hold, and what is doubtful about identified values."""
+    from nrs_design.spec.plausible import unusual
     from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
     if spec.actuator.range_covers is not None:
@@ -220,6 +222,11 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
                 f"{name} is the linearization about {about}: it holds for small motions there."
             )
     for at, item in spec.identified.items():
+        if item.accept_doubt is not None and not item.doubts:
+            sizes = "; ".join(text.partition(":")[0] for text in unusual(item))
+            yield kinds.DOUBT.says(
+                f"Sizes of {at[-1]} are unusual: {sizes}; accepted because: {item.accept_doubt}."
+            )
         if item.doubts:
             why = item.accept_doubt
             end = "nothing says why that is accepted" if why is None else f"accepted because: {why}"
@@ -243,26 +250,21 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assu
     scale : Fraction
         By how much their ranges are stretched: less than declared do not cover the law.
     """
+    from nrs_design.models.contact import nonlinear_law_of
+
     for name, environment in spec.environments.items():
-        if environment.preload_range is None or name not in spec.touched:
+        law = nonlinear_law_of(environment)
+        if law is None or environment.preload_range is None or name not in spec.touched:
             continue
         low, high = (end.text for end in environment.preload_range)
         if scale < 1:
             yield kinds.PRELOAD.says(
-                f"{name} is a Hunt-Crossley law, and with ranges scaled below 1 that law is not "
-                "covered: it is taken for a linear one."
+                f"{name} is {law.title}, and with ranges scaled below 1 that law is not covered: "
+                "it is taken for a linear one."
             )
             continue
         yield kinds.PRELOAD.says(
-            f"{name} is a Hunt-Crossley law whose deflection stays between {low} and {high}. About "
-            f"a rest anywhere from its surface to {high}, at which the commands hold every mode "
-            "whatever its parameters, its force is then that at rest, plus k "
-            "times the deflection from there, plus b times the velocity, exactly, with k and b "
-            "moving in the ranges of the modes: motions need not be small or slow. Nothing is said "
-            "once the deflection has left this preload, nor of the difference of two motions of "
-            "which neither is at rest. The law moves k and b together, so what is refuted with any "
-            "such k and b may hold with it.",
-            f"{name}: deflection from {low} to {high}",
+            law.preload_text(name, low, high), f"{name}: deflection from {low} to {high}"
         )
 
 

@@ -25,6 +25,7 @@ from nrs_design.spec.controllers import Offset
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.free_motion import (
     adds_free_motion,
+    among_modes,
     free_modes,
     lost_contact,
 )
@@ -94,6 +95,7 @@ def close_loop(
     if rules.names_contacts:
         parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
+    modes = tuple(chain.from_iterable(parts.values()))
     assumed = Assumed(
         design,
         state.touched,
@@ -112,10 +114,11 @@ def close_loop(
         name,
         Time.CONTINUOUS,
         state.names,
-        tuple(chain.from_iterable(parts.values())),
+        modes,
         assume_loop(assumed),
         assemble_switching(rules, groups, _resets(state, design)),
         losable,
+        flights=among_modes(state, modes) if free else None,
     )
 
 

@@ -20,7 +20,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec
 from nrs_design.spec.exact import parse_exact
-from nrs_design.spec.robot_bounds import COMPUTED
+from nrs_design.spec.robot_bounds import ON_TRUST
 from nrs_design.switched import assumption_kinds as kinds
 from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumptions import UNCOUPLED
@@ -121,10 +121,11 @@ class AxesCoupling:
             None if speed is None else not_below(bounds.velocity_torques * speed.not_below),
             None if speed is None else speed.text,
             bounds.gravity_gradient if at_rest else None,
-            f"{COMPUTED} from the spec of robot {bounds.name}, SHA-256 "
-            f"{bounds.sha256}, in the assembly mode of its elbow_sign, with its masses, lengths, "
-            "gravity and base tilt, of rigid links without friction, counter-masses and springs; "
-            "`nrs-design verify --bounds` computes it again",
+            f"{ON_TRUST} of robot {bounds.name}, SHA-256 {bounds.id}, which was made from its "
+            f"spec, SHA-256 {bounds.sha256}, in the assembly mode of its elbow_sign, with its "
+            "masses, lengths, gravity and base tilt, of rigid links without friction, "
+            "counter-masses and springs; `nrs-design gate` and `nrs-design verify --bounds` "
+            "compute it again",
             f"all poses with {bounds.workspace}, which are those that are used",
             JOINTS,
         )
@@ -367,7 +368,7 @@ def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
 
 def _shortly(coupling: AxesCoupling) -> str:
     """Say once in full where the numbers come from."""
-    return DECLARED if coupling.source == DECLARED else "computed as the inertia is, in those poses"
+    return DECLARED if coupling.source == DECLARED else "on trust as the inertia is, in those poses"
 
 
 def not_below(number: Fraction) -> Fraction:

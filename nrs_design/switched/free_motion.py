@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import partial
 
@@ -12,10 +12,12 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
+from nrs_design.spec.touched import FREE
+from nrs_design.switched.assumptions import LOST_CONTACT
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import Rows, velocity_mode
 from nrs_design.switched.shared_state import SharedState
@@ -48,14 +50,14 @@ def lost_contact(
     AssemblyError
         If it is not modelled, and the spec asks for it.
     """
-    damped = [e for e in state.touched if "b" in e.parameters]
     if not _can_be_free(state):
         if contact == "losable":
             raise _not_losable("")
         return None
     free = [mode for c in design.controllers for mode in free_modes(c, state, boxes[c.name])]
-    pulls = (_force_row(state, law) for environment in damped for law in environment.corners)
-    return Contact(tuple(free), tuple(pulls), required=contact == "losable")
+    return Contact(
+        tuple(free), tuple(_pulls(state)), required=contact == "losable", loss=LOST_CONTACT
+    )
 
 
 def adds_free_motion(
@@ -125,12 +127,34 @@ def free_modes(controller: Controller, state: SharedState, gains: GainBox) -> It
         Where its gains may be.
     """
     box, rows_at = gains.box.beside(state.motor_box), partial(_free_rows, state, controller.law)
-    for corner, rows in box.corners(rows_at, f"{controller.name}/free"):
+    for corner, rows in box.corners(rows_at, f"{controller.name}/{FREE}"):
         yield Mode(corner, RationalMatrix.from_rows(rows))
 
 
 def _free_rows(state: SharedState, law: CompliantLaw, values: Mapping[str, Fraction]) -> Rows:
     return velocity_mode(state.motion_at(values), law.of(values), NOTHING, state.low_pass)
+
+
+def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
+    """Tell which modes are free motion, where it is among them.
+
+    Parameters
+    ----------
+    state : SharedState
+        Of all modes.
+    modes : iterable of Mode
+        All of them; a controller without contacts has neither a mode in contact nor a free one.
+    """
+    named = [mode.name.split("/") for mode in modes]
+    touching = tuple("/".join(name) for name in named if len(name) > 1 and name[1] != FREE)
+    flying = tuple("/".join(name) for name in named if len(name) > 1 and name[1] == FREE)
+    return Flights(touching, flying, tuple(_pulls(state)))
+
+
+def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
+    """Yield the forces that could pull, those of damped springs, at the corners of their ranges."""
+    damped = (e for e in state.touched if "b" in e.parameters)
+    return (_force_row(state, law) for environment in damped for law in environment.corners)
 
 
 def _force_row(state: SharedState, law: AbstractLinearLaw) -> RationalMatrix:

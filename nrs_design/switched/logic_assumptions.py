@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.spec.environment_estimator import EstimatorSpec, decide
@@ -12,6 +13,7 @@ from nrs_design.switched.assumption_kinds import LOGIC, RULES
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 
 _TIMER = LOGIC.says(
     "The dwell times are kept by the timer of the mode logic, whatever the signals do. How noisy, "
@@ -27,11 +29,14 @@ def logic_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Say what keeps the rules of switching, where they are those of a mode logic."""
     if spec.mode_logic is None or spec.switching.is_arbitrary:
         return
-    if spec.mode_logic.type == "thresholds":
-        yield _TIMER
-    else:
-        yield from _estimator_texts(spec, spec.mode_logic)
+    yield from _KEPT_BY[spec.mode_logic.type](spec, spec.mode_logic)
     yield _ALONE
+
+
+def _threshold_texts(
+    spec: InteractionDesignSpec, logic: ThresholdLogicSpec
+) -> Iterator[Assumption]:
+    yield _TIMER
 
 
 def _estimator_texts(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Iterator[Assumption]:
@@ -52,3 +57,9 @@ def _estimator_texts(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> I
         f"change by at most {torque.largest_rate.text}, and on angles in steps of "
         f"{estimator.signals.position_step.text}."
     )
+
+
+# What keeps the rules, by the type of the logic.
+_KEPT_BY: Mapping[str, Callable[[InteractionDesignSpec, Any], Iterator[Assumption]]] = (
+    MappingProxyType({"thresholds": _threshold_texts, "estimator": _estimator_texts})
+)

@@ -19,7 +19,6 @@ from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumptions import (
     CONTINUOUS,
     LOST_ANYWHERE,
-    LOST_CONTACT,
     REST,
     SPRING,
     SPRING_BESIDE,
@@ -256,7 +255,8 @@ def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
 
 def _kept_texts(loop: Assumed) -> Iterator[Assumption]:
     if loop.losable:
-        return iter((LOST_CONTACT,))
+        # How, is said where a statement covers it.
+        return iter(())
     if loop.free:
         return iter((LOST_ANYWHERE,))
     used = {controller.law.name for controller in loop.design.controllers}

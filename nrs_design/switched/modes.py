@@ -19,8 +19,29 @@ from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.matrix import multiply
+from nrs_design.proof.noun import dataclass
 
 Rows = list[LinearForm]
+
+
+@dataclass(frozen=True, slots=True)
+class ForceShare:
+    """How much of the force of a contact acts, where the loop is cut to look at what it is made of.
+
+    Parameters
+    ----------
+    sensed : Fraction
+        Share that reaches the law.
+    carried : Fraction
+        Share that slows a motor with a load.
+    """
+
+    sensed: Fraction = Fraction(1)
+    carried: Fraction = Fraction(1)
+
+
+# Nothing is cut: the loop of a proof.
+WHOLE = ForceShare()
 
 
 def velocity_mode(
@@ -28,6 +49,7 @@ def velocity_mode(
     law: CompliantLaw,
     contact: AbstractLinearLaw,
     low_pass: LowPass | None = None,
+    cut: ForceShare = WHOLE,
 ) -> Rows:
     """Return A in deflection coordinates: for impedance control, thesis 6.28.
 
@@ -43,6 +65,8 @@ def velocity_mode(
         Of the environment, at fixed parameters.
     low_pass : LowPass, optional
         Through which the law gets the force; its states stand between those of law and contact.
+    cut : ForceShare
+        How much of the force acts; by default all of it.
     """
     own = motion.order + len(law.states)
     touch = own + (0 if low_pass is None else low_pass.order)
@@ -53,14 +77,16 @@ def velocity_mode(
         force, reaction = contact.react_accelerated(velocity, acceleration, state[touch:])
     else:
         force, reaction = contact.react(velocity, state[touch:])
-    felt, sensed = force, list[LinearForm]()
+    heard = combine((cut.sensed, force))
+    felt: LinearForm = heard
+    sensed: list[LinearForm] = []
     if low_pass is not None:
-        felt, sensed = low_pass.respond(force, state[own:touch])
+        felt, sensed = low_pass.respond(heard, state[own:touch])
     if law.spring:
         # What the command adds up to moves the robot against the contact: no state of its own.
         felt = combine((Fraction(1), felt), (law.spring, motion.integral(state[touch])))
     command, rates = law.respond(felt, state[motion.order : own])
-    return [*motion.rates(command, force), *rates, *sensed, *reaction]
+    return [*motion.rates(command, combine((cut.carried, force))), *rates, *sensed, *reaction]
 
 
 def _acceleration(
@@ -141,6 +167,7 @@ def position_mode(
     contact: AbstractLinearLaw | None = None,
     environment: str = "",
     bleeding: Fraction | None = None,
+    cut: ForceShare = WHOLE,
 ) -> Rows:
     """Return A where the motion loop follows a position: for force control, thesis 6.46.
 
@@ -160,6 +187,8 @@ def position_mode(
         Its name, for errors.
     bleeding : Fraction, optional
         Rate in 1/s at which the integral of another controller decays; by default there is none.
+    cut : ForceShare
+        How much of the force acts; by default all of it.
 
     Raises
     ------
@@ -182,7 +211,7 @@ def position_mode(
             at=("environments", environment, "damping"),
         )
     if contact is not None:
-        force = [*contact.react(velocity, [position])[0]]
+        force = combine((cut.sensed, contact.react(velocity, [position])[0]))
     if law.spring:
         force = combine((Fraction(1), force), (law.spring, state[own]))
     command, rates = law.respond(force, state[motion.order : own])

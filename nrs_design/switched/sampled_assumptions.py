@@ -20,7 +20,6 @@ from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumptions import (
     CONTINUOUS,
     LOST_ANYWHERE,
-    LOST_CONTACT,
     REST,
     SPRING,
     SPRING_BESIDE,
@@ -107,7 +106,6 @@ _LOST: Mapping[str, Assumption] = MappingProxyType(
             "motion under force control, whose sample is zero then, is one of the modes. The "
             "surface is back in its place at once."
         ),
-        "on the surface": LOST_CONTACT,
     }
 )
 
@@ -252,6 +250,9 @@ def _integral_texts(frame: Frame, design: ControllerDesign) -> Iterator[Assumpti
 
 
 def _loss_texts(loss: Loss, design: ControllerDesign, frame: Frame) -> Iterator[Assumption]:
+    if loss == "on the surface":
+        # How, is said where a statement covers it.
+        return
     if loss != "not under force control":
         yield _LOST[loss]
         return

@@ -20,7 +20,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Coupling
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.noun import dataclass
@@ -29,7 +29,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.touched import FREE
-from nrs_design.switched.assumptions import at_once_texts
+from nrs_design.switched.assumptions import LOST_CONTACT, at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.gain_box import GainBox
@@ -101,8 +101,13 @@ def close_sampled_loop(
     motions = tuple(chain.from_iterable(parts.values()))
     damped = (environment for environment in touched if "b" in environment.parameters)
     pulls = tuple(row for environment in damped for row in force_rows(frame.states, environment))
-    flying = tuple(item.mode for item in free)
-    losable = Contact(flying, pulls, required=spec.contact == "losable") if free else None
+    losable = None
+    if free:
+        flying = tuple(item.mode for item in free)
+        losable = Contact(flying, pulls, required=spec.contact == "losable", loss=LOST_CONTACT)
+    flights = None
+    if loss.startswith("anywhere"):
+        flights = _flights(frame, plant, design, motions, pulls)
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
@@ -136,7 +141,33 @@ def close_sampled_loop(
         couplings,
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
         axes=None if coupling is None or not channels else coupling.count,
+        flights=flights,
     )
+
+
+def _flights(
+    frame: Frame,
+    plant: Plant,
+    design: ControllerDesign,
+    motions: Iterable[SampledMode],
+    pulls: tuple[RationalMatrix, ...],
+) -> Flights:
+    """Tell which modes are free motion, where it is among them.
+
+    A controller without contacts takes no force: its modes are the same in contact and free, unless
+    a force sample outlasts them.
+    """
+    touched = {environment.name for environment in plant.environments}
+    controllers = {c.name for c in design.controllers}
+    touching, flying = [], []
+    for name in (item.mode.name for item in motions):
+        controller, _, rest = name.partition("/")
+        where = rest.partition("/")[0]
+        if controller in controllers and where in touched:
+            touching.append(name)
+        elif controller in controllers and (where == FREE or frame.remembers):
+            flying.append(name)
+    return Flights(tuple(touching), tuple(flying), pulls)
 
 
 def _motions(

@@ -69,9 +69,9 @@ EXISTS, NONE, UNKNOWN = (
 )
 def test_what_statements_say_together(statements, verdict, status):
     system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
-    assert verdict_of(statements) is verdict
+    assert verdict_of(system, statements) is verdict
     assert common_quadratic_of(system, statements) is status
-    decisive = deciding(statements)
+    decisive = deciding(system, statements)
     assert (decisive is None) == (verdict is Verdict.INCONCLUSIVE)
     assert decisive is None or decisive in statements
 
@@ -127,7 +127,7 @@ def test_claims_in_words():
 def test_file_and_id(path, verdict, kinds):
     certificate = run_certification(read_spec(path)).certificate
     document = json.loads(dump(certificate))
-    assert document["schema"] == SCHEMA == "nrs-design/certificate/4"
+    assert document["schema"] == SCHEMA == "nrs-design/certificate/5"
     assert [item["kind"] for item in document["statements"]] == kinds
     assert certificate.evidence is certificate.statements[0]
     assert document["verdict"] == certificate.verdict == verdict

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from fractions import Fraction
+from itertools import count
 
 import pytest
 
@@ -108,7 +109,7 @@ def test_inconclusive_leaves_no_file(tmp_path):
     assert result.returncode == 3
     assert "INCONCLUSIVE (common quadratic function: unknown)" in result.stdout
     assert "not a statement of stability" in result.stdout
-    assert "not begun: the budget of 0 s is used up (--budget)" in result.stdout
+    assert "not begun: the budget of 0 is used up (--budget)" in result.stdout
     assert not (tmp_path / "reports").exists()
 
 
@@ -389,11 +390,35 @@ def test_json(tmp_path):
     assert document["statements"] == [{"kind": "conewise-quadratic", "claim": statement["claim"]}]
     assert document["modes"] == [mode["name"] for mode in certificate["modes"]]
     assert document["gains"] == certificate["gains"]
-    assert document["assumptions"] == certificate["assumptions"]
+    assert document["assumptions"] == [*certificate["assumptions"], certificate["contact"]["loss"]]
     assert document["claim"] == statement["claim"]
     assert document["certificate"] == "c.json"
     assert document["certificate_id"] == certificate["id"]
     assert document["spec_sha256"] == read_spec(SOFT_TISSUE).sha256
+
+
+def test_a_clock_that_stops_the_search_is_said_and_nothing_is_decided(tmp_path, monkeypatch):
+    ticks = count()
+    monkeypatch.setattr("nrs_design.work.monotonic", lambda: 100.0 * next(ticks))
+    said = "the clock stopped this after 660 s, before its budget of work was used up"
+    for options in ((), ("--json",)):
+        result = run("certify-switching", COMMUTING, *options, cwd=tmp_path)
+        assert result.returncode == 3
+        assert f"error[NRS008]: {said}" in " ".join(result.stderr.split())
+        assert "PROVED" not in result.stdout
+    document = json.loads(result.stdout)
+    assert document["rule"] == "NRS008"
+    assert document["faults"][0]["message"].startswith(said)
+    assert not (tmp_path / "reports").exists()
+
+
+def test_work_is_counted_alike_in_every_run(tmp_path):
+    works = []
+    for _ in range(2):
+        result = run("certify-switching", COMMUTING, "--json", cwd=tmp_path)
+        works.append([(a["step"], a["work"]) for a in json.loads(result.stdout)["attempts"]])
+    assert works[0] == works[1]
+    assert dict(works[0])["lmi"] > 0
 
 
 @pytest.mark.parametrize(
@@ -423,7 +448,7 @@ def test_the_default_degree_follows_the_budget(tmp_path):
 @pytest.mark.slow
 def test_a_spec_says_how_far_the_search_goes_and_options_override_it(tmp_path):
     path = write_spec(tmp_path / "eleven.nrs.yaml", *HARD).path
-    path.write_text(path.read_text() + "certification: {max_degree: 4, budget: 20 s}\n")
+    path.write_text(path.read_text() + "certification: {max_degree: 4, budget: 20}\n")
     result = run("certify-switching", path, cwd=tmp_path)
     assert "polynomial of degree 6: not tried: --max-degree is 4" in result.stdout
     result = run("certify-switching", path, "--max-degree", 2, cwd=tmp_path)
@@ -447,8 +472,10 @@ def test_options_of_the_search_are_those_of_a_report_and_of_memory_too(tmp_path)
     [
         ("{max_degree: 7}", "7 is not an even integer from 2 to 64"),
         ("{max_degree: 66}", "66 is not an even integer from 2 to 64"),
-        ("{budget: 1e9 s}", "beyond 600 s"),
-        ("{budget: 60}", "budget"),
+        ("{budget: 1e9}", "1e9 is not above 0 and at most 600"),
+        ("{budget: 0}", "0 is not above 0 and at most 600"),
+        ("{budget: 60 s}", "is a time, and a budget counts work"),
+        ("{budget: a lot}", "budget"),
         ("{memory: 1 GB}", "memory"),
     ],
 )

@@ -29,6 +29,7 @@ def test_doubles_stay_on_the_side_that_is_true():
     assert summary["delay"] == {
         "proved": 2.0,
         "refuted": None,
+        "refuted_in": None,
         "why_not_refuted": "none is refuted: the search ends",
         "unit": "samples",
     }

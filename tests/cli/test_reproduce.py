@@ -42,15 +42,16 @@ def test_the_command_as_typed():
     assert document["drift"] == []
     assert set(document["rows"][0]) == {
         "name", "section", "printed", "value", "unit", "deviation", "verdict", "note",
-        "tolerance",
+        "precision", "drift", "limit", "fitted", "errata",
     }  # fmt: skip
     assert sum(document["counts"].values()) == len(document["rows"]) > 60
     assert {row["verdict"] for row in document["rows"]} == {
-        "reproduced", "print is wrong", "derived", "hardware only", "needs data",
+        "reproduced", "printed differently", "fitted", "derived", "not reproducible",
     }  # fmt: skip
     readme = (ROOT / "README.md").read_text()
-    counts = ", ".join(f"{count} {verdict}" for verdict, count in document["counts"].items())
-    assert f"\nAll in all: {counts}.\n" in readme
+    assert f"\nAll in all: {document['summary']}\n" in readme
+    errors = len(document["errors_of_the_print"])
+    assert f"(errors of the print: {errors})" in document["summary"]
     rows = {
         (row["section"], row["name"], row["printed"], row["verdict"]) for row in document["rows"]
     }
@@ -66,11 +67,29 @@ def test_text_has_table_notes_and_counts():
     result = run()
     assert result.exit_code == 0
     assert "mean of the fits" in result.stdout
-    assert "6.1 elastic fits, soft specimen: The records" in result.stdout
-    counts = table.count_verdicts(specimens.rows())
-    assert counts["needs data"] == 8
-    last = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
-    assert result.stdout.splitlines()[-1].strip() == last
+    why = "6.1 elastic fits, soft specimen: Not reproducible, because the records"
+    assert why in result.stdout
+    assert "converted by machine" in result.stdout
+    assert table.count_verdicts(specimens.rows())["not reproducible"] == 8
+    last = result.stdout.splitlines()[-1].strip()
+    assert last == table.counts_line(specimens.rows())
+
+
+@pytest.mark.usefixtures("short")
+def test_counts_lines_and_json_agree():
+    found = json.loads(run("--json").stdout)
+    parts = [f"{count} {verdict}" for verdict, count in found["counts"].items()]
+    assert sum(found["counts"].values()) == len(found["rows"])
+    assert all(part in found["summary"] for part in parts)
+    assert found["summary"] == run().stdout.splitlines()[-1].strip()
+    (error,) = found["errors_of_the_print"]
+    assert (error["id"], len(error["rows"])) == ("6.1 largest error", 2)
+    assert "(errors of the print: 1)" in found["summary"]
+
+
+@pytest.mark.usefixtures("drifting")
+def test_a_drift_is_counted_in_the_last_line():
+    assert ", 1 drift." in run().stdout.splitlines()[-1]
 
 
 @pytest.mark.usefixtures("short")

@@ -1,9 +1,11 @@
 """``nrs-design robot bounds`` and ``verify --bounds`` as typed."""
 
+import json
 import shutil
 
 import pytest
 
+from nrs_design.spec.robot_bounds import content_id
 from tests.support import ROOT
 from tests.support import run as run_in
 
@@ -42,10 +44,73 @@ def test_check_refuses_bounds_of_another_robot(tmp_path):
     assert "the robot has changed" in result.stdout
 
 
-def test_verify_says_what_it_takes_for_granted():
-    result = run("verify", CERTIFICATE, SPEC)
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory):
+    """The specs of the repository, with a certificate that rests on the bounds of the robot."""
+    root = tmp_path_factory.mktemp("copied")
+    shutil.copytree(ROOT / "specs", root / "specs")
+    certify(root)
+    return root
+
+
+def certify(root):
+    done = run_in("certify-switching", SPEC.relative_to(ROOT), "--out", "c.json", cwd=root)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def verify(root, *words):
+    return run_in("verify", "c.json", SPEC.relative_to(ROOT), *words, cwd=root)
+
+
+def forge(root, edit):
+    """Edit the bounds, and sign them anew."""
+    file = root / "specs/robots/neuroboscope.bounds.json"
+    document = json.loads(file.read_text())
+    edit(document)
+    file.write_text(json.dumps(document | {"id": content_id(document)}))
+
+
+def lowered(document):
+    document["bounds"]["heaviest"] = "0.0038"
+
+
+def lowered_with_what_was_found(document):
+    lowered(document)
+    document["found"]["heaviest"]["value"] = "0.00379"
+
+
+def test_verify_says_first_what_it_takes_on_trust(copied):
+    result = verify(copied)
     assert result.returncode == 0
-    assert "taken for granted: the bounds of" in result.stdout
+    first = result.stdout.splitlines()[0]
+    assert first.startswith("PROVED, on trust in ")
+    assert "neuroboscope.bounds.json" in first
+    document = json.loads(verify(copied, "--json").stdout)
+    assert document["on_trust"].endswith("neuroboscope.bounds.json")
+    assert "which are taken on trust" in document["claims"][0]
+    assert any("taken on trust from the file of bounds" in t for t in document["assumptions"])
+
+
+def test_bounds_that_contradict_what_was_found_are_refused_at_once(copied, tmp_path):
+    root = shutil.copytree(copied, tmp_path / "root")
+    forge(root, lowered)
+    result = verify(root)
+    assert result.returncode == 2
+    assert "bounded by 0.0038, and 0.279659 was found at a pose" in result.stderr
+
+
+def test_a_pose_contradicts_what_was_forged_twice(copied, tmp_path):
+    """A new certificate for forged bounds holds, but the bounds do not."""
+    root = shutil.copytree(copied, tmp_path / "root")
+    forge(root, lowered_with_what_was_found)
+    assert "computed by" not in certify(root)
+    result = verify(root)
+    assert result.returncode == 1
+    assert result.stdout.startswith("REJECTED: the bounds of the robot do not hold")
+    assert "heaviest: inertia 0.279659 kg*m^2 at phi" in result.stdout
+    assert "PROVED" not in result.stdout
+    assert json.loads(verify(root, "--json").stdout)["verdict"] == "rejected"
 
 
 def test_bounds_need_a_spec_with_a_robot():

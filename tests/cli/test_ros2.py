@@ -1,6 +1,8 @@
 """``nrs-design ros2`` as a user types it."""
 
 import json
+import re
+import shlex
 
 import pytest
 
@@ -60,6 +62,64 @@ def test_wrong_options(tmp_path, options, message):
     assert done.returncode == 2
     assert message in done.stderr
     assert done.stdout == ""
+
+
+NO_RATE = ("    update_rate: 500\n", "")
+ROTATES = ("true, true, true, false", "true, true, true, true")
+OWN = ("    joints:", "    update_rate: 300\n    joints:")
+SHARED = ("# Parameters", "/**/controller_manager: {ros__parameters: {update_rate: 20}}\n# Param")
+
+
+@pytest.mark.parametrize(
+    ("changes", "options"),
+    [
+        ([NO_RATE], SOFT),
+        ([OWN], SOFT),
+        ([SHARED], SOFT),
+        ([ROTATES], SOFT),
+        ([], ()),
+        ([], (*SOFT, "--rate", "fast")),
+        ([], (*SOFT, "--rate", "-1 1/s")),
+        ([], (*SOFT, "--age", "one")),
+        ([], (*SOFT, "--age", "2..1")),
+        ([], (*SOFT, "--lag", "5")),
+        ([], (*SOFT, "--lag", "5 N")),
+        ([], ("--stiffness", "200..2000")),
+        ([], ("--stiffness", "2000..200 N/m")),
+        ([ROTATES], (*SOFT, "--rotational-stiffness", "5..40")),
+    ],
+)
+def test_every_remedy_that_is_printed_works_when_pasted(tmp_path, changes, options):
+    command = ("ros2", "check", changed(tmp_path, *changes), "--budget", "1")
+    done = run(*command, *options, cwd=tmp_path)
+    said = done.stdout + done.stderr
+    assert done.returncode in (2, 3)
+    remedies = {*re.findall(r"(--[a-z-]+ (?:'[^']+'|[0-9][0-9.]*))", said)}
+    assert remedies
+    for remedy in remedies:
+        option, value = shlex.split(remedy)
+        given = dict(zip(options[::2], options[1::2], strict=True)) | {option: value}
+        again = run(*command, *(word for pair in given.items() for word in pair), cwd=tmp_path)
+        assert again.returncode in (0, 1), (remedy, again.stderr)
+
+
+@pytest.mark.parametrize("rate", ["500", "500 1/s", "500 Hz", "500Hz"])
+def test_a_rate_may_have_its_unit(tmp_path, rate):
+    file = changed(tmp_path, NO_RATE)
+    done = run("ros2", "check", file, *SOFT, "--rate", rate, cwd=tmp_path)
+    assert done.returncode == 0
+    assert "runs 500 times per second, as --rate says" in done.stdout
+
+
+def test_a_controller_that_was_passed_over_is_named_and_not_proved(tmp_path):
+    listed = "    admittance_controller: {type:"
+    file = changed(tmp_path, (listed, f"    legs: {{type: my/Legs}}\n{listed}"))
+    done = run("ros2", "check", file, *SOFT, cwd=tmp_path)
+    assert done.returncode == 3
+    assert "legs: passed over, so undecided: controller_manager runs it as my/Legs" in (
+        done.stdout + done.stderr
+    )
+    assert "PROVED" not in done.stdout
 
 
 @pytest.fixture

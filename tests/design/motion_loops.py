@@ -1,8 +1,24 @@
 """Motion loops and contact of the published designs."""
 
+from fractions import Fraction
+
 from nrs_design.design.transfer import TransferFunction
+from nrs_design.models.actuator import Actuator
+from nrs_design.models.motion_loop import MotionLoop, realize
+from nrs_design.switched.cut_loop import ContinuousAxis, Place
 
 # Thesis 6.1 as printed, and with the exact coefficients of Kd = 2060, z = 56.9706.
 PRINTED = TransferFunction((0.99, 56.82), (0.0351, 1.99, 56.82))
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 SOFT = 43.0356
+
+
+PLACE = Place(Actuator(Fraction("4.8417e-4"), Fraction("0.0351")))
+
+
+def axis_with(motion: TransferFunction) -> ContinuousAxis:
+    """The axis with this motion loop and nothing else."""
+    loop = MotionLoop(
+        tuple(map(Fraction, motion.numerator)), tuple(map(Fraction, motion.denominator))
+    )
+    return ContinuousAxis((PLACE,), realize(loop))

@@ -31,7 +31,7 @@ def test_shipped_gains_are_nearly_optimal():
     for item in analysis(SOFT_TISSUE).impedance:
         assert item.optimum.cost <= item.cost < item.optimum.cost * 1.01
         assert item.Bt == pytest.approx(item.optimum.Bt, rel=5e-3)
-        assert item.margins.stiffness_limit > item.problem.loop.contact.stiffness
+        assert item.lowest_limit > item.problem.loop.contact.stiffness
 
 
 def test_force_loop():

@@ -9,13 +9,12 @@ import pytest
 
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.goals import Requirement, corners_of
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at, stabilizes
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.design.margins import loop_margins
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     DISK_MARGIN,
@@ -24,13 +23,14 @@ from nrs_design.design.measures import (
     PHASE_MARGIN,
     SENSITIVITY_PEAK,
 )
-from nrs_design.design.transfer import TransferFunction, frequency_response
+from nrs_design.design.transfer import frequency_response
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec.interval import Interval
+from tests.design.classical import displayed_impedance_at, loop_margins
+from tests.design.motion_loops import EXACT, PLACE, axis_with
 
-EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 # Thesis 6.2 and 6.3.1: half the impedance of 0.3 N m over 8 deg/s; 2 Hz; k_soft and its range.
 HALF = 0.15 / math.radians(8)
 BANDWIDTH = 4 * math.pi
@@ -59,8 +59,9 @@ def problem(least=0.01, desired=HALF, **bounds):
 
 def requirement(goals, desired=HALF, **gains):
     environment = Environment("soft", KelvinVoigt, (SOFT, Interval.point(Fraction(0))))
-    corners = corners_of((environment,), "soft", gains)
-    return Requirement(EXACT, corners, goals, desired, BANDWIDTH)
+    ends = {name: tuple(map(Fraction, pair)) for name, pair in gains.items()}
+    corners = corners_of((environment,), "soft", ends, (PLACE,))
+    return Requirement(axis_with(EXACT), corners, goals, desired, BANDWIDTH)
 
 
 def on_grid(goals, Mt, Bt, slack):

@@ -7,14 +7,15 @@ from itertools import product
 import numpy as np
 import pytest
 
+from nrs_design.controllers.laws import ProportionalForce
 from nrs_design.design.goals import (
+    ForceRequirement,
     Requirement,
     achieve_force,
     achieve_impedance,
     corners_of,
 )
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at
-from nrs_design.design.margins import loop_margins
+from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.measures import (
     DELAY_MARGIN,
     FORCE_ERROR,
@@ -27,8 +28,8 @@ from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec.interval import Interval
-
-EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
+from tests.design.classical import displayed_impedance_at, loop_margins
+from tests.design.motion_loops import EXACT, PLACE, axis_with
 
 
 def interval(nominal, low, high):
@@ -40,9 +41,13 @@ SOFT = Environment("soft", KelvinVoigt, (interval("43", "41.5", "44.25"), ZERO))
 HAND = Environment("hand", KelvinVoigt, (interval("55", "50", "60"), interval("0.2", "0.1", "0.3")))
 
 
+def exact(gains):
+    return {name: tuple(map(Fraction, ends)) for name, ends in gains.items()}
+
+
 def impedance(environments, goals=(), desired=2.15, gains=None):
-    corners = corners_of(environments, "soft", gains or {})
-    return Requirement(EXACT, corners, goals, desired, 4 * math.pi)
+    corners = corners_of(environments, "soft", exact(gains or {}), (PLACE,))
+    return Requirement(axis_with(EXACT), corners, goals, desired, 4 * math.pi)
 
 
 def worst(requirement, Mt=0.01, Bt=2.15):
@@ -103,7 +108,8 @@ def test_an_unstable_corner_is_the_worst():
 
 
 def test_corners_name_gains_and_hold_the_designed_ones_too():
-    corners = corners_of((SOFT,), "soft", {"Mt": (0.008, 0.012), "Bt": (1.7, 2.6)})
+    gains = exact({"Mt": (0.008, 0.012), "Bt": (1.7, 2.6)})
+    corners = corners_of((SOFT,), "soft", gains, (PLACE,))
     assert len(corners) == 3 * 5
     assert sum(corner.home for corner in corners) == 3
     assert corners[0].label == "soft, k = 43 N*m/rad"
@@ -116,10 +122,17 @@ def test_corners_name_gains_and_hold_the_designed_ones_too():
     }
 
 
+def force(motion, Kp, goals=()):
+    corners = corners_of((SOFT,), "soft", {}, (PLACE,))
+    return ForceRequirement(
+        axis_with(motion), corners, goals, ProportionalForce(Fraction(Kp)), motion
+    )
+
+
 def test_the_force_error_is_worst_in_the_softest_contact():
     """Thesis 6.3.3.1: Kp = 0.02 at 43.0356 N m/rad; G(0) = 1."""
-    requirement = Requirement(EXACT, corners_of((SOFT,), "soft", {}), ((FORCE_ERROR, 0.6),))
-    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES, 0.02)}
+    requirement = force(EXACT, "0.02", ((FORCE_ERROR, 0.6),))
+    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES)}
     assert found[FORCE_ERROR].value == pytest.approx(1 / (1 + 0.02 * 41.5))
     assert found[FORCE_ERROR].where == "soft, k = 41.5 N*m/rad"
     assert found[FORCE_ERROR].met
@@ -129,8 +142,8 @@ def test_the_force_error_is_worst_in_the_softest_contact():
 def test_force_margins_are_those_of_the_force_loop():
     """Peak of |1/(1 + Kp k G)| on a frequency grid, at the stiffest contact."""
     motion = TransferFunction((1.0,), (4e-4, 0.02, 1.0))
-    requirement = Requirement(motion, corners_of((SOFT,), "soft", {}))
-    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES, 0.2)}
+    requirement = force(motion, "0.2")
+    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES)}
     s = 1j * np.geomspace(0.1, 1e4, 100_001)
     G = np.polyval(motion.numerator, s) / np.polyval(motion.denominator, s)
     peaks = [np.abs(1 / (1 + 0.2 * k * G)).max() for k in (43, 41.5, 44.25)]
@@ -139,10 +152,10 @@ def test_force_margins_are_those_of_the_force_loop():
 
 
 def test_a_spring_and_its_range_are_measured_too():
-    corners = corners_of((SOFT,), "soft", {"Kt": (0.5, 2.0)}, 0.8)
-    assert {c.Kt for c in corners} == {0.8, 0.5, 2.0}
+    corners = corners_of((SOFT,), "soft", exact({"Kt": (0.5, 2.0)}), (PLACE,), Fraction("0.8"))
+    assert {c.Kt for c in corners} == {Fraction("0.8"), 0.5, 2}
     assert sum(corner.home for corner in corners) == 3
-    requirement = Requirement(EXACT, corners, (), 2.15, 4 * math.pi)
+    requirement = Requirement(axis_with(EXACT), corners, (), 2.15, 4 * math.pi)
     found = worst(requirement)
     loops = [
         ImpedanceLoop(EXACT, Elastic(k), Kt) for k in (43, 41.5, 44.25) for Kt in (0.8, 0.5, 2)

@@ -13,6 +13,7 @@ from nrs_design.design.loops import Loops
 from nrs_design.design.measures import HAND_EFFORT, TRANSPARENCY
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, Hand, KelvinVoigt
+from tests.design.motion_loops import PLACE, axis_with
 from tests.support import ROOT, run
 
 HANDS_ON = ROOT / "docs/examples/hands-on.nrs.yaml"
@@ -30,6 +31,11 @@ def by_grid(k, b, Mt, Bt, m=0):
     return np.abs(L / (1 + L)).min(), np.abs(Ze / (1 + L)).max()
 
 
+def held_by(hand):
+    corner = ContactCorner("hand", "hand", hand, PLACE, True, True)
+    return Requirement(axis_with(MOTION), (corner,), bandwidth=BAND)
+
+
 def hundredths(low, high):
     return st.integers(low, high).map(lambda n: n / 100)
 
@@ -39,7 +45,7 @@ def hundredths(low, high):
 def test_against_the_responses(k, b, Mt, Bt):
     """Hands of the thesis, and admittances as in table 7.1, all of which they leave stable."""
     hand = KelvinVoigt(k, b)
-    requirement = Requirement(MOTION, (ContactCorner("hand", hand, True),), bandwidth=BAND)
+    requirement = held_by(hand)
     lowest, highest = by_grid(k, b, Mt, Bt)
     gains = np.array([Mt]), np.array([Bt])
     assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)
@@ -49,7 +55,7 @@ def test_against_the_responses(k, b, Mt, Bt):
 @settings(max_examples=25)
 @given(hundredths(2500, 9040), hundredths(0, 50), hundredths(1, 20), hundredths(400, 800))
 def test_with_a_mass_against_the_responses(k, b, m, Bt):
-    requirement = Requirement(MOTION, (ContactCorner("hand", Hand(k, b, m), True),), bandwidth=BAND)
+    requirement = held_by(Hand(k, b, m))
     lowest, highest = by_grid(k, b, 2.0, Bt, m)
     gains = np.array([2.0]), np.array([Bt])
     assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)

@@ -8,17 +8,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
+from nrs_design.design.transfer import TransferFunction, frequency_response
+from nrs_design.errors import DesignError
+from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
+from tests.design.classical import (
     closed_loop_polynomial,
     displayed_impedance_at,
     open_loop,
     sensitivity,
-    stabilizes,
 )
-from nrs_design.design.transfer import TransferFunction, frequency_response
-from nrs_design.errors import DesignError
-from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from tests.design.motion_loops import EXACT, PRINTED, SOFT
 
 

@@ -8,12 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import (
-    ImpedanceLoop,
-    displayed_impedance_at,
-    sensitivity,
-    stabilizes,
-)
+from nrs_design.design.impedance import ImpedanceLoop, stabilizes
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
@@ -21,6 +16,7 @@ from nrs_design.design.impedance_optimum import (
 )
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt
+from tests.design.classical import displayed_impedance_at, sensitivity
 from tests.design.motion_loops import EXACT, PRINTED, SOFT
 
 # Thesis 6.2: 0.3 N m over 8 deg/s; 2 Hz.

@@ -9,10 +9,10 @@ from matplotlib.contour import QuadContourSet
 from nrs_design.design.impedance import characteristic_basis, stabilizes
 from nrs_design.design.impedance_optimum import impedance_cost
 from nrs_design.design.landscape import alternatives, delay_borne, map_cost
-from nrs_design.design.margins import loop_margins
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.reporting.figures.landscape import draw_cost
 from nrs_design.spec import read_spec
+from tests.design.classical import loop_margins
 from tests.support import SOFT_TISSUE
 
 
@@ -22,7 +22,7 @@ def insertion():
 
 
 def test_no_point_within_the_bounds_costs_less_than_the_optimum(insertion):
-    found = map_cost(insertion.problem, insertion.Mt, insertion.Bt)
+    found = map_cost(insertion.problem, insertion.requirement, insertion.Mt, insertion.Bt)
     (left, right), (low, high) = insertion.problem.mass_bounds, insertion.problem.damping_bounds
     columns = (left <= found.Mt) & (found.Mt <= right)
     rows = (low <= found.Bt) & (found.Bt <= high)
@@ -33,7 +33,7 @@ def test_no_point_within_the_bounds_costs_less_than_the_optimum(insertion):
 
 
 def test_the_border_is_that_of_stability(insertion):
-    found = map_cost(insertion.problem, insertion.Mt, insertion.Bt)
+    found = map_cost(insertion.problem, insertion.requirement, insertion.Mt, insertion.Bt)
     Mt, Bt = np.meshgrid(found.Mt, found.Bt)
     assert (np.isfinite(found.cost) == stabilizes(insertion.problem.loop, Mt, Bt)).all()
     assert np.isnan(found.cost).any()
@@ -41,7 +41,7 @@ def test_the_border_is_that_of_stability(insertion):
 
 def test_the_drawn_border_is_where_a_pole_is_on_the_axis(insertion):
     """D-decomposition: Mt s + Bt = -N(s) / D(s) has one admittance for each s = j w."""
-    found = map_cost(insertion.problem, insertion.Mt, insertion.Bt)
+    found = map_cost(insertion.problem, insertion.requirement, insertion.Mt, insertion.Bt)
     mass, damping, rest = characteristic_basis(insertion.problem.loop)
     assert (mass[:-1] == damping[1:]).all()
     s = 1j * np.geomspace(0.1, 1e3, 20000)
@@ -80,14 +80,14 @@ def test_each_alternative_is_the_best_at_what_it_is_named_for(insertion):
 
 def test_fixed_gains_have_a_map_and_no_bound_to_move(insertion):
     fixed = replace(insertion.problem, mass_bounds=(0.01, 0.01), damping_bounds=(2.15, 2.15))
-    found = map_cost(fixed, 0.01, 2.15)
+    found = map_cost(fixed, insertion.requirement, 0.01, 2.15)
     assert found.Mt[0] < 0.01 < found.Mt[-1]
     assert [other.Bt for other in alternatives(fixed, 0.01, 2.15)] == [2.15] * 3
 
 
 def test_a_mass_of_zero_has_a_map(insertion):
     bounds = replace(insertion.problem, mass_bounds=(0.0, 1.0))
-    found = map_cost(bounds, 0.0, 2.15)
+    found = map_cost(bounds, insertion.requirement, 0.0, 2.15)
     assert 0 < found.Mt[0] < 1e-3
     assert found.cost[50, 0] == pytest.approx(
         float(impedance_cost(bounds, found.Mt[0], found.Bt[50]))
@@ -95,12 +95,11 @@ def test_a_mass_of_zero_has_a_map(insertion):
 
 
 def test_delay_borne_is_the_delay_margin_at_that_stiffness(insertion):
-    loop, margins = insertion.problem.loop, insertion.margins
-    nominal, limit = loop.contact.stiffness, margins.stiffness_limit
-    borne = delay_borne(
-        loop, insertion.Mt, insertion.Bt, np.array([nominal, 0.999 * limit, 1.001 * limit])
-    )
-    assert borne[0] == pytest.approx(margins.delay_margin, rel=1e-6)
+    loop, limit = insertion.problem.loop, insertion.lowest_limit
+    gains, nominal = (insertion.Mt, insertion.Bt), loop.contact.stiffness
+    stiffness = np.array([nominal, 0.999 * limit, 1.001 * limit])
+    borne = delay_borne(insertion.requirement, *gains, stiffness)
+    assert borne[0] == pytest.approx(loop_margins(loop, *gains).delay_margin, rel=1e-6)
     assert 0 < borne[1] < 1e-3
     assert borne[2] == 0
 
@@ -109,6 +108,6 @@ def test_delay_borne_falls_with_stiffness(insertion):
     loop = insertion.problem.loop
     margin = loop_margins(loop, insertion.Mt, 2 * insertion.Bt).delay_margin
     stiffness = np.array([1, 2, 3]) * loop.contact.stiffness
-    borne = delay_borne(loop, insertion.Mt, 2 * insertion.Bt, stiffness)
+    borne = delay_borne(insertion.requirement, insertion.Mt, 2 * insertion.Bt, stiffness)
     assert borne[0] == pytest.approx(margin, rel=1e-6)
     assert (np.diff(borne) < 0).all()

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop, displayed_impedance_at, open_loop
+from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loops import Loops, gain_extremes, multiply
-from nrs_design.design.margins import loop_margins
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
+from tests.design.classical import displayed_impedance_at, loop_margins, open_loop
 
 EXACT = TransferFunction((0.9974, 56.822), (0.0351, 1.9974, 56.822))
 OMEGA = np.geomspace(1e-3, 1e5, 20_001)

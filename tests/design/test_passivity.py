@@ -1,6 +1,7 @@
 """Where a displayed admittance is passive: by hand, on the robot of the thesis, and on a grid."""
 
 from fractions import Fraction
+from itertools import product
 from math import pi
 
 import numpy as np
@@ -8,17 +9,35 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.design.passivity import count_positive_roots, passive_band, real_part
-from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.design.passivity import count_positive_roots, real_part
+from nrs_design.design.passivity import passive_band as band_of
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.reproduction import thesis
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.cut_loop import ContinuousAxis
+from nrs_design.switched.joint import Joint
+from tests.design.motion_loops import PLACE
 
 ONE = Fraction(1)
 LAG = MotionLoop((ONE,), (ONE, ONE))
 
 
+def axis(loop):
+    return ContinuousAxis((PLACE,), realize(loop))
+
+
+def passive_band(loop, Mt, Bt):
+    return band_of(axis(loop), Admittance(Mt, Bt), {})
+
+
 def test_by_hand():
     """G = 1/(s + 1): Re (M j w + B)(j w + 1) = B - M w^2, so up to the root of B/M."""
-    assert real_part(LAG, Fraction(2), Fraction(8)) == [-2, 8]
+    # The deflection adds an s to both N and D, hence an x to the real part.
+    P = [c for c in real_part(axis(LAG), Admittance(Fraction(2), Fraction(8)), {}) if c]
+    assert P[0] / P[1] == Fraction(-2, 8)
     band = passive_band(LAG, Fraction(2), Fraction(8))
     assert Fraction(19999, 10000) < band.passive <= 2
     assert 2 < band.broken < Fraction(20001, 10000)
@@ -70,3 +89,82 @@ def test_against_a_grid(numerator, denominator, Mt, Bt):
     assert (real(np.linspace(0, end, 400)) > -1e-6 * Bt).all()
     if band.broken is not None:
         assert real(np.array([float(band.broken)]))[0] < 1e-9
+
+
+PD = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
+
+
+def interval(low, high):
+    return Interval(Fraction(low), Fraction(low), Fraction(high))
+
+
+def response(omega, values, J, lags=()):
+    """From the torque of a hand to the velocity of the tool, by the equations of the loop."""
+    s = 1j * np.asarray(omega, dtype=float)
+    Km, tau, Mt, Bt, Kt = (float(values[name]) for name in ("Km", "tau", "Mt", "Bt", "Kt"))
+    law = s / (Mt * s**2 + Bt * s + Kt)
+    for pole in lags:
+        law = law * pole / (s + pole)
+    pull = float(PD.Kp) / s + float(PD.Kd)
+    torque = tau / float(J) if J else 0.0
+    return (Km * pull * law + torque) / (tau * s + 1 + Km * pull)
+
+
+NUMBERS = {"Km": "4.8417e-4", "tau": "0.0351", "Mt": "0.01", "Bt": "2.15", "Kt": "0"}
+NOMINAL = {name: Fraction(value) for name, value in NUMBERS.items()}
+
+
+def loaded(J, low_pass=None):
+    point = ActuatorRanges.point(PLACE.motor)
+    joint = None if J is None else Joint(PD, point, Fraction(J))
+    motion = PLACE.motor.gain * PD.Kd, PLACE.motor.gain * PD.Kp
+    loop = MotionLoop(motion, (PLACE.motor.time_constant, 1 + motion[0], motion[1]))
+    return ContinuousAxis((PLACE,), realize(loop), joint, low_pass)
+
+
+def test_a_load_makes_it_passive_where_the_unloaded_one_is_not():
+    """J = 0.3 kg m^2: at 60.90 rad/s, where G Y ends to be passive, Re Y is +0.043."""
+    law = Admittance(NOMINAL["Mt"], NOMINAL["Bt"])
+    plain = band_of(loaded(None), law, {})
+    assert float(plain.passive) == pytest.approx(60.9019, abs=1e-3)
+    assert response(60.90, NOMINAL, "0.3").real == pytest.approx(0.043, abs=1e-3)
+    heavy = band_of(loaded("0.3"), law, {})
+    assert heavy.passive is None or heavy.passive > plain.passive
+    if heavy.broken is not None:
+        assert response(float(heavy.broken), NOMINAL, "0.3").real < 0
+
+
+@pytest.mark.parametrize("J", [None, "0.3", "3"])
+@pytest.mark.parametrize("filtered", [False, True])
+@pytest.mark.parametrize("spring", ["0", "0.8"])
+def test_over_ranges_against_the_response(J, filtered, spring):
+    """Passive below the band at random points of the box; at a corner of it not where refuted."""
+    ranges = {
+        "Mt": interval("0.008", "0.02"),
+        "Bt": interval("1.5", "2.6"),
+        "Km": interval("4.7e-4", "5e-4"),
+        "tau": interval("0.033", "0.037"),
+    }
+    low_pass = LowPass(1, Fraction(150)) if filtered else None
+    axis_ = loaded(J, low_pass)
+    if J is None:  # Ranges of the motor need it in its physical state.
+        ranges = {name: ranges[name] for name in ("Mt", "Bt")}
+    law = Admittance(NOMINAL["Mt"], NOMINAL["Bt"], Fraction(spring))
+    band = band_of(axis_, law, ranges)
+    lags = (150.0,) if filtered else ()
+    draw = np.random.default_rng(1)
+    end = 1e3 if band.passive is None else float(band.passive)
+    omega = np.linspace(1e-3, end, 300)
+    nominal = NOMINAL | {"Kt": Fraction(spring)}
+    for _ in range(40):
+        values = {n: draw.uniform(float(r.low), float(r.high)) for n, r in ranges.items()}
+        real = response(omega, nominal | values, J, lags).real
+        assert real.min() > -1e-9
+    if band.broken is not None:
+        corners = product(*((r.low, r.high) for r in ranges.values()))
+        worst = [
+            response(float(band.broken), nominal | dict(zip(ranges, at, strict=True)), J, lags).real
+            for at in corners
+        ]
+        assert min(worst) < 0
+        assert band.passive < band.broken

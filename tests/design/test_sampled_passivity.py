@@ -13,8 +13,10 @@ from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.design.passivity import passive_band
 from nrs_design.design.sampled_passivity import sampled_bands
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.motion_loop import close_motion_loop
+from nrs_design.models.motion_loop import close_motion_loop, realize
+from nrs_design.switched.cut_loop import ContinuousAxis
 from nrs_design.switched.sampled_frame import INPUTS, Frame
+from tests.design.motion_loops import PLACE
 from tests.support import thinned
 
 MOTOR = Actuator(Fraction("4.8417e-4"), Fraction("0.0351"))
@@ -71,7 +73,8 @@ def test_against_a_scan(Mt, Bt, period):
 
 def test_short_periods_tend_to_continuous_time():
     """The continuous band, and what a late force takes from it."""
-    whole = passive_band(close_motion_loop(MOTOR, MOTION.Kp, MOTION.Kd), Fraction(1), Fraction(4))
+    axis = ContinuousAxis((PLACE,), realize(close_motion_loop(MOTOR, MOTION.Kp, MOTION.Kd)))
+    whole = passive_band(axis, Admittance(Fraction(1), Fraction(4)), {})
     bands = [
         sampled_bands(MOTOR, MOTION, law_of(1, 4, T), T, (0,))[0].passive
         for T in map(Fraction, ("0.004", "0.002", "0.001", "0.0005"))

@@ -56,7 +56,7 @@ def test_the_same_motor_in_volts(continuous_export):
 def test_proof_is_that_of_the_certificate(record, continuous_export):
     proof = record.proof
     assert proof.certificate_id == continuous_export.certificate.id
-    assert proof.assumptions == continuous_export.certificate.system.assumptions
+    assert proof.assumptions == continuous_export.certificate.granted
     assert Fraction(proof.decay_rate.exact) == continuous_export.certificate.evidence.rate
     assert Fraction(proof.decay_rate.rounded) <= continuous_export.certificate.evidence.rate
     assert proof.coordinates == "deflection"

@@ -1,11 +1,9 @@
 """Exported C: what real compilers make of it is, bit for bit, what NumPy's float32 makes of it."""
 
 import re
-from dataclasses import replace
 
 import pytest
 
-from nrs_design.errors import DesignError
 from nrs_design.exporters.c import header_text, render, source_text
 from nrs_design.exporters.c_names import CNames, harmless
 from nrs_design.exporters.header import header_lines
@@ -179,9 +177,3 @@ def test_header_says_what_is_proved_and_what_is_not(sampled_export):
 
 def test_the_same_export_is_the_same_text(sampled_export):
     assert render(sampled_export) == render(sampled_export)
-
-
-def test_names_that_are_one_in_c_are_refused(sampled_export):
-    twice = replace(LAWS["inertia"], modes=("a-b", "a.b"))
-    with pytest.raises(DesignError, match="same name in C"):
-        header_text(sampled_export.record, twice, CNames("x"))

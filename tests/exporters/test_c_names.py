@@ -39,7 +39,7 @@ def test_every_number_of_a_law_has_a_macro_of_its_own():
 def test_controllers_that_are_one_in_c_are_refused():
     twice = replace(LAWS["inertia"], modes=("a-b", "a.b"))
     with pytest.raises(DesignError, match="same name in C"):
-        CNames("x").coefficients(twice)
+        CNames("x").check(twice)
 
 
 @pytest.mark.parametrize(

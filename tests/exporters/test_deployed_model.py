@@ -6,11 +6,19 @@ import zipfile
 
 import pytest
 
+from nrs_design.exporters.compiled import compiler
+from nrs_design.exporters.deployed_archive import Archive, unpack_archive
 from nrs_design.exporters.deployed_model import model_differences
-from nrs_design.exporters.fmu import contents, packed
+from nrs_design.exporters.fmu import contents, library_of, packed
 from nrs_design.exporters.program import program_of
 
 XML = "modelDescription.xml"
+
+
+def unpacked(content):
+    """Here, not in a process of its own, which would take its time for each of these."""
+    found = unpack_archive(io.BytesIO(content), None)
+    return None if found is None else Archive(*found)
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +34,7 @@ def differences(sampled_export, entries):
             text = change(found[name].decode())
             assert text != found[name].decode()
             found[name] = text.encode()
-        return [*model_differences(packed(found | other), sampled_export)]
+        return [*model_differences(unpacked(packed(found | other)), sampled_export)]
 
     return compare
 
@@ -37,12 +45,28 @@ def replaced(old, new):
 
 def test_what_was_exported_has_no_difference(differences, entries):
     assert differences() == []
-    assert differences(**{"binaries/linux64/x.so": b"anything"}) == []
     assert differences("documentation/index.html", lambda text: text + "more") == []
     assert differences(XML, lambda text: re.sub(r'Tool="[^"]*"', 'Tool="another"', text)) == []
     for name in entries:
         if name.endswith((".h", ".c")):
             assert differences(name, replaced("*/", "or so */")) == []
+
+
+def test_a_library_is_what_the_sources_make_here(differences, sampled_export, monkeypatch):
+    """A simulator runs it, and not the sources beside it."""
+    program = program_of(sampled_export)
+    name = library_of(program)
+    compile_with = compiler()
+    assert compile_with is not None
+    own = contents(program, compile_with)[name]
+    assert differences(**{name: own}) == []
+    (found,) = differences(**{name: own[:-1] + bytes([own[-1] ^ 1])})
+    assert found.startswith(f"{name} is not what ")
+    for other in ("binaries/linux64/x.so", "binaries/win64/x.dll", f"{name}.so"):
+        assert differences(**{other: own}) == [f"{other} is not in an export"]
+    monkeypatch.setattr("nrs_design.exporters.deployed_model.compiler", lambda: None)
+    (found,) = differences(**{name: own})
+    assert "no compiler cc" in found
 
 
 def test_one_bit(differences, entries):
@@ -90,7 +114,7 @@ def test_what_is_more_or_less(differences, entries, sampled_export):
     assert differences(**{"sources/other.c": b""}) == ["sources/other.c is not in an export"]
     for name in entries:
         left = packed({k: v for k, v in entries.items() if k != name})
-        assert [*model_differences(left, sampled_export)] == [f"{name} is missing"]
+        assert [*model_differences(unpacked(left), sampled_export)] == [f"{name} is missing"]
 
 
 def test_hostile_files(differences, entries, sampled_export):
@@ -103,5 +127,5 @@ def test_hostile_files(differences, entries, sampled_export):
         archive.writestr("x", bytes(2**24))
     many = packed({str(k): b"" for k in range(1000)})
     for content in (b"", b"PK", pressed.getvalue(), many, packed(entries)[:-9]):
-        (found,) = model_differences(content, sampled_export)
+        (found,) = model_differences(unpacked(content), sampled_export)
         assert found == "it is no archive that was exported"

@@ -1,11 +1,14 @@
 """What every format of the table keeps."""
 
+from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
+from nrs_design.controllers.shipped import shipped_law
+from nrs_design.errors import DesignError
 from nrs_design.exporters import FORMATS
 from nrs_design.exporters.export import Execution, export_design
 
@@ -30,6 +33,18 @@ def exported(name, design, proved):
     if not FORMATS[name].executable or proved.record.sample_time is not None:
         return proved
     return export_design(design, execution=Execution(Fraction(2, 1000), unproved=True))
+
+
+@pytest.mark.parametrize("name", [name for name, item in FORMATS.items() if item.executable])
+def test_names_that_are_none_in_c_are_refused_by_every_program(name, sampled_export, monkeypatch):
+    from nrs_design.exporters import program
+
+    def twice(*arguments):
+        return replace(shipped_law(*arguments), modes=("a-b", "a.b"))
+
+    monkeypatch.setattr(program, "shipped_law", twice)
+    with pytest.raises(DesignError, match="same name in C"):
+        rendered(name, sampled_export)
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -51,7 +52,7 @@ def commands():
 
 def test_commands_and_options_exist():
     known = get_command(make_app()).commands
-    assert len(commands()) == 9
+    assert len(commands()) == 11
     for name, *words in commands():
         options = {option for p in known[name].params for option in p.opts}
         assert {word for word in words if word.startswith("-")} <= options
@@ -62,6 +63,10 @@ def test_commands_work_in_a_project(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("specs").mkdir()
     Path("specs/a.nrs.yaml").write_text(STABLE)
+    (tmp_path / "head").mkdir()
+    Path("specs").rename("head/specs")
+    shutil.copytree("head", "base")
+    monkeypatch.chdir("head")
     # Those that make the lock file come first, as in a project.
     for words in sorted(commands(), key=lambda words: ("--locked" in words, "--lock" in words)):
         arguments = [*words, "specs/a.nrs.yaml"] if words[0] == "check" else words
@@ -88,7 +93,7 @@ def test_hooks(hooks):
 
 def test_actions_are_pinned_by_commit():
     used = [step["uses"] for step in steps() if "uses" in step]
-    assert len(used) == 6
+    assert len(used) == 12
     assert all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", action) for action in used)
 
 
@@ -115,8 +120,12 @@ def test_required_versions_are_those_that_are_tested():
 def test_gitlab_installs_and_keeps_what_github_does():
     jobs = parse(GITLAB)
     before = jobs.pop(".nrs-design")["before_script"]
-    assert before == [step["run"] for step in steps() if "pip install" in step.get("run", "")][:2]
-    assert set(jobs) == {"nrs-design-locked", "nrs-design-gate"}
+    installs = [step["run"] for step in steps() if "pip install" in step.get("run", "")][:2]
+    # In a checkout of the base, and what is judged is read elsewhere.
+    assert before[1:] == [before[1], "cd ../base", *installs, 'cd "$CI_PROJECT_DIR"']
+    assert "CI_MERGE_REQUEST_TARGET_BRANCH_NAME" in before[0]
+    assert before[1] == "git worktree add --detach ../base FETCH_HEAD"
+    assert set(jobs) == {"nrs-design-locked", "nrs-design-weaker", "nrs-design-gate"}
     for job in jobs.values():
         (line,) = job["script"]
         assert job["extends"] == ".nrs-design"
@@ -124,13 +133,44 @@ def test_gitlab_installs_and_keeps_what_github_does():
         assert job["artifacts"]["when"] == "always"
 
 
-def test_a_fork_may_only_read():
+def test_nothing_of_a_pull_request_is_run():
+    """The event takes the recipe from the base; tool and requirements are installed from there."""
     workflow = parse(WORKFLOW)
-    assert set(workflow["jobs"]) == {"locked", "gate"}
-    assert "pull_request_target" not in workflow["on"]
+    assert workflow["on"] == ["push", "pull_request_target"]
+    for name, job in workflow["jobs"].items():
+        if name == "scanning":
+            continue
+        checkouts = [step["with"] for step in job["steps"] if "checkout" in step.get("uses", "")]
+        base, head = checkouts
+        assert (base["path"], "ref" in base) == ("base", False)
+        assert (head["path"], "refs/pull" in head["ref"]) == ("head", True)
+        assert not any(each["persist-credentials"] for each in checkouts)
+        for step in job["steps"]:
+            if "run" in step:
+                installs = "pip install" in step["run"]
+                assert step["working-directory"] == ("base" if installs else "head")
+                assert installs or step["run"].startswith("nrs-design gate specs ")
+    assert "secrets" not in WORKFLOW.read_text().replace("no secret", "")
+
+
+def test_a_pull_request_may_only_read():
+    workflow = parse(WORKFLOW)
+    assert set(workflow["jobs"]) == {"locked", "weaker", "gate", "scanning"}
     assert workflow["permissions"] == {"contents": "read"}
-    (upload,) = [step for step in steps() if "upload-sarif" in step.get("uses", "")]
-    assert "head.repo.full_name == github.repository" in upload["if"]
+    writing = {name for name, job in workflow["jobs"].items() if "permissions" in job}
+    assert writing == {"scanning"}
+    assert workflow["jobs"]["scanning"]["if"] == "always() && github.event_name == 'push'"
+
+
+def test_what_is_weaker_is_asked_by_a_job_of_its_own():
+    jobs = parse(WORKFLOW)["jobs"]
+    asking = {
+        name
+        for name, job in jobs.items()
+        if any("--against ../base" in step.get("run", "") for step in job["steps"])
+    }
+    assert asking == {"weaker"}
+    assert "nrs-design-weaker" in parse(GITLAB)
 
 
 def test_the_licence_is_that_of_the_project():

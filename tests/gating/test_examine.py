@@ -41,7 +41,7 @@ def statuses(obligations):
 
 
 def test_a_mode_of_its_own_is_decided_where_the_system_is_not(examiner):
-    found = examiner.stability(HALF_STABLE, None, "nothing")
+    found = examiner.stability(HALF_STABLE, (), "nothing")
     assert statuses(found) == [
         ("m0", Status.PROVED),
         ("m1", Status.REFUTED),
@@ -53,7 +53,7 @@ def test_a_mode_of_its_own_is_decided_where_the_system_is_not(examiner):
 
 def test_a_refutation_is_said_of_the_system_and_of_the_mode(examiner):
     evidence = certify(HALF_STABLE).evidence
-    found = examiner.stability(HALF_STABLE, evidence, "")
+    found = examiner.stability(HALF_STABLE, (evidence,), "")
     assert statuses(found)[1:] == [("m1", Status.REFUTED), ("system", Status.REFUTED)]
     assert found[2].message == evidence.claim(HALF_STABLE)
 
@@ -61,7 +61,7 @@ def test_a_refutation_is_said_of_the_system_and_of_the_mode(examiner):
 @pytest.mark.parametrize("time", Time)
 def test_numbers_that_are_too_large_leave_a_mode_undecided(examiner, time):
     digits = family([[ENDLESS]], time=time)
-    mode, system = examiner.stability(digits, None, "")
+    mode, system = examiner.stability(digits, (), "")
     assert (mode.status, system.status) == (Status.INCONCLUSIVE, Status.INCONCLUSIVE)
     assert "too large to decide" in mode.message
 
@@ -69,8 +69,10 @@ def test_numbers_that_are_too_large_leave_a_mode_undecided(examiner, time):
 def test_a_proof_covers_modes_that_nobody_could_decide(examiner):
     _, evidence = genuine("common-quadratic")
     digits = family([[-ENDLESS]])
-    claimed = SimpleNamespace(shows=evidence.shows, claim=lambda system: "proved")
-    assert examiner.stability(digits, claimed, "")[0].status is Status.PROVED
+    claimed = SimpleNamespace(
+        shows=evidence.shows, shown=lambda system: evidence.shows, claim=lambda system: "proved"
+    )
+    assert examiner.stability(digits, (claimed,), "")[0].status is Status.PROVED
 
 
 @pytest.mark.parametrize(
@@ -84,7 +86,7 @@ def test_a_proof_covers_modes_that_nobody_could_decide(examiner):
 def test_a_mode_that_must_be_left_may_be_unstable(examiner, entry, status, words):
     stays = (("m0", Stay(Fraction(1), Fraction(2))),)
     system = replace(family([[entry]], [[-1]]), switching=Switching(stays=stays))
-    first = examiner.stability(system, None, "")[0]
+    first = examiner.stability(system, (), "")[0]
     assert (first.status, first.message) == (status, words)
     assert system.switching != ARBITRARY
 

@@ -86,3 +86,39 @@ def test_specs_by_another_name_are_listed(tmp_path):
     (tmp_path / "gone.yaml").symlink_to(tmp_path / "nowhere")
     assert find_misnamed([tmp_path]) == (tmp_path / "arm.yaml", tmp_path / "inner" / "ARM.YML")
     assert find_misnamed([tmp_path / "arm.yaml"]) == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '"kind": robot\nname: a\n',
+        "'kind': 'robot'\nname: a\n",
+        '{"kind": "robot", "name": "a"}',
+        "{name: a, kind: robot}",
+        "kind:   # what this is\n  robot\nname: a\n",
+        "? kind\n: robot\n",
+        '"k\\x69nd": robot\n',
+        "\ufeffkind: robot\n",
+        "---\nkind: robot\n...\n",
+        "%YAML 1.2\n---\nkind : robot\n",
+        "#" + 40_000 * " " + "\nkind: robot\n",
+        # No spec is read from these, and one was meant.
+        "kind: robot\nname: [\n",
+        "kind: !!str robot\n",
+        '"kind": &k "robot"\nlast: *k\n',
+        "name: a\n---\n{'kind': robot}\n",
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_a_kind_is_found_however_it_is_written(tmp_path, text, encoding):
+    (tmp_path / "arm.yaml").write_text(text, encoding=encoding)
+    assert find_misnamed([tmp_path]) == (tmp_path / "arm.yaml",)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["kinds: robot\n", "a: {kind: robot}\n", "# kind: robot\na: b\n", "kind: robot-arm\n", "robot"],
+)
+def test_what_is_no_kind_of_a_spec(tmp_path, text):
+    (tmp_path / "arm.yaml").write_text(text)
+    assert find_misnamed([tmp_path]) == ()

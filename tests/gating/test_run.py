@@ -134,6 +134,18 @@ def test_a_defect_of_one_examination_is_the_worst_and_stops_no_other(examine, mo
     assert outcome.severity == 4
 
 
+def test_what_the_clock_stops_is_inconclusive_and_stops_no_other(examine, monkeypatch):
+    # Each search has a fuse of its own, and may look at it many times.
+    ticks = iter([*[0.0] * 3, *[1e6] * 10**6])
+    monkeypatch.setattr("nrs_design.work.monotonic", lambda: next(ticks))
+    outcome = examine(STABLE.replace("name: stable", "name: other"), STABLE)
+    assert [spec.verdict for spec in outcome.specs] == [None, "proved"]
+    (broken,) = outcome.broken
+    assert (broken.rule.id, broken.status) == ("NRS008", Status.INCONCLUSIVE)
+    assert "the clock stopped this" in broken.message
+    assert outcome.severity == 1
+
+
 def test_a_certificate_that_does_not_hold_when_read_back_is_reported(examine, monkeypatch):
     from nrs_design.certificates.certificate import dump
     from nrs_design.gating import run
@@ -203,7 +215,7 @@ class TestStiffnessRange:
             (spec,) = run_gate([path], Files(tmp_path, html=False)).specs
             (goal,) = [item for item in spec.obligations if item.rule.id == "NRS103"]
             assert goal.status is status
-            assert "in the corners of its gain ranges" in goal.message
+            assert "at the worst corner of the other ranges" in goal.message
             assert ("the limit 75.9" in goal.message) is (status is Status.MISSED)
 
 

@@ -1,7 +1,10 @@
 """Files that a stranger may send: each case writes one into a folder."""
 
+import io
 import json
 import os
+import struct
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -189,6 +192,52 @@ PROPOSALS: dict[str, Callable[[], str | bytes]] = {
                                       for i in range(24)]}
     ),
 }  # fmt: skip
+
+
+def deep_cells(depth: int) -> bytes:
+    """Write a MATLAB file with a cell in a cell in a cell ..., on which its reader crashes."""
+    cell = struct.pack("<II IIII IIii II", 14, 48, 6, 8, 1, 0, 5, 8, 1, 1, 1, 0)
+    content = cell * depth + struct.pack("<II", 14, 0)
+    return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<HH", 0x100, 0x4D49) + content
+
+
+def packed(**entries: bytes) -> bytes:
+    """Write a zip archive."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in entries.items():
+            archive.writestr(name.replace("__", "/"), content)
+    return file.getvalue()
+
+
+def claimed(shape: str) -> bytes:
+    """Write an array of NumPy that claims a shape, without its entries."""
+    head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}".encode()
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head) + 1) + head + b"\n"
+
+
+def far_cells() -> bytes:
+    """Write a sheet of 5 KB whose two cells are at the corners of 17 thousand million."""
+    from openpyxl import Workbook
+
+    book, file = Workbook(), io.BytesIO()
+    book.active["A1"] = "time_s"
+    book.active.cell(1_048_576, 16_384, 1.0)
+    book.save(file)
+    return file.getvalue()
+
+
+# Of other programs, by the name of the file; a process of its own reads them.
+FOREIGN: dict[str, Callable[[], bytes]] = {
+    "deep.mat": lambda: deep_cells(100_000),
+    "short.mat": lambda: b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM" + b"\x0e" * 100,
+    "huge.npz": lambda: packed(**{"P.npy": claimed("(1099511627776,)"), "A.npy": claimed("(9,)")}),
+    "long.npz": lambda: packed(**{"P.npy": claimed("(" + "1," * 9000 + ")")}),
+    "object.npz": lambda: packed(**{"P.npy": claimed("(1,)").replace(b"<f8", b"|O ")}),
+    "far.xlsx": far_cells,
+    "entities.xlsx": lambda: packed(xl__workbook=b'<!DOCTYPE a [<!ENTITY a "b">]><a>&a;</a>'),
+    "short.parquet": lambda: b"PAR1" + b"\xff" * 1000 + b"PAR1",
+}
 
 NAMES = (
     "a\n::error::x.nrs.yaml",

@@ -8,6 +8,7 @@ import pytest
 from nrs_design.gating.lock import Lock, dump_lock
 from tests.hostile.corpus import (
     CERTIFICATES,
+    FOREIGN,
     LARGE_SPECS,
     LOCKS,
     NAMES,
@@ -138,6 +139,24 @@ def test_a_proposal(place, case):
     check(place, "check-lyapunov", "p.json", codes=(0, 1, 2))
 
 
+IDENTIFY, CHECK = ("identify", "tissue"), ("check-lyapunov",)
+READ = [(IDENTIFY, name) for name in FOREIGN]
+READ += [(CHECK, name) for name in FOREIGN if name.endswith((".mat", ".npz"))]
+# A crash, and a claim of 8 TB.
+SHOWN = [(IDENTIFY, "deep.mat"), (CHECK, "huge.npz")]
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [pytest.param(*case, marks=() if case in SHOWN else pytest.mark.slow) for case in READ],
+)
+def test_a_file_of_another_program(place, command, name):
+    """Such as a sheet of thousands of millions of cells: one message each."""
+    write(place / "work" / name, FOREIGN[name]())
+    ended = check(place, *command, name, codes=(2,))
+    assert ended.text.count("error[NRS006]") == 1
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize(
     "command",
@@ -175,6 +194,19 @@ def test_what_is_no_file(place, command, kind):
     else:
         path.symlink_to("/dev/zero")
     check(place, *command, codes=(2,))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in folders")
+@pytest.mark.parametrize("kind", ["pipe", "device"])
+def test_what_is_no_schema_is_not_read(place, kind):
+    """The file that `init` writes for editors, where something else lies in its place."""
+    path = place / "work/nrs.schema.json"
+    if kind == "pipe":
+        os.mkfifo(path)
+    else:
+        path.symlink_to("/dev/zero")
+    ended = check(place, "init", "robot", "--out", "new.nrs.yaml", codes=(0,))
+    assert "nrs.schema.json cannot be read" in ended.text
 
 
 @pytest.mark.parametrize("name", ["nul.cert.json", "AUX", "com1.html"])

@@ -24,6 +24,20 @@ def copy(seed, *, delay=DELAY, noise=0.01, gain=0.9):
     return pair(fine[at], seen)
 
 
+def held(seed, delay, *, lasts=1.0, begins=0.0, noise=0.01, count=400):
+    """A command that is held, later; it changes so many samples after one, and lasts so many."""
+    random = np.random.default_rng([seed, 9])
+    changes = begins + lasts * np.arange(-20, count / lasts + 20)
+    levels = random.normal(size=len(changes))
+
+    def at(times):
+        return levels[np.searchsorted(changes, times + 1e-9, "right") - 1]
+
+    samples = np.arange(count)
+    seen = 0.9 * at(samples - delay) + noise * random.normal(size=count)
+    return SignalRecord(source("held"), samples / RATE, at(samples), seen, ("sent", "seen"))
+
+
 def lag(seed, kind="PRBS", *, is_angle=False, second=0.0):
     """A motor without friction; its delay is that of `motors`."""
     noise = 3e-4 if is_angle else 0.01

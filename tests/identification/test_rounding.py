@@ -24,6 +24,30 @@ def test_a_smooth_signal_has_no_step():
     assert resolution(np.zeros(100)) == 0.0
 
 
+RAMPS = 0.005 * np.interp(TIME % 4, [0, 0.5, 1.5, 2.5, 3.5, 4], [0, 0, 1, 1, 0, 0])
+
+
+def test_the_step_of_a_ramp_is_not_the_step_of_its_sensor():
+    """Whatever moves evenly changes by one amount from sample to sample, rounded or not."""
+    for clean in (RAMPS, 3 + RAMPS, np.abs(TIME % 2 - 1), RAMPS.astype(np.float32).astype(float)):
+        assert resolution(clean) == 0.0
+    # 5e-5 m from sample to sample.
+    assert resolution(1e-5 * np.round(RAMPS / 1e-5)) == 0.0
+
+
+@pytest.mark.parametrize("step", [3e-4, 1.2e-4, 2.1e-5, 1.3e-5])
+def test_the_step_of_the_sensor_under_a_ramp(step):
+    """Slower and faster than a step from sample to sample."""
+    assert resolution(step * np.round(RAMPS / step)) == pytest.approx(step)
+
+
+def test_a_step_that_is_rounded_again_by_the_digits_of_a_file():
+    count = 0.1 * 2 * np.pi / 4096
+    assert resolution(np.round(count * np.round(SMOOTH / count), 6)) == pytest.approx(
+        count, rel=0.01
+    )
+
+
 def test_rounding_dominates_a_slow_velocity():
     coarse = 1e-4 * np.round(SMOOTH / 1e-4)
     true = np.mean(np.gradient(SMOOTH, TIME) ** 2)
@@ -38,8 +62,8 @@ def test_a_stretch_of_equal_readings_is_one_error():
 
 
 def test_rests_with_one_reading_are_one_error():
-    readings = np.repeat([0.0, 1.0, 2.0, 1.0, 0.0], [20, 1, 1, 1, 20])
-    J = np.ones((43, 1))
+    readings = np.repeat([0.0, 1.0, 2.0, 1.0, 0.0], [20, 2, 2, 2, 20])
+    J = np.ones((46, 1))
     apart, together = (rounding_scatter(readings, J, 1.0, returns=r) for r in (False, True))
-    assert 12 * apart[0, 0] == pytest.approx(2 * 20**2 + 3)
-    assert 12 * together[0, 0] == pytest.approx(40**2 + 3)
+    assert 12 * apart[0, 0] == pytest.approx(2 * 20**2 + 3 * 2**2)
+    assert 12 * together[0, 0] == pytest.approx(40**2 + 3 * 2**2)

@@ -132,3 +132,20 @@ def test_a_quaternion_has_length_one(tmp_path):
     with pytest.raises(DataError, match="length 2") as caught:
         read_poses(path)
     assert caught.value.line == 3
+
+
+def test_millinewtons_that_pass_for_newtons():
+    roll, pitch, wrench = synthetic.tool_poses(12, seed=5)
+    down = np.column_stack(
+        [np.sin(pitch), -np.cos(pitch) * np.sin(roll), -np.cos(pitch) * np.cos(roll)]
+    )
+    for factor, said in ((1.0, ()), (1e3, "kg: is that its unit? did you mean 79")):
+        made = PoseRecord(
+            Source(Path("poses.csv"), "0" * 64, True),
+            down,
+            factor * wrench[:, :3],
+            factor * wrench[:, 3:],
+        )
+        found = identify_tool([made], 9.81)
+        assert (said in found.slips[0]) if said else found.slips == ()
+        assert found.doubts[: len(found.slips)] == found.slips

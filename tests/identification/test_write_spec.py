@@ -11,7 +11,13 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.tissue import identify_tissue
-from nrs_design.identification.write_spec import merge_actuator, merge_delay, merge_tissue
+from nrs_design.identification.write_spec import (
+    law_to_write,
+    merge_actuator,
+    merge_delay,
+    merge_tissue,
+    spec_changes,
+)
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
@@ -175,6 +181,37 @@ def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, fil
     assert merge_actuator(merged(tmp_path, text), motor) == text
 
 
+def test_what_changes_and_what_is_lost(tmp_path, silicone):
+    text = SOFT_TISSUE.read_text().replace(
+        "    model: elastic\n", "    model: kelvin-voigt\n    damping: 5 N*s/m\n"
+    )
+    loaded = merged(tmp_path, text)
+    new = merge_tissue(loaded, silicone, None, None)
+    changed, lost = spec_changes(loaded, new)
+    assert lost == ("environments.soft.damping: 5 N*s/m",)
+    assert "environments.soft.model: kelvin-voigt -> elastic" in changed
+    assert any(line.startswith("environments.soft.stiffness: 747.1461 N/m -> ") for line in changed)
+    assert spec_changes(loaded, text) == ((), ())
+
+
+def test_the_declared_law_is_kept(tmp_path):
+    options = {"preloaded": False, "rotational": False}
+    loaded = read_spec(ROBOT / "tissue-and-tool.nrs.yaml")
+    assert law_to_write(loaded, "soft", None, None, **options) == "elastic"
+    assert law_to_write(loaded, "soft", None, "kelvin-voigt", **options) == "kelvin-voigt"
+    with pytest.raises(DataError, match="hunt-crossley has no place"):
+        law_to_write(loaded, "soft", None, "hunt-crossley", **options)
+    with pytest.raises(SpecError, match="several environments"):
+        law_to_write(loaded, None, None, None, **options)
+    held = "    model: hand\n    damping: 5 N*s/m\n    mass: 0.1 kg\n"
+    hand = merged(tmp_path, SOFT_TISSUE.read_text().replace("    model: elastic\n", held))
+    with pytest.raises(
+        SpecError, match="soft is a hand, which no record of a press tells"
+    ) as caught:
+        law_to_write(hand, None, None, None, **options)
+    assert "--model elastic" in caught.value.remedy
+
+
 DWELL = "switching: {dwell_time: 2 s}"
 STATED = """  zero: 56.9706 1/s
   transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}"""
@@ -286,7 +323,7 @@ def test_maxwell_has_a_place_in_a_spec(tmp_path):
 def test_laws_without_a_place_in_a_spec():
     data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
     found = identify_tissue(data, "hunt-crossley")
-    with pytest.raises(DataError, match="hunt-crossley, has no place") as caught:
+    with pytest.raises(DataError, match="hunt-crossley has no place") as caught:
         merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
     assert "--model kelvin-boltzmann" in caught.value.remedy
 

@@ -78,7 +78,7 @@ def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch):
         monkeypatch,
         # It is imported where it is called, so there is one place to look.
         build_plant=("models.plant",),
-        optimize_impedance=("design.constrained", "design.laws.impedance"),
+        optimize_impedance=("design.constrained",),
         design_controllers=("design.design",),
     )
     outcome = run_gate([SOFT_TISSUE], Files(tmp_path, html=True))
@@ -109,7 +109,6 @@ def test_functions_are_counted_wherever_they_are_used():
             "optimize_impedance",
             {
                 "design/constrained",
-                "design/laws/impedance",
                 "design/impedance_optimum",
                 "design/landscape",
             },

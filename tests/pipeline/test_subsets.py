@@ -28,7 +28,8 @@ def test_what_is_proved_with_as_little_left_out_as_possible(tmp_path):
     late = "sampling: {period: 2 ms, delay: [0, 5]}\ncontact: losable\n"
     path.write_text(f"{text}\n{late}", encoding="utf-8")
     result = run_certification(read_spec(path), limits=Limits(optimize_rate=False))
-    assert result.certification.verdict is Verdict.REFUTED
+    assert result.certification.verdict is Verdict.INCONCLUSIVE
+    assert result.certification.refuted_in == "in kept contact"
     told: list[str] = []
     (subset,) = run_subsets(result, progress=told.append)
     assert subset.left_out == ("ages of the force sample beyond the shortest",)

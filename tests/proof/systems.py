@@ -9,7 +9,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import Realization
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -206,6 +206,58 @@ def bouncing(damping: Entry = 0) -> SwitchedSystem:
     return replace(family(*contact), contact=Contact((free,), pulls))
 
 
+def sucking_in() -> SwitchedSystem:
+    """A mass that what it touches draws in: its contact grows along ``v = delta``, never lost."""
+    free = Mode("free", matrix([[-1, 0], [1, 0]]))
+    system = family([[-1, 2], [1, 0]])
+    return replace(system, contact=Contact((free,), required=True))
+
+
+def sucking_in_steps(damping: Entry = 0) -> SwitchedSystem:
+    """The same in steps; with damping, its force is one of the deflection and of the speed."""
+    b = Fraction(damping)
+    free = Mode("free", matrix([["1/2", 0], [1, 1]]))
+    pulls = (matrix([[b, 1]]), matrix([[b, 2]])) if b else ()
+    system = family([["1/2", "1/4"], [1, 1]], time=Time.DISCRETE)
+    return replace(system, contact=Contact((free,), pulls, required=True))
+
+
+def juggling() -> SwitchedSystem:
+    """A loop that grows by 1.9 in every step of contact with one of flight, and in no mode alone.
+
+    In kept contact it would grow with a deflection that changes its sign.
+    """
+    free = matrix([["-4/5", "9/10", 0], ["1/10", "1/2", 0], ["9/10", 0, 1]])
+    contact = [["-4/5", "9/10", "8/5"], ["1/10", "1/2", "-11/10"], ["9/10", 0, 1]]
+    system = family(contact, time=Time.DISCRETE)
+    return replace(system, contact=Contact((Mode("free", free),), required=True))
+
+
+def juggling_among_modes() -> SwitchedSystem:
+    """The same, with free motion among the modes."""
+    system = juggling()
+    assert system.contact is not None
+    flights = Flights(("m0",), ("free",))
+    modes = (*system.modes, *system.contact.free)
+    return replace(system, modes=modes, contact=None, flights=flights)
+
+
+def juggling_in_turns() -> SwitchedSystem:
+    """The same, with modes of the same matrices that take turns at every second step."""
+    system = juggling()
+    assert system.contact is not None
+    ((mode,), (free,)) = system.modes, system.contact.free
+    modes, flying = ((m, replace(m, name=f"{m.name} again")) for m in (mode, free))
+    contact = replace(system.contact, free=flying)
+    return replace(system, modes=modes, contact=contact, clock=Clock(2, ("m0", "free")))
+
+
+def drifting() -> SwitchedSystem:
+    """A mass that grows faster in the air."""
+    free = Mode("free", matrix([[1, 0], [1, 0]]))
+    return replace(family([[-2, -1], [1, 0]]), contact=Contact((free,), required=True))
+
+
 def settling() -> SwitchedSystem:
     """The same without damping, pushed in by a constant force."""
     system = bouncing()
@@ -360,6 +412,13 @@ SYSTEMS = {
     "saturated-ellipsoid, kept": lambda: kept(saturating()),
     "saturated-ellipsoid, scalar": pushed_away,
     "unstable-mode": lambda: family([[0, 1], [-1, 0]]),
+    "unstable-mode, free": drifting,
+    "unstable-contact": juggling,
+    "unstable-contact, continuous": sucking_in,
+    "unstable-contact, steps": sucking_in_steps,
+    "unstable-contact, pulling": lambda: sucking_in_steps("1/2"),
+    "unstable-contact, among modes": juggling_among_modes,
+    "unstable-contact, in turns": juggling_in_turns,
     "unstable-mixture": shears,
     "unstable-period": branicky,
     "unstable-period, discrete": lambda: golden("0.6181"),

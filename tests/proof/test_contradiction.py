@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
-from nrs_design.proof.contact import Contact
+from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -17,6 +17,8 @@ from tests.proof.systems import (
     bouncing_in_turns,
     doubled_in_turns,
     family,
+    juggling,
+    juggling_among_modes,
     kept,
     matrix,
     pushed,
@@ -411,3 +413,26 @@ def test_signals_that_make_no_sense(changes, reason):
     system = saturating()
     odd = replace(system, saturation=replace(system.saturation, **changes))
     assert reason in str(find_contradiction(odd))
+
+
+@pytest.mark.parametrize(
+    ("flights", "reason"),
+    [
+        (Flights(("m0",), ("m0",)), "no mode, or is both"),
+        (Flights(("m0",), ("fre",)), "no mode, or is both"),
+        (Flights(("m0",), ("free",), (matrix([[1, 1]]),)), "a force is not one row"),
+    ],
+)
+def test_free_motion_among_the_modes_that_makes_no_sense(flights, reason):
+    system = juggling_among_modes()
+    assert find_contradiction(system) is None
+    assert reason in find_contradiction(replace(system, flights=flights))
+
+
+def test_free_motion_is_among_the_modes_or_beside_them():
+    system, words = juggling_among_modes(), "among the modes and beside them"
+    both = replace(juggling(), flights=Flights(("m0",), ()))
+    unequal = replace(family([[-1]], [[-1, 0], [0, -1]]), flights=Flights((), ()))
+    assert words in find_contradiction(both)
+    assert words in find_contradiction(unequal)
+    assert system.flights.among(["free"]) == Flights((), ("free",))

@@ -18,6 +18,7 @@ from tests.proof.systems import (
     doubled_in_turns,
     family,
     genuine,
+    juggling_among_modes,
     matrix,
     saturating,
     settling,
@@ -143,7 +144,7 @@ def test_the_largest_family_that_is_read():
 def test_the_largest_motions_without_contact_that_are_read():
     """Each of them is decided once, and once more for each force."""
     pull = {"numerators": [[1] * 10], "denominator": 1}
-    contact = {"free": tens(50), "pulls": [pull], "required": False}
+    contact = {"free": tens(50), "pulls": [pull], "required": False, "loss": ""}
     fields = stored(family([[1]])) | {"states": [f"x{i}" for i in range(10)], "modes": tens(1)}
     assert len(read_system("x", {**fields, "contact": contact}).contact.free) == 50
     with pytest.raises(ValueError, match="too large to check"):
@@ -211,3 +212,23 @@ def test_what_saturates_is_written_only_where_something_does():
                     "saturation": {k: v for k, v in fields["saturation"].items() if k != part},
                 },
             )
+
+
+def test_how_contact_is_lost_is_written_beside_the_assumptions():
+    bounce = bouncing()
+    system = replace(bounce, contact=replace(bounce.contact, loss="as it goes"))
+    fields = json.loads(json.dumps(system_fields(system)))
+    assert (fields["contact"]["loss"], fields["assumptions"]) == ("as it goes", [])
+    assert read_system(system.name, fields) == system
+    del fields["contact"]["loss"]
+    with pytest.raises(KeyError):
+        read_system(system.name, fields)
+
+
+def test_free_motion_among_the_modes_is_read_as_it_was_written():
+    system = juggling_among_modes()
+    pulling = replace(system, flights=replace(system.flights, pulls=(matrix([[1, 0, 2]]),)))
+    for written in (system, pulling):
+        fields = json.loads(json.dumps(system_fields(written)))
+        assert read_system(written.name, fields) == written
+        assert written.is_losable

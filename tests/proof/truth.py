@@ -30,6 +30,7 @@ from nrs_design.proof.evidence import (
     ParameterQuadratic,
     PeriodicQuadratic,
     SaturatedEllipsoid,
+    UnstableContact,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
@@ -166,7 +167,8 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether what the numbers say is true for this system."""
-    if system.clock is not None and not isinstance(evidence, PeriodicQuadratic | UnstablePeriod):
+    clocked = PeriodicQuadratic | UnstableContact | UnstablePeriod
+    if system.clock is not None and not isinstance(evidence, clocked):
         return False
     return _ORACLES[type(evidence)](system, evidence)
 
@@ -840,9 +842,57 @@ def _floats(rows) -> np.ndarray:
 
 
 def _unstable_mode(system: SwitchedSystem, item: UnstableMode) -> bool:
-    A = next(mode.A for mode in system.modes if mode.name == item.mode)
+    A = next((mode.A for mode in system.modes if mode.name == item.mode), None)
+    if A is None:
+        # In the air, the deflection is not looked at.
+        (whole,) = (m.A.fractions() for m in system.contact.free if m.name == item.mode)
+        A = RationalMatrix.from_rows([row[:-1] for row in whole[:-1]])
     may_stay = bounds_of(system, item.mode)[1] is None
     return may_stay and _is_marginal_or_worse(A, system.time)
+
+
+def _unstable_contact(system: SwitchedSystem, item: UnstableContact) -> bool:
+    """Follow every eigenvector of the sequence, as contact is lost and made."""
+    contact, flights = system.contact, system.flights
+    free = () if contact is None else contact.free
+    pulls = (contact or flights).pulls
+    felt = {m.name for m in free} if flights is None else set(flights.flying)
+    touching = {m.name for m in system.modes} if flights is None else set(flights.touching)
+    matrices = {m.name: np.array(m.A.floats()) for m in (*system.modes, *free)}
+    names = [name for name, count in item.steps for _ in range(count)]
+    if system.clock is not None:
+        turns = [name in system.clock.first for name in names]
+        if len(names) % 2 or turns not in ([True, False] * (len(names) // 2),
+                                           [False, True] * (len(names) // 2)):  # fmt: skip
+            return False
+    M = np.eye(system.order)
+    for name in names:
+        M = matrices[name] @ M
+    low, high = map(float, item.factor)
+    limit = 0.0 if system.time is Time.CONTINUOUS else 1.0
+    if low < limit or (system.time is Time.CONTINUOUS and len(names) > 1):
+        return False
+
+    def keeps(x: np.ndarray) -> bool:
+        for name in names:
+            forces = [float(np.array(row.floats())[0] @ x) for row in pulls]
+            touches = x[-1] > 0 and all(force > 0 for force in forces)
+            flies = x[-1] < 0 or (bool(forces) and all(force < 0 for force in forces))
+            if (name in touching and not touches) or (name in felt and not flies):
+                return False
+            x = matrices[name] @ x
+        return True
+
+    for value, vector in zip(*_eigen(M), strict=True):
+        near = low * (1 - 1e-9) <= value.real <= high * (1 + 1e-9) and abs(value.imag) < 1e-12
+        if near and any(keeps(sign * vector.real) for sign in (1, -1)):
+            return True
+    return False
+
+
+def _eigen(M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    values, vectors = np.linalg.eig(M)
+    return values, vectors.T
 
 
 def _unstable_mixture(system: SwitchedSystem, item: UnstableMixture) -> bool:
@@ -973,6 +1023,7 @@ _ORACLES = {
     ModePolynomial: _mode_polynomials_decrease,
     ModeQuadratic: _mode_quadratic,
     UnstableMode: _unstable_mode,
+    UnstableContact: _unstable_contact,
     UnstableMixture: _unstable_mixture,
     UnstablePeriod: _unstable_period,
     UnstableValue: _unstable_value,

@@ -10,8 +10,8 @@ from nrs_design.reproduction.comparison import (
     claim,
     derived,
     drifted,
+    fitted,
     format_number,
-    hardware_only,
     meets_standard,
     misprint,
     near,
@@ -25,7 +25,9 @@ def confirm(printed, value, tolerance, **options):
 
 
 def correct(printed, value, tolerance, right):
-    return misprint("quantity", "1.1", printed, value, "s", tolerance, right=right, note="why")
+    return misprint(
+        "quantity", "1.1", printed, value, "s", tolerance, right=right, note="why", errata=("e",)
+    )
 
 
 @pytest.mark.parametrize(
@@ -53,7 +55,7 @@ def test_words_in_print_have_no_deviation():
 
 def test_misprint_needs_the_right_value():
     row = correct("3.7754", 3.74541, Tolerance(1e-4), "3.7454")
-    assert row.verdict == "print is wrong"
+    assert row.verdict == "printed differently"
     assert row.deviation == pytest.approx(0.0301 / 3.7754, rel=1e-2)
     assert correct("3.7754", 3.7554, Tolerance(1e-4), "3.7454").verdict == "drift"
 
@@ -64,10 +66,12 @@ def test_misprint_is_a_drift_if_the_print_is_right_after_all():
 
 def test_a_claim_that_no_longer_holds_is_a_drift():
     verdicts = [
-        claim("q", "1", "p", "v", verdict=PrintVerdict.PRINT_IS_WRONG, holds=holds, note="").verdict
+        claim(
+            "q", "1", "p", "v", verdict=PrintVerdict.PRINTED_DIFFERENTLY, holds=holds, note=""
+        ).verdict
         for holds in (True, False)
     ]
-    assert verdicts == ["print is wrong", "drift"]
+    assert verdicts == ["printed differently", "drift"]
 
 
 def test_pairs_of_poles():
@@ -95,10 +99,11 @@ def test_value_shows_as_many_digits_as_the_print():
     assert confirm("4.8417e-4", 4.8417237e-4, Tolerance(1e-4)).value == "0.000484172"
 
 
-def test_nothing_is_computed_for_hardware_and_omitted_data():
-    rows = hardware_only("q", "1", "20", "%"), omitted("q", "1", "20", "%", "no record")
-    assert [row.verdict for row in rows] == ["hardware only", "needs data"]
-    assert [(row.value, row.deviation) for row in rows] == [(None, None)] * 2
+def test_what_cannot_be_recomputed_says_why():
+    row = omitted("q", "1", "20", "%", "there is no record")
+    assert row.verdict == "not reproducible"
+    assert (row.value, row.deviation, row.drift) == (None, None, None)
+    assert row.note == "Not reproducible, because there is no record."
 
 
 def test_drifted_picks_the_drifts():
@@ -155,9 +160,36 @@ def test_what_is_cut_off_is_said(printed, value, cut):
 
 def test_near_is_neither_reproduced_nor_far():
     def close(value):
-        return near("q", "1", "1.00", value, "s", Tolerance(0.1), note="why").verdict
+        options = {"right": "1.05", "because": "why"}
+        return near("q", "1", "1.00", value, "s", Tolerance(0.1), **options).verdict
 
-    assert [close(value) for value in (1.0, 1.05, 1.2)] == ["drift", "needs data", "drift"]
+    assert [close(value) for value in (1.0, 1.05, 1.2)] == ["drift", "not reproducible", "drift"]
+
+
+def test_print_and_reference_are_two_things():
+    """Far from the print and on our reference is no drift, and the other way about it is one."""
+
+    def found(value):
+        row = near("q", "1", "2.0", value, "s", Tolerance(1e-3), right="2.5", because="why")
+        return row.verdict, row.deviation, row.precision, row.drift, row.limit
+
+    assert found(2.5) == ("not reproducible", 0.25, "0.1", 0.0, "0.1 %")
+    assert found(2.4)[0] == "drift"
+    row = confirm("2.15", 2.1514, Tolerance(absolute=1e-4), right="2.1514")
+    assert (row.precision, row.drift, row.limit) == ("0.01", 0.0, "0.0001")
+
+
+def test_precision_number_by_number():
+    assert confirm(("1000", "2", "1000"), (1000.0, 2.0, 1000.0), Tolerance(1.0)).precision == (
+        "0.1 %, 1"
+    )
+
+
+def test_what_is_fitted_names_its_constant():
+    row = fitted("q", "1", "1.00", 1.0, "s", Tolerance(1e-3), constants="l0 = 200 mm")
+    assert (row.verdict, row.fitted) == ("fitted", "l0 = 200 mm")
+    far = fitted("q", "1", "1.00", 1.1, "s", Tolerance(1e-3), constants="l0 = 200 mm")
+    assert far.verdict == "drift"
 
 
 def test_derived_numbers_are_held_to_the_record():
@@ -176,4 +208,4 @@ def test_derived_numbers_are_held_to_the_record():
 )
 def test_tolerance_in_words(tolerance, text):
     assert str(tolerance) == text
-    assert confirm("2", 2.0, tolerance).tolerance == text
+    assert confirm("2", 2.0, tolerance).limit == text

@@ -1,8 +1,9 @@
 from dataclasses import replace
 
-from nrs_design.reproduction.comparison import hardware_only
-from nrs_design.reproduction.page import format_deviation, render_page
+from nrs_design.reproduction.comparison import omitted
+from nrs_design.reproduction.page import format_within, render_page
 from nrs_design.reproduction.specimens import rows
+from nrs_design.reproduction.table import counts_line
 
 
 def test_page_is_self_contained():
@@ -18,8 +19,10 @@ def test_page_shows_every_row():
         assert row.name in page
         assert row.printed in page
         assert row.verdict in page
-        assert row.tolerance in page
-    assert "4 reproduced" in page
+        assert row.limit in page
+        assert row.precision in page
+    assert counts_line(rows()) in page
+    assert "converted by machine" in page
 
 
 def test_page_is_the_same_every_time():
@@ -27,7 +30,7 @@ def test_page_is_the_same_every_time():
 
 
 def test_hostile_text_is_escaped():
-    row = replace(hardware_only("<script>alert(1)</script>", "1", '"&', "%"), note="a < b")
+    row = replace(omitted("<script>alert(1)</script>", "1", '"&', "%", "why"), note="a < b")
     page = render_page((row,))
     assert "<script" not in page
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
@@ -36,7 +39,8 @@ def test_hostile_text_is_escaped():
 
 
 def test_deviation_text():
-    assert [format_deviation(d) for d in (None, 0.0, 0.000468)] == ["", "0", "4.7e-04"]
+    found = [format_within(d, "0.1 %") for d in (None, 0.0, 0.000468)]
+    assert found == ["", "0 (0.1 %)", "4.7e-04 (0.1 %)"]
 
 
 def test_the_page_of_figures_is_linked_where_there_is_one():
@@ -49,6 +53,6 @@ def test_the_page_of_figures_is_linked_where_there_is_one():
 def test_a_telephone_names_every_value():
     """Below 48rem the head of the table is gone, and each cell says what it is."""
     page = render_page(rows())
-    for column in ("Printed", "Recomputed", "Unit", "Deviation", "Tolerance"):
+    for column in ("Printed", "Recomputed", "Unit", "Off the print", "Off our reference"):
         assert page.count(f'<td data-label="{column}"') == len(rows())
     assert "attr(data-label)" in page

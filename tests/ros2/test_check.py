@@ -47,11 +47,64 @@ def test_what_nothing_is_said_of_is_not_proved(tmp_path):
     assert "give --rotational-stiffness" in found.obligations[4].message
 
 
-def test_filters_that_are_not_modelled(tmp_path):
-    chain = "    sensor_filter_chain:\n      filter1: {type: a}\n    control:"
-    file = changed(tmp_path, ("    control:", chain), ("      filter_coefficient: 0.5\n", ""))
-    found, _, _ = statuses(file, Question((0, 0), SOFT, None))
+CHAIN = "sensor_filter_chain: {filter1: {name: low, type: filters/LowPassFilterWrench}}"
+BROADCASTER = "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
+
+
+def with_node(tmp_path, name, parameters, kind=None, changes=()):
+    """Write the example with one more node, whose type the manager says."""
+    listed = "    admittance_controller: {type:"
+    more = f"    {name}: {{type: {kind}}}\n" if kind else ""
+    file = changed(tmp_path, (listed, more + listed), *changes)
+    with file.open("a") as stream:
+        stream.write(f"{name}:\n  ros__parameters: {{{parameters}}}\n")
+    return file
+
+
+def test_a_filter_chain_is_one_of_the_broadcaster(tmp_path):
+    """The controller passes over it; the broadcaster publishes what it filters."""
+    own = changed(tmp_path, ("    control:", f"    {CHAIN}\n    control:"))
+    found, _, _ = statuses(own, Question((0, 2), SOFT, None))
+    assert found.verdict == "proved"
+    (caution,) = found.cautions
+    assert "sensor_filter_chain.filter1.name: is for force_torque_sensor_broadc" in caution.message
+    other = with_node(tmp_path, "ft", f"sensor_name: tcp_sensor, {CHAIN}", BROADCASTER)
+    found, _, notes = statuses(other, Question((0, 2), SOFT, None))
+    assert found.verdict == "proved"
+    assert found.cautions == ()
+    assert "passed over, because they command nothing: ft" in notes
+
+
+@pytest.mark.parametrize("source", ["ft/tcp_sensor", "ft"])
+def test_a_force_that_comes_through_another_controller_is_not_modelled(tmp_path, source):
+    """A broadcaster multiplies what it exports, a chained filter filters it."""
+    names = [("name: tcp_sensor", f"name: {source}")]
+    for kind in (BROADCASTER, "chained_filter_controller/ChainedFilter"):
+        file = with_node(tmp_path, "ft", "sensor_name: tcp_sensor", kind, names)
+        found, status, _ = statuses(file, Question((0, 2), SOFT, None))
+        assert found.verdict == "inconclusive"
+        assert status[1:7] == [*[Status.INCONCLUSIVE] * 3, *[Status.PROVED] * 3]
+        assert "its force comes through ft, another controller" in found.obligations[1].message
+
+
+@pytest.mark.parametrize(
+    ("kind", "own", "words"),
+    [
+        ("my_pkg/MyAdmittance", "admittance: {mass: 1.0}", "of type my_pkg/MyAdmittance is here"),
+        ("joint_trajectory_controller/JointTrajectoryController", "joints: [a]", "JointTraj"),
+        (None, "type: my_pkg/Mine, admittance: {mass: 1.0}", "of type my_pkg/Mine is here"),
+        (None, "joints: [a]", "nothing in this file says of which type it is"),
+    ],
+)
+def test_another_controller_of_the_file_is_named_and_undecided(tmp_path, kind, own, words):
+    file = with_node(tmp_path, "arm", own, kind)
+    found, status, _ = statuses(file, Question((0, 2), SOFT, None))
     assert found.verdict == "inconclusive"
+    assert status == [Status.MET, *[Status.PROVED] * 6, Status.INCONCLUSIVE]
+    last = found.obligations[-1]
+    assert last.message.startswith("arm: passed over, so undecided: ")
+    assert words in last.message
+    assert last.rule.id == "NRS203"
 
 
 def test_rates(tmp_path):
@@ -90,10 +143,9 @@ def test_a_rate_of_its_own_that_does_not_divide_the_rate_of_the_loop(tmp_path):
     [
         "/**:\n  ros__parameters: {ft_sensor.filter_coefficient: 0.9}\n",
         "/**/admittance_controller:\n  ros__parameters: {admittance: {joint_damping: 0.0}}\n",
-        "/*:\n  ros__parameters: {sensor_filter_chain: {filter1: {name: low, type: pass}}}\n",
         "/admittance_controller:\n  ros__parameters: {ft_sensor.filter_coefficient: 0.9}\n",
     ],
-    ids=["all nodes", "any namespace", "a chain", "the same name"],
+    ids=["all nodes", "any namespace", "the same name"],
 )
 def test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over(tmp_path, more):
     """ROS 2 gives a node the parameters of wildcards, too; a default was taken for them."""
@@ -111,7 +163,6 @@ def test_a_wildcard_that_says_nothing_of_the_law_and_other_nodes(tmp_path):
     with file.open("a") as stream:
         stream.write(
             "/**:\n  ros__parameters: {use_sim_time: true}\n"
-            "/**/gripper:\n  ros__parameters: {update_rate: 100}\n"
             "/other/*:\n  ros__parameters: {update_rate: 100}\n"
             "/other/**:\n  ros__parameters: {update_rate: 100}\n"
         )
@@ -161,6 +212,13 @@ def test_a_type_counts_whichever_of_several_managers_says_it(tmp_path):
     assert any("second" in item.message for item in found.obligations)
 
 
+def test_what_cannot_be_read_beside_what_is_proved_has_no_verdict(tmp_path):
+    file = with_node(tmp_path, "second", "admittance: {mass: 1.0}")
+    found, status, _ = statuses(file, Question((0, 2), SOFT, None))
+    assert found.verdict is None
+    assert {Status.PROVED, Status.ERROR} <= set(status)
+
+
 def test_no_rate(tmp_path):
     file = changed(tmp_path, ("    update_rate: 500\n", ""))
     with pytest.raises(SpecError, match="rate of the control loop") as caught:
@@ -187,8 +245,10 @@ def test_a_controller_that_runs_without_a_node_of_its_name(tmp_path):
     other = ("    admittance_controller:", "    admittance:")
     renamed = changed(tmp_path, other)
     found, _, _ = statuses(renamed, Question((0, 2), SOFT, None))
-    (caution,) = [item for item in found.cautions if "no node of this name" in item.message]
-    assert caution.message.startswith("admittance: runs as")
+    assert found.verdict == "inconclusive"
+    (last,) = [item for item in found.obligations if "no node of this name" in item.message]
+    assert last.message.startswith("admittance: passed over, so undecided: controller_manager runs")
+    assert last.line == 5
     anyone = changed(tmp_path, other, ("\nadmittance_controller:", "\n/**:"))
     found, _, _ = statuses(anyone, Question((0, 2), SOFT, None))
-    assert not any("no node" in item.message for item in found.cautions)
+    assert found.verdict == "proved"

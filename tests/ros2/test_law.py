@@ -76,6 +76,6 @@ def test_a_misspelt_name_is_told(tmp_path):
 
 def test_which_nodes_are_admittance_controllers():
     manager, node = read_nodes(EXAMPLE)
-    assert not is_admittance(manager, {})
-    assert is_admittance(node, {})
-    assert not is_admittance(node, {"admittance_controller": "other/Controller"})
+    assert not is_admittance(manager, None)
+    assert is_admittance(node, None)
+    assert not is_admittance(node, "other/Controller")

@@ -37,6 +37,18 @@ def test_each_at_its_place(tmp_path, old, new, message, line):
     assert [trap.line for trap in found] == [line]
 
 
+def test_the_frame_of_masses_depends_on_the_release(tmp_path):
+    """ros2_controllers 6.4.0 (pull request 1139): along the control frame; before, the base."""
+    masses = ("mass: [5.0, ", "mass: [6.0, ")
+    (found,) = traps(changed(tmp_path, masses))
+    assert "since ros2_controllers 6.4.0 they act along the axes of the control frame" in (
+        found.message
+    )
+    assert "before, along those of the base" in found.message
+    one = ("control: {frame: {id: tool0}}", "control: {frame: {id: base_link}}")
+    assert traps(changed(tmp_path, masses, one)) == []
+
+
 def test_damping_that_is_left(tmp_path):
     (found,) = traps(changed(tmp_path, (STIFF, "stiffness: [0.0, 200.0, 200.0, 10.0")))
     assert "acts like 25 N*s/m" in found.message

@@ -9,7 +9,6 @@ import pytest
 
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.search import common_quadratic
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE
 from nrs_design.search.common_quadratic import (
     decide_one_state,
@@ -26,6 +25,7 @@ from nrs_design.search.parameter_quadratic import search_parameter_quadratic
 from nrs_design.search.period import search_period
 from nrs_design.search.polynomial import search_polynomial
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
+from nrs_design.work import Allowance, NotAffordableError
 from tests.search.support import outcome
 from tests.support import dayawansa_martin, family, holds
 

@@ -5,7 +5,7 @@ The verdict may be inconclusive where numbers are extreme. It may never be wrong
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
+from itertools import count, product
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
-from nrs_design.errors import DesignError, InternalError
+from nrs_design.errors import ClockError, DesignError, InternalError
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
 from nrs_design.proof.mode import Time
@@ -433,6 +433,31 @@ class TestMethods:
         assert "budget" in result.attempts[-1].outcome
         assert len(result.attempts) < 3
 
+    @pytest.mark.parametrize("budget", [0.05, 0.2, 0.4])
+    def test_no_clock_changes_what_a_budget_that_cuts_the_search_short_finds(
+        self, monkeypatch, budget
+    ):
+        """It stalls, crawls or races: counts, verdict and every number are those of the others."""
+        system, limits = dayawansa_martin("10.6"), Limits(budget=budget)
+        found = []
+        for pace in (0.0, 1e-6, 1e-3):
+            ticks = count()
+            monkeypatch.setattr(
+                "nrs_design.work.monotonic", lambda pace=pace, ticks=ticks: pace * next(ticks)
+            )
+            result = certify(system, limits=limits)
+            counts = [(a.step, a.outcome, a.work) for a in result.attempts]
+            found.append((result.verdict, result.statements, counts))
+        assert found[0] == found[1] == found[2]
+        assert result.statements != certify(system).statements
+
+    def test_a_search_that_the_clock_stops_decides_nothing(self, monkeypatch):
+        """Not even where a proof was at hand already, at a rate that more time would raise."""
+        jump = iter([*[0.0] * 100, *[1e9] * 10**6])
+        monkeypatch.setattr("nrs_design.work.monotonic", lambda: next(jump))
+        with pytest.raises(ClockError, match="the clock stopped this after 660 s"):
+            certify(STABLE)
+
     def test_equal_modes_and_blocks_change_nothing(self):
         """Two copies of each mode, beside a state that decays by itself."""
         blocks = [
@@ -574,7 +599,7 @@ class TestLyingSolvers:
         """The same lie wherever the solver is called, and only there."""
 
         def tell(lie):
-            def answer(rows, offset, sizes, equalities=0, time_limit=0.0):
+            def answer(rows, offset, sizes, begun, equalities=0):
                 x = np.resize(lie(2).ravel(), rows.shape[1])
                 return x if np.isfinite(x).all() else None
 
@@ -596,7 +621,7 @@ def test_slightly_wrong_answers_do_not_pass(monkeypatch):
 
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
-    monkeypatch.setattr(certify_module, "find_fault", lambda evidence, system: None)
+    monkeypatch.setattr(certify_module, "find_fault", lambda evidence, system, charge: None)
     monkeypatch.setattr(
         common_quadratic, "find_common_quadratic", lambda *arguments, **options: np.eye(2)
     )

@@ -7,13 +7,13 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import ConewiseModeQuadratic
 from nrs_design.reporting.kinds.conewise_mode_quadratic import largest_norm
 from nrs_design.search import conewise_mode_quadratic
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.conewise_mode_quadratic import ConewiseModeProgram, search_conewise_modes
 from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.family import Family
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import bouncing, bouncing_in_steps
 from tests.search.support import found, outcome, thesis_robot
 

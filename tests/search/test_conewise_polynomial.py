@@ -13,7 +13,6 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import ConewisePolynomial
 from nrs_design.proof.mode import Mode
 from nrs_design.search import conewise_polynomial
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import certify
 from nrs_design.search.conewise_polynomial import (
     ConewisePolynomialProgram,
@@ -24,6 +23,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
 from nrs_design.search.polynomial import polynomial_cost
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import bouncing, bouncing_in_steps, dayawansa_martin, matrix
 from tests.search.support import found, outcome, thesis_robot
 
@@ -87,8 +87,8 @@ def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
 
 def test_predictions_grow_with_degree_and_exceed_those_without_flight():
     costs = [conewise_cost(STIFF, d)[0] for d in range(2, 6)]
-    assert all(a.seconds < b.seconds and a.memory < b.memory for a, b in pairwise(costs))
-    assert costs[0].seconds > polynomial_cost(4, 4, 2)[0].seconds
+    assert all(a.work < b.work and a.memory < b.memory for a, b in pairwise(costs))
+    assert costs[0].work > polynomial_cost(4, 4, 2)[0].work
 
 
 def test_a_program_that_does_not_fit_is_not_built(monkeypatch):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.evidence import ConstantForce, Shows
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.constant_force import find_constant_force, search_constant_force
 from nrs_design.switched.constant_force import with_constant_force
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import family, settling
 from tests.search.support import thesis_robot
 

@@ -7,12 +7,12 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import CoupledAxes
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.coupled_axes import search_coupled_axes
 from nrs_design.search.family import Family
 from nrs_design.search.method import Method
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import bouncing, family, leaning
 from tests.search.support import found, outcome
 

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, Cost, NotAffordableError
 from nrs_design.search.decay import (
     RESOLUTION,
     SMALLEST,
@@ -13,6 +12,7 @@ from nrs_design.search.decay import (
 )
 from nrs_design.search.lmi import find_common_quadratic
 from nrs_design.search.rounding import BACK_OFFS, rate_at, round_rate
+from nrs_design.work import Allowance, Cost, NotAffordableError
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
 
@@ -109,8 +109,8 @@ def test_solutions_come_fastest_first(time):
     assert float(claims[0]) == pytest.approx(best, rel=1e-3)
 
 
-def test_the_search_for_the_best_rate_takes_half_of_the_time():
-    allowance = Allowance(10.0, clock=lambda: 0.0)
+def test_the_search_for_the_best_rate_takes_half_of_the_work():
+    allowance = Allowance(10.0)
 
     def solve(rate, allowance):
         allowance.take(Cost(1.0), "a step")
@@ -118,13 +118,13 @@ def test_the_search_for_the_best_rate_takes_half_of_the_time():
 
     found = fastest_first(solve, 1.0, Time.CONTINUOUS, allowance)
     assert next(found)[1] < 1
-    assert allowance.unplanned == pytest.approx(4.0)
+    assert allowance.left == pytest.approx(4.0)
 
 
-def test_a_bisection_without_time_keeps_what_it_has():
+def test_a_bisection_without_work_keeps_what_it_has():
     assert largest_position(PAIR, 1.0, Allowance(0.0)) == 0.0
     # Enough for some of the steps of the bisection only.
-    allowance = Allowance(0.12, clock=lambda: 0.0)
+    allowance = Allowance(0.04)
     some = largest_position(PAIR, 1.0, allowance)
     assert 0.0 < some < largest_position(PAIR, 1.0)
 

@@ -10,19 +10,20 @@ from nrs_design.errors import DesignError
 from nrs_design.proof.mode import Time
 from nrs_design.reproduction import thesis
 from nrs_design.reproduction.matrices import impedance_rows
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.balance import own_norm
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import (
+    PER_ROUND,
     find_by_gradient,
     find_faster_by_gradient,
     iterate_gradient,
 )
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
+from nrs_design.work import Allowance, NotAffordableError
 from tests.support import dayawansa_martin, family, holds
 
 PAIR = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.2, -1.0]]])
@@ -118,12 +119,11 @@ def test_gives_up(limit, order):
     assert result.updates == limit
 
 
-def test_it_stops_when_its_time_is_over():
-    ticks = iter(range(1000))
-    allowance = Allowance(10.0, clock=lambda: float(next(ticks)))
+def test_it_stops_when_its_work_is_used_up():
+    allowance = Allowance(20 * PER_ROUND)
     with pytest.raises(NotAffordableError, match="stopped"):
         iterate_gradient(WORSE, Time.CONTINUOUS, Gradient(), allowance=allowance)
-    assert next(ticks) < 20
+    assert allowance.charged < 22 * PER_ROUND
 
 
 def test_the_random_order_hangs_on_its_seed():
@@ -204,11 +204,10 @@ def test_the_rate_is_raised_when_asked(matrices, time):
     assert 0.85 * shares[1] < shares[0] < 1.001 * shares[1]
 
 
-def test_the_bisection_for_the_rate_ends_early_without_time():
+def test_the_bisection_for_the_rate_ends_early_without_work():
     ring = Family.of(family(*PAIR.tolist()))
     found = find_by_gradient(ring).Q
-    ticks = iter(range(10_000))
-    allowance = Allowance(5.0, clock=lambda: float(next(ticks)))
+    allowance = Allowance(5 * PER_ROUND)
     result = find_faster_by_gradient(ring, found, allowance)
     np.testing.assert_array_equal(result.Q, found)
 

@@ -12,13 +12,13 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import Limits, certify, first_accepted
 from nrs_design.search.family import floats_in_silence
 from nrs_design.search.invariant_ellipsoid import search_ellipsoid
 from nrs_design.simulation.game import Game, Signals, free_counterparts, play
 from nrs_design.simulation.worst_case import worst_against
 from nrs_design.simulation.worst_outputs import output_values
+from nrs_design.work import Allowance
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,

@@ -6,7 +6,6 @@ import pytest
 
 from nrs_design.proof.mode import Time
 from nrs_design.search import lmi
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.interior_point import step_cost
 from nrs_design.search.lmi import (
     decreases,
@@ -14,6 +13,7 @@ from nrs_design.search.lmi import (
     margins,
     solve_by_clarabel,
 )
+from nrs_design.work import Allowance, NotAffordableError
 from tests.support import thinned
 
 
@@ -97,18 +97,18 @@ def test_what_does_not_fit_is_not_even_built(monkeypatch, solve):
     monkeypatch.setattr(lmi, "symmetric_basis", build)
     matrices = -np.broadcast_to(np.eye(64), (2, 64, 64))
     for allowance, words in (
-        (Allowance(5.0), r"2080 unknowns and 4 blocks would take about .* s, .*--budget"),
+        (Allowance(5.0), r"2080 unknowns and 4 blocks would take about .* of work, .*--budget"),
         (Allowance(memory=1e8), "GB of memory, .*--memory"),
     ):
         with pytest.raises(NotAffordableError, match=words):
             find_common_quadratic(matrices, Time.CONTINUOUS, 0.0, solve, allowance)
 
 
-def test_a_search_that_runs_out_of_time_does_not_say_that_there_is_nothing():
+def test_a_search_that_runs_out_of_work_does_not_say_that_there_is_nothing():
     """It takes more steps than these to see that there is none."""
     matrices = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -6.0], [1 / 6, -1.0]]])
     assert find_common_quadratic(matrices, Time.CONTINUOUS, 0.0) is None
-    step = step_cost(4, 4, 2).seconds
+    step = step_cost(4, 4, 2).work
     with pytest.raises(NotAffordableError, match="stopped: the budget"):
         find_common_quadratic(
             matrices, Time.CONTINUOUS, 0.0, allowance=Allowance(lmi.FEWEST_STEPS * step)

@@ -17,6 +17,10 @@ from tests.proof.systems import bouncing, pushed
 P, R, N = Verdict.PROVED, Verdict.REFUTED, Verdict.INCONCLUSIVE
 
 
+def unstable_from(first, where=""):
+    return lambda delay: where if delay >= first else None
+
+
 @pytest.mark.parametrize(
     ("verdicts", "shortest", "declared", "unstable", "expected"),
     [
@@ -42,7 +46,7 @@ def test_the_longest_delay(verdicts, shortest, declared, unstable, expected):
         asked.append(delay)
         return {"P": P, "R": R, "I": N}[verdicts[delay]]
 
-    found = find_longest_delay(shortest, declared, 3, decide, lambda delay: delay >= unstable)
+    found = find_longest_delay(shortest, declared, 3, decide, unstable_from(unstable))
     assert (found.proved, found.refuted) == expected
     assert ("up to 32 samples" in found.end) == (found.refuted is None)
     # Nothing is asked twice, and nothing below what is declared is possible.
@@ -70,24 +74,24 @@ def test_the_longest_delay_takes_few_decisions(verdicts, declared, expected):
         asked.append(delay)
         return {"P": P, "R": R, "I": N}[verdicts[delay]]
 
-    found = find_longest_delay(0, declared, 10, decide, lambda delay: False)
+    found = find_longest_delay(0, declared, 10, decide, lambda delay: None)
     assert (found.proved, found.refuted) == expected
     assert len(asked) == len(set(asked)) <= 8
 
 
 def test_a_shortest_delay_that_is_refuted_below_one_that_is_open():
-    found = find_longest_delay(0, 1, 2, {0: R, 1: N, 2: P}.__getitem__, lambda delay: False)
+    found = find_longest_delay(0, 1, 2, {0: R, 1: N, 2: P}.__getitem__, lambda delay: None)
     assert found.refuted == 0
 
 
 def test_a_delay_that_makes_no_loop_is_told():
     """Neither a proof nor a refutation: what is decided below it stands, and the search goes on."""
     found = find_longest_delay(
-        0, 1, 10, lambda delay: P if delay <= 4 else "too large", lambda delay: delay >= 12
+        0, 1, 10, lambda delay: P if delay <= 4 else "too large", unstable_from(12)
     )
     assert found == Bracket(Fraction(4), Fraction(12))
     found = find_longest_delay(
-        0, 1, 10, lambda delay: P if delay <= 4 else "too large", lambda delay: False
+        0, 1, 10, lambda delay: P if delay <= 4 else "too large", lambda delay: None
     )
     assert (found.proved, found.refuted) == (4, None)
     assert "a longer one makes no loop (too large), no delay of up to 32 samples" in found.end
@@ -100,7 +104,7 @@ def test_what_is_known_is_not_decided_again_and_is_told_meanwhile():
         assert delay != 1
         return P if delay <= 4 else R
 
-    find_longest_delay(0, 1, 10, decide, lambda delay: False, P, told.append)
+    find_longest_delay(0, 1, 10, decide, lambda delay: None, P, told.append)
     assert told[:2] == ["delay 10 (proved: 1)", "delay 5 (proved: 1, refuted: 10)"]
     told.clear()
     find_longest_period(Fraction(1), lambda period: R, P, told.append)
@@ -141,3 +145,9 @@ def test_disturbances_that_keep_the_limit():
     kept, broken, unit = found.bounds["push"]
     assert (kept, broken, unit) == (Fraction(1, 4) * Fraction(5, 3), Fraction(1, 2), "N")
     assert command_margin(BOUNCE.bound(system), 0.0) is None
+
+
+def test_what_is_refuted_in_kept_contact_alone_is_said_of_a_delay():
+    found = find_longest_delay(0, 1, 2, lambda _: P, unstable_from(4, "in kept contact"))
+    assert (found.proved, found.refuted, found.refuted_in) == (2, 4, "in kept contact")
+    assert not find_longest_delay(0, 1, 2, lambda _: P, unstable_from(4)).refuted_in

@@ -6,9 +6,9 @@ import pytest
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search import mode_quadratic
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.family import Family
 from nrs_design.search.mode_quadratic import search_mode_functions
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     ando_shih,
     family,
@@ -72,14 +72,14 @@ def test_fast_ones_are_proposed_first():
     assert rates == sorted(rates)
 
 
-def test_exact_checks_are_part_of_the_time_that_is_predicted():
+def test_exact_checks_are_part_of_the_work_that_is_predicted():
     """12 modes that may follow each other in any order: 156 forms, each checked twice."""
     modes = [[[f"{k}/100", "1/2"], [0, "1/3"]] for k in range(12)]
     system = family(*modes, time=Time.DISCRETE)
     solution, _ = mode_quadratic.functions_cost(system, 1)
-    allowance = Allowance(seconds=solution.seconds + 0.01)
+    allowance = Allowance(solution.work + 0.01)
     with pytest.raises(NotAffordableError, match="with the exact check of what it finds"):
         next(search_mode_functions(Family.of(system, allowance)))
     checks = 2 * 156 * 4 * mode_quadratic.PER_CHECK
-    enough = Allowance(seconds=2 * solution.seconds + checks + 60.0)
+    enough = Allowance(2 * solution.work + checks + 60.0)
     assert next(search_mode_functions(Family.of(system, enough))).evidence

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.lmi import find_common_quadratic, margins
 from nrs_design.search.raw import find_raw_quadratic
+from nrs_design.work import Allowance, NotAffordableError
 
 
 @pytest.mark.parametrize("time", list(Time))

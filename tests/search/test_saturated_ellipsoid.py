@@ -9,10 +9,10 @@ import pytest
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
-from nrs_design.search.allowance import Allowance, NotAffordableError
 from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.saturated_ellipsoid import Problem, search_saturated
+from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import family, matrix, pushed_away
 
 KM, TAU, KD = Fraction("4.8417e-4"), Fraction("0.0351"), Fraction(2060)

@@ -10,11 +10,11 @@ import pytest
 from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.graph import Graph
 from nrs_design.search.period import search_period
 from nrs_design.search.walk import growing_walks
+from nrs_design.work import Allowance
 from tests.proof.systems import ando_shih, family, golden, matrix, resets_between
 from tests.proof.truth import holds
 from tests.search.support import found

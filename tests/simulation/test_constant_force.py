@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.search.allowance import Allowance
 from nrs_design.search.certify import first_accepted
 from nrs_design.search.constant_force import search_constant_force
 from nrs_design.simulation.constant_force import pushed_in, pushed_norm
 from nrs_design.switched.constant_force import with_constant_force
+from nrs_design.work import Allowance
 from tests.proof.systems import settling
 from tests.search.support import thesis_robot
 from tests.support import thinned

@@ -182,6 +182,23 @@ def test_a_file_keeps_runs_and_drops_a_torn_line(tmp_path):
         read_outcomes(path, HEAD)
 
 
+def test_a_file_is_not_read_beyond_the_runs_of_its_study(tmp_path):
+    """However long a stranger has made it: what it takes is what the study takes."""
+    path = tmp_path / "runs.jsonl"
+    with appending(path, HEAD) as file:
+        for index in range(HEAD["runs"] + 1):
+            file.add(outcome(index))
+    with pytest.raises(DataError, match="in order"):
+        read_outcomes(path, HEAD)
+    with path.open("ab") as file:
+        file.write(b"[" * (2**20 + 2) + b"\n")
+    with pytest.raises(DataError, match="in order"):
+        read_outcomes(path, HEAD)
+    path.write_bytes(path.read_bytes().split(b"\n")[0] + b"\n" + b"[" * (2**20 + 2) + b"\n")
+    with pytest.raises(DataError, match="a line is longer"):
+        read_outcomes(path, HEAD)
+
+
 @pytest.mark.parametrize(
     ("content", "head", "message"),
     [

@@ -78,13 +78,16 @@ def test_the_largest_gain_of_a_range_counts():
 
 def test_a_size_that_no_surgical_robot_has():
     """A slip of a unit is valid, and is asked about: 24 m for 0.24 m, 35.1 s for 35.1 ms."""
-    for old, new, at in (
-        ("lever_arm: 0.24 m", "lever_arm: 24 m", ("environments", "soft", "lever_arm")),
-        ("time_constant: 0.0351 s", "time_constant: 35.1 s", ("actuator", "time_constant")),
-    ):
+    for old, new, at, said in (
+        ("lever_arm: 0.24 m", "lever_arm: 240 m", ("environments", "soft", "lever_arm"), "240 mm"),
+        ("time_constant: 0.0351 s", "time_constant: 35.1 s", ("actuator", "time_constant"),
+         "35.1 ms"),
+        ("torque: 0.3 N*m", "torque: 3000 N*m", ("limits", "torque"), "3000 mN*m or 3000 N*mm"),
+        ("velocity: 8 deg/s", "velocity: 480 rad/s", ("limits", "velocity"), "480 deg/s"),
+    ):  # fmt: skip
         found = [doubt for doubt in doubts(spoiled(IMPEDANCE, old, new)) if doubt.at == at]
         assert len(found) == 1
-        assert "is that its unit?" in str(found[0])
+        assert f"is that its unit? did you mean {said}?" in str(found[0])
 
 
 def test_bounds_are_not_proved_beside_two_periods():

@@ -24,6 +24,11 @@ NUMBERS = {
 }
 
 
+def found(key, value):
+    """Return what was found at poses, in a file whose other bounds are just that."""
+    return {"found": {k: {"value": value if k == key else v} for k, v in NUMBERS.items()}}
+
+
 @pytest.fixture
 def folder(tmp_path):
     """A spec, the robot that it names, and bounds of that."""
@@ -42,6 +47,7 @@ def write(robot, changes, /, **more):
         "workspace": SPACE,
         "bounds": NUMBERS | changes,
         "units": UNITS,
+        "found": {key: {"value": value} for key, value in (NUMBERS | changes).items()},
     } | more
     text = json.dumps(document | {"id": content_id(document)})
     bounds_file(robot).write_text(text)
@@ -59,6 +65,8 @@ def test_bounds_become_those_of_the_axes(folder):
     assert "SHA-256" in coupling.source
     assert "|phi| <= 13 deg" in coupling.poses
     assert "assembly mode" in coupling.source
+    assert coupling.source.startswith("taken on trust from the file of bounds")
+    assert read(folder).spec.coupling.bounds.id in coupling.source
     assert "friction" in coupling.source
     assert "stretched by 2" in coupling.scaled(Fraction(2)).source
 
@@ -109,6 +117,11 @@ def test_an_altered_file_is_refused(folder):
         ({}, {"workspace": SPACE | {"d_mm": ["235", "155"]}}, "or its depths are no range"),
         ({"heaviest": float("nan")}, {}, "not bounds of a robot"),
         ({"gravity_gradient": "inf"}, {}, "not bounds of a robot"),
+        ({}, {"found": {}}, "not bounds of a robot"),
+        ({}, found("lightest", "0.003999"), "bounded by 0.004, and 0.003999 was found"),
+        ({}, found("heaviest", "0.28001"), "bounded by 0.28, and 0.28001 was found"),
+        ({}, found("velocity_torques", "1"), "velocity torques is said to be bounded by 0.3"),
+        ({}, found("gravity_gradient", "7.1"), "gravity gradient is said to be bounded by 7"),
     ],
 )
 def test_files_that_are_none(folder, changes, more, message):

@@ -16,13 +16,13 @@ from nrs_design.controllers.laws import (
     ProportionalForce,
 )
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.impedance import ImpedanceLoop
-from nrs_design.design.margins import stiffness_limit
-from nrs_design.design.transfer import TransferFunction
+from nrs_design.design.loop_family import LoopFamily
 from nrs_design.errors import AssemblyError
+from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.linear_form import combine
 from nrs_design.models.motion_loop import MotionLoop, realize
+from nrs_design.switched.cut_loop import ContinuousAxis, Place
 from nrs_design.switched.modes import (
     position_mode,
     to_force_coordinates,
@@ -82,12 +82,10 @@ class TestPublished:
                 low = middle
             else:
                 high = middle
-        motion = TransferFunction(
-            tuple(map(float, LOOP.numerator)), tuple(map(float, LOOP.denominator))
-        )
-        limit = stiffness_limit(
-            ImpedanceLoop(motion, KelvinVoigt(1.0, float(F(damping)))), 0.01, float(F(Bt))
-        )
+        contact = KelvinVoigt(F(1), F(damping))
+        place = Place(Actuator(F(1), F(1)))
+        family = LoopFamily(ContinuousAxis((place,), MOTION), contact, F(0), place)
+        limit = family.stiffness_limit(0.01, float(F(Bt)))
         assert float(low) == pytest.approx(limit, abs=2e-3)
 
     def test_known_stiffness_limits(self):

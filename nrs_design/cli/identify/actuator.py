@@ -57,14 +57,17 @@ def actuator(
     """
     from nrs_design.identification.actuator import MotorConstants, identify_actuator
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
-    from nrs_design.identification.write_spec import merge_actuator
+    from nrs_design.identification.write_spec import check_actuator, merge_actuator
 
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
     items = read_all(data, read_actuator, columns or [], quiet=quiet)
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
+    items_of_all = [item for group in series for item in group]
+    if outputs.spec is not None:
+        for item in items_of_all:
+            check_actuator(outputs.spec, item.unit)
     with progress("fitting", quiet=quiet) as step:
-        items_of_all = [item for group in series for item in group]
         found = identify_actuator(items_of_all, motor, covers.value, step)
     outputs.deliver(
         "identify-actuator",
@@ -73,6 +76,7 @@ def actuator(
         page=lambda: _page(found),
         merge=lambda spec: merge_actuator(spec, found),
         caveats=found.caveats,
+        slips=found.slips,
     )
 
 
@@ -113,6 +117,8 @@ def _print(found: ActuatorIdentification) -> None:
         say(f"R = {found.figures.resistance} ohm")
         say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
         say(f"both for a motor with {found.figures.sheet}; options give another data sheet")
+    for remark in found.remarks:
+        say(remark)
     for doubt in found.doubts:
         say(f"doubt: {doubt}")
 
@@ -126,7 +132,9 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
         "sampling_step_s": found.step,
         "chosen": found.chosen.method,
         "reason": found.reason,
+        "remarks": list(found.remarks),
         "doubts": list(found.doubts),
+        "slips": list(found.slips),
         "fits": [_fit(fit, found) for fit in found.fits],
         "range": {
             f"gain_rad_s_{found.unit}": estimate_numbers(found.ranges[0]),

@@ -13,7 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar
 
 import typer
 
+from nrs_design.cli import exit_codes
+from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.errors import NrsDesignError
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:
@@ -150,7 +153,11 @@ class Destinations:
 
         if report is not None:
             check_place(report, page_kind(report))
-        return cls(None if write is None else read_spec(write), report, date, as_json, quiet)
+        if write is None:
+            return cls(None, report, date, as_json, quiet)
+        spec = read_spec(write)
+        check_place(write)
+        return cls(spec, report, date, as_json, quiet)
 
     def deliver(
         self,
@@ -161,8 +168,9 @@ class Destinations:
         page: Callable[[], Report],
         merge: Callable[[LoadedSpec], str] | None = None,
         caveats: Iterable[str] = (),
+        slips: Sequence[str] = (),
     ) -> None:
-        """Write a result to where it is wanted, and print it.
+        """Write a result to where it is wanted, and print it; also what a spec refuses to take.
 
         Parameters
         ----------
@@ -176,22 +184,40 @@ class Destinations:
             Returns the spec with the result in it.
         caveats : iterable of str
             What is doubtful about values that are merged.
+        slips : sequence of str
+            What of it says that the data are likely read in another unit or sign: the result is
+            then no success, and the exit code says so.
         """
-        merged = merge(self.spec) if merge and self.spec else None
+        refused, merged = None, None
+        if merge is not None and self.spec is not None:
+            try:
+                merged = merge(self.spec)
+            except NrsDesignError as error:
+                # What was found is printed all the same: it took its time.
+                refused = error
         if self.report is not None:
             with progress("figures", quiet=self.quiet):
                 _write_page(self.report, page(), self.date)
         if self.spec is not None and merged is not None:
-            _write_spec(self.spec.path, merged, quiet=self.quiet)
             # A proof will rest on these values: no option silences this.
             for caveat in caveats:
                 note(f"warning: {caveat}")
+            _write_spec(self.spec, merged, quiet=self.quiet)
         if self.as_json:
-            print_json(command, summary())
+            not_written = None if refused is None else error_summary(refused)
+            written = {} if self.spec is None else {"not_written": not_written}
+            print_json(command, summary() | written)
         elif not self.quiet:
             show()
         if self.report is not None:
             note(f"page written to {self.report}", quiet=self.quiet)
+        if refused is not None:
+            print_error(refused)
+            raise typer.Exit(exit_codes.USAGE)
+        if slips:
+            for slip in slips if merged is None else ():
+                note(f"warning: {slip}")
+            raise typer.Exit(exit_codes.INCONCLUSIVE)
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:
@@ -203,11 +229,18 @@ def _write_page(path: Path, report: Report, date: datetime | None) -> None:
     write_output(path, content, replaces=kind)
 
 
-def _write_spec(path: Path, text: str, *, quiet: bool) -> None:
+def _write_spec(spec: LoadedSpec, text: str, *, quiet: bool) -> None:
+    from nrs_design.identification.write_spec import spec_changes
     from nrs_design.output import write_output
 
-    write_output(path, text)
-    note(f"merged into {path}; run nrs-design gate {path} to prove it", quiet=quiet)
+    changed, lost = spec_changes(spec, text)
+    write_output(spec.path, text)
+    for line in changed:
+        note(f"changed: {line}", quiet=quiet)
+    # What the user wrote, and is gone, no option silences.
+    for line in lost:
+        note(f"warning: no longer there: {line}")
+    note(f"merged into {spec.path}; run nrs-design gate {spec.path} to prove it", quiet=quiet)
 
 
 def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:

@@ -56,7 +56,7 @@ def delay(
     """
     from nrs_design.identification.datasets import read_signals
     from nrs_design.identification.delay import identify_delay
-    from nrs_design.identification.write_spec import merge_delay
+    from nrs_design.identification.write_spec import check_delay_place, merge_delay
 
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
@@ -68,6 +68,8 @@ def delay(
             param_hint="--write",
         )
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    if outputs.spec is not None:
+        check_delay_place(outputs.spec)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
@@ -81,6 +83,7 @@ def delay(
         page=lambda: _page(found),
         merge=lambda spec: merge_delay(spec, found),
         caveats=found.caveats,
+        slips=found.slips,
     )
 
 
@@ -107,6 +110,8 @@ def _print(found: DelayIdentification) -> None:
     say(f"delay = {found.delay} s, beside {found.chosen.follower.name}")
     low, high = found.whole_samples
     say(f"whole samples that hold it, and every part of the record: {low} to {high}")
+    for remark in found.remarks:
+        say(remark)
     for doubt in found.doubts:
         say(f"doubt: {doubt}")
 
@@ -135,5 +140,8 @@ def _summary(found: DelayIdentification) -> dict[str, Any]:
             }
             for fit in found.fits
         ],
+        "smooth_between_samples": found.smooth,
+        "remarks": list(found.remarks),
         "doubts": list(found.doubts),
+        "slips": list(found.slips),
     }

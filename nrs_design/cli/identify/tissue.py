@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from nrs_design.cli.identify.common import (
     SYNTHETIC,
     ColumnMap,
@@ -75,6 +77,7 @@ def tissue(
     the like are converted). One file is one record; the spread between records goes into the
     intervals. Air before, between and after touches is found, and so are a rupture and what follows
     it. The position of contact and the force in air are fitted with the law, unless they are given.
+    --write keeps the law of the environment, unless --model names another.
     What the fit leaves in doubt is written into the spec, and the gate fails on it until
     accept_doubt says why the range is used.
 
@@ -83,7 +86,7 @@ def tissue(
     from nrs_design.identification.datasets import read_tissue
     from nrs_design.identification.lever import parse_arm, parse_offset, parse_preload
     from nrs_design.identification.tissue import Preparation, identify_tissue
-    from nrs_design.identification.write_spec import merge_tissue
+    from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
     records = read_all(data, read_tissue, columns or [], quiet=quiet)
@@ -99,14 +102,28 @@ def tissue(
         skip_cycles=skip_cycles,
         negate=negate_force,
     )
+    deflections = parse_preload(preload, rotational=rotational)
+    law = asked = None if model is ModelOption.AUTO else str(model)
+    if outputs.spec is not None:
+        law = law_to_write(
+            outputs.spec,
+            environment,
+            lever_arm,
+            asked,
+            preloaded=deflections is not None,
+            rotational=rotational,
+        )
+    elif environment is not None:
+        raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
     with progress("fitting", quiet=quiet) as step:
         found = identify_tissue(
             records,
-            None if model is ModelOption.AUTO else str(model),
+            law,
             preparation,
             covers.value,
-            parse_preload(preload, rotational=rotational),
+            deflections,
             progress=step,
+            declared=asked is None,
         )
         series = _series(found) if prony else None
     outputs.deliver(
@@ -116,6 +133,7 @@ def tissue(
         page=lambda: _page(found, arm, series or []),
         merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
         caveats=found.caveats,
+        slips=found.chosen.slips,
     )
 
 
@@ -234,6 +252,7 @@ def _summary(
         "chosen": law.name,
         "reason": found.reason,
         "caveats": list(found.caveats),
+        "slips": list(found.chosen.slips),
         "ranges": {
             name: estimate_numbers(estimate) | {"unit": unit}
             for name, estimate, unit in zip(

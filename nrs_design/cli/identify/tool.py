@@ -47,9 +47,11 @@ def tool(
     """
     from nrs_design.identification.datasets import read_poses
     from nrs_design.identification.tool import identify_tool
-    from nrs_design.identification.write_spec import merge_tool
+    from nrs_design.identification.write_spec import check_tool, merge_tool
 
     outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    if outputs.spec is not None:
+        check_tool(outputs.spec)
     records = read_all(data, read_poses, columns or [], quiet=quiet)
     with progress("fitting", quiet=quiet):
         found = identify_tool(records, gravity)
@@ -60,6 +62,7 @@ def tool(
         page=lambda: _page(found),
         merge=lambda spec: merge_tool(spec, found),
         caveats=found.doubts,
+        slips=found.slips,
     )
 
 
@@ -99,4 +102,5 @@ def _summary(found: ToolIdentification) -> dict[str, Any]:
         "torque_bias_Nm": along(found.torque_bias),
         "rmse": {"force_N": found.rmse[0], "torque_Nm": found.rmse[1]},
         "doubts": list(found.doubts),
+        "slips": list(found.slips),
     }

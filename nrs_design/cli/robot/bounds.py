@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.options import Json, Quiet, SpecFile, read_work
 from nrs_design.cli.printing import note, print_json, progress, say
 from nrs_design.cli.robot.options import Figures, write_figures
-from nrs_design.cli.seconds import seconds
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -43,7 +42,11 @@ def bounds(
     ] = None,
     budget: Annotated[
         float,
-        typer.Option(metavar="S", parser=seconds(), help="Time for each of the four bounds in s."),
+        typer.Option(
+            metavar="WORK",
+            parser=read_work,
+            help="Work for each of the four bounds: boxes, counted in units of about a second.",
+        ),
     ] = 1800.0,
     write: Annotated[
         bool,

@@ -10,18 +10,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nrs_design.cli.gate import OF_SEVERITY, GateFormat, format_of
-from nrs_design.cli.options import Json, Quiet
+from nrs_design.cli.options import Json, Quiet, read_work
 from nrs_design.cli.printing import note, progress, say, say_failure
 from nrs_design.cli.ros2.options import Lag, range_of, read_lag
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.spec.quantity import QuantityKind
+from nrs_design.ros2.quantities import RATE, RATE_UNITS, ROTATIONAL, STIFFNESS
 
 if TYPE_CHECKING:
     from nrs_design.gating.obligations import GateOutcome, SpecOutcome
 
 LONGEST_AGE = 20
-STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
-ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
 
 
 def check(
@@ -43,10 +41,18 @@ def check(
     lag: Lag = "0 ms",
     rate: Annotated[
         str | None,
-        typer.Option(metavar="HZ", help="Of the control loop; default: update_rate in the file."),
+        typer.Option(
+            metavar="RATE",
+            help="Of the control loop, such as '500 1/s'; default: update_rate in the file.",
+        ),
     ] = None,
     budget: Annotated[
-        float, typer.Option(min=0.0, help="Time for the search of each axis in s.")
+        float,
+        typer.Option(
+            metavar="WORK",
+            parser=read_work,
+            help="Work of the search of each axis, in units of about a second.",
+        ),
     ] = 20.0,
     format_: Annotated[
         GateFormat, typer.Option("--format", help="What to print.")
@@ -61,7 +67,8 @@ def check(
     the measurement, changing at will. Where there is no proof, it says up to which stiffness there
     is one; and it warns of parameters that do not do what they seem to.
 
-    Exit code 0: all axes proved. 1: one refuted. 2: the controller would not start. 3: undecided.
+    Exit code 0: all axes proved. 1: one refuted. 2: the controller would not start. 3: undecided;
+    so is any other controller of the file that may move the robot.
 
     Example: nrs-design ros2 check docs/examples/admittance.ros2.yaml --stiffness '200..2000 N/m'
 
@@ -128,10 +135,13 @@ def _ages(text: str) -> tuple[int, int]:
 def _rate(text: str) -> Fraction:
     from nrs_design.spec.exact import parse_exact
 
+    number = text
+    for unit in RATE_UNITS:
+        number = number.removesuffix(unit).rstrip(" ")
     try:
-        rate = parse_exact(text.removesuffix("Hz").rstrip(" "))
+        rate = parse_exact(number)
     except SpecError as error:
-        raise NrsDesignError(f"--rate: {error.message}", remedy="write --rate 500") from None
+        raise NrsDesignError(f"--rate: {error.message}", remedy=f"write {RATE}") from None
     if rate <= 0:
-        raise NrsDesignError("--rate: is not positive", remedy="write --rate 500")
+        raise NrsDesignError("--rate: is not positive", remedy=f"write {RATE}")
     return rate

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.ros2.quantities import LAG
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
-LAG = QuantityKind("a time", ("s",), "5..20 ms")
 Lag = Annotated[
     str,
     typer.Option(
@@ -43,15 +43,16 @@ def range_of(option: str, text: str | None, kind: QuantityKind) -> tuple[Fractio
     """
     if text is None:
         return None
+    remedy = f"write {option} '{kind.example}'"
     numbers, _, unit = text.partition(" ")
     low, _, high = numbers.partition("..")
     try:
         ends = [parse_quantity(f"{n} {unit}".strip(), kind).exact for n in (low, high or low)]
     except SpecError as error:
-        raise NrsDesignError(f"{option}: {error.message}", remedy=error.remedy) from None
+        raise NrsDesignError(f"{option}: {error.message}", remedy=remedy) from None
     if not 0 <= ends[0] <= ends[1]:
         raise NrsDesignError(
             f"{option}: {text!r} is not a rising range from zero or above",
-            remedy=f"write '{kind.example}'",
+            remedy=remedy,
         )
     return ends[0], ends[1]

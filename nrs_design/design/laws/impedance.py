@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+
+import numpy as np
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
@@ -15,12 +16,11 @@ from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
-from nrs_design.design.goals import Requirement, achieve_impedance, corners_of
+from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement, achieve_impedance
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
     impedance_cost,
-    optimize_impedance,
 )
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
@@ -30,7 +30,6 @@ from nrs_design.design.laws.law import (
     goals_of,
     naming,
 )
-from nrs_design.design.margins import LoopMargins, loop_margins, stiffness_limit
 from nrs_design.design.measures import (
     CREEP_MEASURES,
     HAND_MEASURES,
@@ -44,6 +43,8 @@ from nrs_design.errors import DesignError
 from nrs_design.proof.bounds import upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
+from nrs_design.spec.interval import Interval
+from nrs_design.switched.cut_loop import ContinuousAxis
 
 
 @dataclass(frozen=True)
@@ -64,22 +65,26 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         As shipped, in kg m^2 and N m s/rad; a spring is that of the loop in the problem.
     cost : float
         Of the shipped gains.
-    margins : LoopMargins
-        Of the shipped gains, in nominal contact.
+    requirement : Requirement
+        Its loops, and where they are looked at.
     highest_stiffness : float
         Upper end of the stiffness of the environment that it was designed for, in N m/rad.
     lowest_limit : float
-        Smallest stiffness limit in N m/rad, of the shipped gains and of the corners of their
-        declared ranges.
+        Smallest stiffness limit in N m/rad in the environment that it is designed for, over the
+        corners of all other ranges; NaN where it is not computed.
+    limit_at : str
+        The corner at which it is; its stiffness does not count.
     stiff : tuple of Doubt
         Contacts that are too stiff for the shipped gains.
     creep : Creep or None
         By the errors of the force signal, where the spec says how large they are.
     band : PassiveBand or None
-        Where the displayed admittance is passive, exactly; None with a spring or a filter.
+        Where the displayed admittance is passive, exactly, over the ranges of gains and motor; None
+        for a sampled law.
     sampled : tuple of SampledBand
-        The same for the law that is sampled, for every age of the force sample; empty without
-        sampling, with two periods, or with a spring or a filter.
+        The same for the law that is sampled, for every age of the force sample; empty where it is
+        not computed: without sampling, with two periods, a spring, a filter, or ranges of gains or
+        motor, and beside other axes.
     lever_arm : float or None
         Of everything that it touches, in m; None if there is none, or not the same for all.
     """
@@ -90,9 +95,10 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     Mt: float
     Bt: float
     cost: float
-    margins: LoopMargins
+    requirement: Requirement
     highest_stiffness: float
     lowest_limit: float
+    limit_at: str
     stiff: tuple[Doubt, ...]
     creep: Creep | None = None
     band: PassiveBand | None = None
@@ -102,11 +108,18 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     @property
     def limit_at_arm(self) -> float | None:
         """The stiffness limit where the contact is, in N/m, if its lever arm is known."""
-        return self.lever_arm and self.margins.stiffness_limit / self.lever_arm**2
+        return self.lever_arm and self.lowest_limit / self.lever_arm**2
+
+    def worst(self, measure: Measure) -> Achieved:
+        """Return the worst value of a measure over the ranges, and where it is."""
+        return next(found for found in self.achieved if found.measure is measure)
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and which of them the bounds have chosen."""
         yield from super().doubts()
+        if self.requirement.axis is None:
+            text = f"{self.name}: margins and k limit are {NOT_COMPUTED}"
+            yield Doubt(("controllers", self.name), text)
         yield from self.stiff
         yield from doubt_bounds(self.name, self.given, self.optimum)
 
@@ -141,17 +154,17 @@ def analyze(
     DesignError
         If the nominal loop is unstable.
     """
-    problem = impedance_problem(task, given)
     shipped = controller.law.gains
     Mt, Bt = float(shipped["Mt"]), float(shipped["Bt"])
-    with naming(controller.name):
-        margins = loop_margins(problem.loop, Mt, Bt)
-    ends = (gain_interval(gain, shipped[name]).ends for name, gain in given.gains().items())
-    limits = (
-        stiffness_limit(replace(problem.loop, Kt=sum(springs)), Mt_end, Bt_end)
-        for Mt_end, Bt_end, *springs in product(*([float(v) for _, v in pair] for pair in ends))
-    )
     requirement = _requirement(task, given)
+    problem = impedance_problem(task, given, requirement)
+    with naming(controller.name):
+        _check_stable(requirement, Mt, Bt)
+    limit, limit_at = min(
+        found
+        for name, found in requirement.stiffness_limits(Mt, Bt).items()
+        if name in _home_names(given)
+    )
     asked = dict(requirement.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
     achieved = achieve_impedance(requirement, measures, Mt, Bt)
@@ -162,19 +175,25 @@ def analyze(
         given=given,
         problem=problem,
         # Gains that the spec gives are their own optimum.
-        optimum=controller.optimum or optimize_impedance(problem),
+        optimum=controller.optimum or _given_optimum(problem, given),
         Mt=Mt,
         Bt=Bt,
         cost=float(impedance_cost(problem, Mt, Bt)),
-        margins=margins,
+        requirement=requirement,
         highest_stiffness=float(_highest_stiffness(task, given)),
-        stiff=tuple(too_stiff(task, given, controller)),
-        lowest_limit=min(margins.stiffness_limit, *limits),
+        lowest_limit=limit,
+        limit_at=limit_at,
+        stiff=tuple(doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)),
         creep=creep,
         band=_band(task, given, controller),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
     )
+
+
+def _given_optimum(problem: ImpedanceProblem, given: ImpedanceControllerSpec) -> ImpedanceOptimum:
+    Mt, Bt = given.Mt.min.si, given.Bt.min.si
+    return ImpedanceOptimum(Mt, Bt, float(impedance_cost(problem, Mt, Bt)), 1)
 
 
 def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:
@@ -186,20 +205,52 @@ def _lever_arm(task: Task, given: ImpedanceControllerSpec) -> float | None:
     return arms.pop() if len(arms) == 1 else None
 
 
+def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
+    """Refuse gains whose nominal loop is unstable: its margins would say nothing.
+
+    Raises
+    ------
+    DesignError
+        If it is, with what it is stable up to.
+    """
+    for corner in requirement.nominal if requirement.axis is not None else ():
+        if requirement.loops(corner, np.array([Mt]), np.array([Bt])).stable[0]:
+            continue
+        limit = requirement.family(corner).stiffness_limit(Mt, Bt)
+        late = "".join(f", {text}" for text in corner.place.texts)
+        raise DesignError(
+            f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
+            f"{corner.contact.stiffness:.6g} N m/rad{late}",
+            remedy=f"it is stable below {limit:.6g} N m/rad; raise Bt or lower Mt",
+            at=("Bt",),
+        )
+
+
 def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:
-    """Return where ``G Y`` is passive; a spring or a filter make another admittance."""
-    if task.sensor.filter is not None or _spring(given):
+    """Return where the displayed admittance is passive, over the ranges of gains and motor."""
+    if not isinstance(task.axis, ContinuousAxis):
         return None
-    gains = controller.law.gains
-    return passive_band(task.loop, gains["Mt"], gains["Bt"])
+    motor = task.plant.actuator_ranges
+    ranges = {} if motor is None else {"Km": motor.gain, "tau": motor.time_constant}
+    ranges |= _gain_ranges(given, controller)
+    moving = {name: r for name, r in ranges.items() if r.low != r.high}
+    return passive_band(task.axis, controller.law, moving)
+
+
+def _gain_ranges(given: ImpedanceControllerSpec, controller: Controller) -> dict[str, Interval]:
+    shipped = controller.law.gains
+    return {name: gain_interval(gain, shipped[name]) for name, gain in given.gains().items()}
 
 
 def _sampled_bands(
     task: Task, given: ImpedanceControllerSpec, controller: Controller
 ) -> tuple[SampledBand, ...]:
-    """Return where the sampled law is passive, with the nominal motor."""
+    """Return where the sampled law is passive; empty where that is not computed."""
     sampling = task.spec.sampling
     if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
+        return ()
+    ranged = any(r.low != r.high for r in _gain_ranges(given, controller).values())
+    if ranged or task.plant.actuator_ranges is not None or task.spec.coupling is not None:
         return ()
     law = controller.law.sampled(sampling.period.exact, sampling.admittance)
     assert isinstance(law, SampledAdmittance), "that of an admittance"
@@ -228,14 +279,16 @@ def too_stiff(
         With the gains that ship.
     """
     Mt, Bt = (float(controller.law.gains[gain]) for gain in ("Mt", "Bt"))
-    loop = impedance_problem(task, given).loop
-    yield from doubt_stiffness(controller.name, loop, task.contacts(given), Mt, Bt)
+    requirement = _requirement(task, given)
+    yield from doubt_stiffness(controller.name, requirement, task.contacts(given), Mt, Bt)
 
 
 DESIGN = LawDesign(choose, analyze, too_stiff)
 
 
-def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedanceProblem:
+def impedance_problem(
+    task: Task, given: ImpedanceControllerSpec, requirement: Requirement
+) -> ImpedanceProblem:
     """State the choice of one controller's virtual mass and damping as an optimization.
 
     Parameters
@@ -244,6 +297,8 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
         With the environment and the limits of torque, velocity and frequency.
     given : ImpedanceControllerSpec
         With bounds and weights.
+    requirement : Requirement
+        Which tells what is stable.
     """
     return ImpedanceProblem(
         loop=ImpedanceLoop(
@@ -258,6 +313,7 @@ def impedance_problem(task: Task, given: ImpedanceControllerSpec) -> ImpedancePr
         damping_bounds=(given.Bt.min.si, given.Bt.max.si),
         weight_displayed=float(given.weights.displayed),
         weight_sensitivity=float(given.weights.sensitivity),
+        stable=None if requirement.axis is None else requirement.stable,
     )
 
 
@@ -272,24 +328,26 @@ def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControll
 
 
 def _requirement(task: Task, given: ImpedanceControllerSpec) -> Requirement:
-    contacts = task.contacts(given)
     gains = {name: _ends(gain) for name, gain in given.gains().items()}
     return Requirement(
-        motion=task.motion,
-        corners=corners_of(contacts, given.environment, gains, float(_spring(given))),
+        axis=task.axis,
+        corners=task.corners(given, gains, _spring(given)),
         goals=goals_of(task.spec, given, (*_measures(task), *HAND_MEASURES)),
         desired=desired_impedance(task.spec, given),
         bandwidth=task.spec.limits.bandwidth.si,
-        lags=_lags(task),
         force_error=upper_float(task.sensor.lasting),
     )
 
 
+def _home_names(given: ImpedanceControllerSpec) -> tuple[str, ...]:
+    """Return the environment that the gains are designed for, and what it is part of."""
+    at_once = (c for c in given.contacts if given.environment in names_in(c))
+    return given.environment, *contact_names(tuple(at_once))
+
+
 def _highest_stiffness(task: Task, given: ImpedanceControllerSpec) -> Fraction:
     """Return that of the environment that the gains are designed for, and of what it is part of."""
-    at_once = (c for c in given.contacts if given.environment in names_in(c))
-    names = (given.environment, *contact_names(tuple(at_once)))
-    return max(task.plant.environment(name).stiffness.high for name in names)
+    return max(task.plant.environment(name).stiffness.high for name in _home_names(given))
 
 
 def _measures(task: Task) -> tuple[Measure, ...]:
@@ -302,17 +360,18 @@ def _lags(task: Task) -> tuple[float, ...]:
     return (1.0,) if low_pass is None else low_pass.denominator
 
 
-def _ends(gain: GainSpec) -> tuple[float, ...]:
+def _ends(gain: GainSpec) -> tuple[Fraction, ...]:
     """Return the ends of a declared range of a gain, as single-precision numbers surround them."""
     if not gain.ranged:
         return ()
     interval = gain_interval(gain, to_float32(gain.min.exact))
-    return (float(interval.low), float(interval.high))
+    return interval.low, interval.high
 
 
 def _optimize(task: Task, given: ImpedanceControllerSpec) -> tuple[Admittance, ImpedanceOptimum]:
     """Optimize an admittance under its goals, and round it so that they are still met."""
-    problem, requirement = impedance_problem(task, given), _requirement(task, given)
+    requirement = _requirement(task, given)
+    problem = impedance_problem(task, given, requirement)
     optimum = optimize_with_goals(problem, requirement)
     law = Admittance(
         Mt=_shipped(optimum.Mt, given.Mt, task.digits),

@@ -13,7 +13,7 @@ from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws.integral import IntegralForce
 from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.force_loop import design_force_gain, force_loop_response
-from nrs_design.design.goals import Requirement, achieve_force, corners_of
+from nrs_design.design.goals import ForceRequirement, achieve_force
 from nrs_design.design.laws.force import ForceAnalysis
 from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
 from nrs_design.design.measures import MARGINS
@@ -116,9 +116,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     Kp, Ki = (float(controller.law.gains[name]) for name in ("Kp", "Ki"))
     motion = with_integral(task.motion, Ki / Kp)
     goals = goals_of(task.spec, given, MARGINS)
-    requirement = Requirement(
-        motion, corners_of(task.contacts(given), given.environment, {}), goals
-    )
+    requirement = ForceRequirement(task.axis, task.corners(given), goals, controller.law, motion)
     stiffness = task.plant.environment(given.environment).nominal.stiffness
     limits = task.spec.limits
     # The position command waits, and the integral is what it was: the command does not step.
@@ -127,7 +125,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     with naming(name):
         loop = force_loop_response(motion, stiffness, Kp)
         peak = peak_force(task.motion, stiffness, Kp, approach)
-        achieved = achieve_force(requirement, MARGINS, Kp)
+        achieved = achieve_force(requirement, MARGINS)
     return ForceAnalysis(name, achieved, stiffness, loop, approach, 0.0, peak, motion)
 
 

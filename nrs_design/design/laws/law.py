@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from abc import ABC
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.laws import CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values
-from nrs_design.design.goals import Achieved
+from nrs_design.design.goals import Achieved, ContactCorner, corners_of
 from nrs_design.design.measures import Measure
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
@@ -22,6 +24,7 @@ from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec import ControllerSpec, Doubt, InteractionDesignSpec, Quantity
 from nrs_design.spec.controllers import contact_names
+from nrs_design.switched.cut_loop import AbstractAxis, Place, axis_of
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,30 @@ class Task:
     def motion(self) -> TransferFunction:
         """The motion loop in floating point."""
         return to_transfer_function(self.loop)
+
+    @cached_property
+    def axis(self) -> AbstractAxis | None:
+        """From which the modes of a proof follow; None where no loop is cut at one place."""
+        return axis_of(self.spec, self.plant, self.pd, self.sensor)
+
+    def corners(
+        self,
+        given: ControllerSpec,
+        gains: Mapping[str, tuple[Fraction, ...]] = MappingProxyType({}),
+        spring: Fraction = Fraction(0),
+    ) -> tuple[ContactCorner, ...]:
+        """Return where a controller is measured.
+
+        Parameters
+        ----------
+        given : ControllerSpec
+            What the spec says of it.
+        gains, spring
+            As for `nrs_design.design.goals.corners_of`.
+        """
+        assert given.environment is not None  # Of a controller with contact.
+        places = (Place(self.plant.actuator),) if self.axis is None else self.axis.places
+        return corners_of(self.contacts(given), given.environment, gains, places, spring)
 
     @property
     def sensor(self) -> Sensor:

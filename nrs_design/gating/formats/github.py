@@ -17,7 +17,12 @@ def to_github(outcome: GateOutcome) -> str:
     if more > 0:
         lines.append(f"::notice title=nrs-design::{more} more not shown; see the log of this step")
     cautions = [item for spec in outcome.specs for item in spec.cautions]
+    if outcome.changes is not None:
+        cautions += outcome.changes.others
     lines += [_warning(item) for item in cautions[:MAX_ANNOTATIONS]]
+    if len(cautions) > MAX_ANNOTATIONS:
+        more = len(cautions) - MAX_ANNOTATIONS
+        lines.append(f"::notice title=nrs-design::{more} more warnings; see the log of this step")
     return "".join(f"{line}\n" for line in lines)
 
 

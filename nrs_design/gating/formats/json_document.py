@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome
+from nrs_design.gating.obligations import BaseChanges, GateOutcome, Obligation, SpecOutcome
 from nrs_design.gating.paths import from_here
 from nrs_design.printable import json_text
 
@@ -17,7 +17,26 @@ def to_json(outcome: GateOutcome) -> str:
         "specs": [_spec(spec) for spec in outcome.specs],
         "notes": list(outcome.notes),
     }
+    if outcome.changes is not None:
+        document["against"] = _against(outcome.changes)
     return json_text(document) + "\n"
+
+
+def _against(changes: BaseChanges) -> dict[str, Any]:
+    """Return what differs from the base; what is weaker is an obligation, too."""
+    return {
+        "base": changes.base.as_posix(),
+        "weaker": changes.weaker,
+        "others": [
+            {
+                "path": from_here(item.path),
+                "message": item.message,
+                "line": item.line,
+                "column": item.column,
+            }
+            for item in changes.others
+        ],
+    }
 
 
 def _spec(spec: SpecOutcome) -> dict[str, Any]:
@@ -25,6 +44,7 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "path": from_here(spec.path),
         "spec_sha256": spec.sha256,
         "verdict": spec.verdict,
+        "refuted_in": spec.refuted_in,
         "common_quadratic": spec.common_quadratic,
         "rate": spec.rate,
         "rate_name": spec.rate_name,

@@ -13,7 +13,9 @@ from nrs_design.gating.obligations import (
     SpecOutcome,
     count_by_verdict,
 )
+from nrs_design.gating.rules import NOT_WEAKER
 from nrs_design.printable import printable
+from nrs_design.proof.text import counted
 
 COLUMNS = ("spec", "verdict", "common quadratic", "decay rate", "modes", "certificate")
 SHORT_ID = 12
@@ -24,7 +26,7 @@ def to_text(outcome: GateOutcome) -> str:
     parts = [*_table([COLUMNS, *rows_of(outcome)]), *gain_lines(outcome)]
     if outcome.broken:
         parts += ["", *map(line_of, outcome.broken)]
-    return "\n".join([*parts, "", summary_line(outcome)]) + "\n"
+    return "\n".join([*parts, *change_lines(outcome), "", summary_line(outcome)]) + "\n"
 
 
 def rows_of(outcome: GateOutcome) -> list[Sequence[str]]:
@@ -37,6 +39,23 @@ def gain_lines(outcome: GateOutcome) -> list[str]:
     designed = [_gains(spec) for spec in outcome.specs if spec.gains]
     title = "gains (single-precision numbers, by their shortest decimals):"
     return ["", title, *designed] if designed else []
+
+
+def change_lines(outcome: GateOutcome) -> list[str]:
+    """Return the section on what differs from the base, after an empty line; nothing without one.
+
+    What is weaker is among the obligations that are not fulfilled.
+    """
+    found = outcome.changes
+    if found is None:
+        return []
+    counts = (
+        f"{found.weaker} weaker ({NOT_WEAKER.id}), {counted(len(found.others), 'other change')}"
+    )
+    lines = [f"against {found.base.as_posix()}: {counts}"]
+    for item in found.others:
+        lines.append(f"  {item.path.as_posix()}:{item.line}:{item.column}: {item.message}")
+    return ["", *map(printable, lines)]
 
 
 def _row(spec: SpecOutcome) -> Sequence[str]:

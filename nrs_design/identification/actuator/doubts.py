@@ -12,7 +12,6 @@ from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import tells_friction
 from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.datasets import ActuatorRecord
-from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.held import Held
 
 Array = NDArray[np.float64]
@@ -45,7 +44,6 @@ def find_doubts(
         Whether it misses more than noise.
     """
     step = min(record.step for record in records)
-    yield from doubt_step(step)
     half = 2 * float(found.uncertainty.errors[-1])
     if found.motor.delay < -half:
         yield (

@@ -16,10 +16,12 @@ from nrs_design.identification.actuator.phasors import Phasors, phasors_of
 from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
+from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.statistics import WHITE, Estimate
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.progress import Progress, silent
+from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
 
 Array = NDArray[np.float64]
@@ -89,6 +91,18 @@ class ActuatorIdentification:
         return MOTOR_COVERS[self.coverage]
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """How pauses part records, in words."""
+        return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
+
+    @property
+    def slips(self) -> tuple[str, ...]:
+        """Doubts that say that the data are likely read in another unit."""
+        return tuple(
+            doubt for doubt in self.doubts if doubt in _slips(self.chosen, self.unit, self.step)
+        )
+
+    @property
     def caveats(self) -> tuple[str, ...]:
         """What whoever uses the motor in a proof must know: doubts, and a dead time."""
         late = self.chosen.dead_time
@@ -133,7 +147,7 @@ def identify_actuator(
         range for other records is wanted, and there is one record only.
     """
     if coverage != "confidence":
-        check_spread(coverage, len(data))
+        check_spread(coverage, len({_origin(item) for item in data}))
     responses = [item for item in data if isinstance(item, FrequencyResponse)]
     records = [item for item in data if isinstance(item, ActuatorRecord)]
     if not data or (responses and records) or len(responses) > 1:
@@ -141,7 +155,7 @@ def identify_actuator(
             f"{len(records)} records and {len(responses)} frequency responses",
             remedy="give records of the motor, or one frequency response",
         )
-    if len({(r.source.sha256, r.group) for r in records}) < len(records):
+    if len({(*_origin(r), r.part) for r in records}) < len(records):
         raise DataError(
             "a record is there twice, which would narrow the intervals", remedy="name it once"
         )
@@ -163,19 +177,27 @@ def identify_actuator(
 
 def _spread(records: Sequence[ActuatorRecord], coverage: Coverage) -> tuple[Estimate, ...]:
     """Return ranges that hold other records, from a fit to each of these by itself."""
-    fits = [fit_of(record.name, _alone(record)) for record in records]
+    wholes: dict[tuple[str, str], list[ActuatorRecord]] = {}
+    for record in records:
+        wholes.setdefault(_origin(record), []).append(record)
+    fits = [fit_of(parts[0].name, _alone(parts)) for parts in wholes.values()]
     single = [(fit.gain, fit.time_constant) for fit in fits]
     logarithms = np.log([[estimate.value for estimate in row] for row in single])
     return spread_ranges(coverage, logarithms, single)
 
 
-def _alone(record: ActuatorRecord) -> TimeFit:
+def _origin(item: ActuatorRecord | FrequencyResponse) -> tuple[str, str]:
+    """Return what stretches between pauses of one record have in common."""
+    return item.source.sha256, item.group if isinstance(item, ActuatorRecord) else ""
+
+
+def _alone(parts: Sequence[ActuatorRecord]) -> TimeFit:
     try:
-        return _first_order([record])
+        return _first_order(parts)
     except DataError as error:
         raise DataError(
-            f"{record.name} alone does not determine the motor: {error.message}",
-            path=record.source.path,
+            f"{parts[0].name} alone does not determine the motor: {error.message}",
+            path=parts[0].source.path,
             remedy="give records that each do, such as steps or chirps; or leave --covers out",
         ) from None
 
@@ -193,6 +215,7 @@ def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorId
         ranges=fit.ranges,
         frequency=data.frequency,
         response=data.response,
+        doubts=_slips(fit, data.unit, None),
     )
 
 
@@ -210,7 +233,7 @@ def _from_records(
         if second is not None:
             found, fits = second, [*fits, fit_of("second order, in the time domain", second)]
             reason = "The motor of first order fails; that of second order explains more."
-    chosen = fits[-1]
+    chosen, step = fits[-1], min(record.step for record in records)
     return ActuatorIdentification(
         sources=tuple({record.source.sha256: record.source for record in records}.values()),
         records=tuple(records),
@@ -221,11 +244,26 @@ def _from_records(
         figures=chosen.figures(motor) if records[0].unit == "rpm" and chosen.order == 1 else None,
         frequency=np.array([p.frequency for p in phasors]),
         response=_response(phasors, chosen),
-        doubts=tuple(find_doubts(records, found, failed=_has_failed(records, found))),
+        doubts=(
+            *_slips(chosen, records[0].unit, step),
+            *find_doubts(records, found, failed=_has_failed(records, found)),
+        ),
         unit=records[0].unit,
         ranges=chosen.ranges,
-        step=min(record.step for record in records),
+        step=step,
     )
+
+
+def _slips(fit: ActuatorFit, unit: str, step: float | None) -> tuple[str, ...]:
+    """Return what is asked about the sizes of what was found, and of the steps of time."""
+    said = [] if step is None else [*doubt_step(step)]
+    for name, value, si in (
+        ("gain", fit.gain.value, f"rad/s/{unit}"),
+        ("time_constant", fit.time_constant.value, "s"),
+    ):
+        if asked := doubt_size(name, value, si):
+            said.append(f"the {name.replace('_', ' ')} is {value:.4g} {si}: {asked}")
+    return tuple(said)
 
 
 def _from_phasors(

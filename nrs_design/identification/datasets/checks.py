@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.table import Array, MeasurementTable
+from nrs_design.spec.plausible import doubt_size
+from nrs_design.spec.quantity import SMALLEST
 
 FEWEST_ROWS = 50
 # A step of more than so many usual ones is a gap.
@@ -15,14 +18,15 @@ GAP = 3.0
 # A sensor is saturated when its extreme reading repeats while this part of the motion passes.
 _FLAT_ROWS = 10
 _FLAT_MOTION = 0.05
-# Between these lie the steps in s of what logs a robot or a test of a material.
-_FASTEST, _SLOWEST = 2e-5, 1.0
+# Changes of so many units in the last place are none.
+_ROUNDED = 8
 
 
 def doubt_step(step: float) -> Iterator[str]:
     """Doubt a usual step in s that no logger has: seconds were read as milliseconds, or back."""
-    if not _FASTEST <= step < _SLOWEST:
-        yield f"the steps of time are {step:.3g} s: is that their unit? (--map names another)"
+    if asked := doubt_size("recorded_step", step, "s", f"{step:.3g}"):
+        asked = asked.replace("its unit", "their unit")
+        yield f"the steps of time are {step:.3g} s: {asked} (--map names another)"
 
 
 def gaps_in(time: Array) -> NDArray[np.bool_]:
@@ -41,8 +45,32 @@ def gaps_in(time: Array) -> NDArray[np.bool_]:
     return np.asarray(steps > GAP * np.median(steps))
 
 
+def stretches_in(time: Array) -> tuple[slice, ...]:
+    """Return the rows between gaps, all of them, in their order; one slice where there is none."""
+    edges = [0, *(np.flatnonzero(gaps_in(time)) + 1).tolist(), len(time)]
+    return tuple(slice(a, b) for a, b in pairwise(edges))
+
+
+def long_stretches(time: Array) -> tuple[slice, ...]:
+    """Return those of them that are long enough to tell anything."""
+    return tuple(rows for rows in stretches_in(time) if rows.stop - rows.start >= FEWEST_ROWS)
+
+
+def pauses_text(time: Array) -> str | None:
+    """Say how a record is parted by pauses; None if it is not."""
+    if (count := len(stretches_in(time)) - 1) == 0:
+        return None
+    kept = long_stretches(time)
+    spans = ", ".join(f"{time[r.start]:.4g} s to {time[r.stop - 1]:.4g} s" for r in kept)
+    left = len(time) - sum(rows.stop - rows.start for rows in kept)
+    short = f"; {left} samples in shorter stretches are left out" if left else ""
+    many = f"{count} pauses part the record" if count > 1 else "a pause parts the record"
+    joined = "its stretches are fitted together" if len(kept) > 1 else "this stretch is fitted"
+    return f"{many}: {joined} ({spans}){short}"
+
+
 def check_time(table: MeasurementTable, time: Array) -> None:
-    """Check that time advances without gaps.
+    """Check that time advances, and that a stretch without gaps is long enough.
 
     Raises
     ------
@@ -56,13 +84,13 @@ def check_time(table: MeasurementTable, time: Array) -> None:
             "record longer",
         )
     check_advance(table, time)
-    gaps = np.flatnonzero(gaps_in(time))
-    if len(gaps):
-        row, steps = int(gaps[0]) + 1, np.diff(time)
+    if not long_stretches(time):
+        row, steps = stretches_in(time)[0].stop, np.diff(time)
         table.fail(
-            f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s",
+            f"a gap of {steps[row - 1]:.4g} s, where steps are {np.median(steps):.4g} s, and no "
+            f"{FEWEST_ROWS} rows without one",
             row,
-            "cut the record there and give its parts as records of their own",
+            "record without interruption",
         )
 
 
@@ -84,6 +112,8 @@ def check_advance(table: MeasurementTable, time: Array) -> None:
             row,
             "sort the rows, or remove the doubled ones",
         )
+    if len(time) and float(np.ptp(time)) <= SMALLEST:
+        table.fail("time hardly advances", len(time) - 1, "write it in s, ms, us or ns")
 
 
 def check_turns(table: MeasurementTable, angle: Array) -> None:
@@ -136,7 +166,7 @@ def check_saturation(table: MeasurementTable, name: str, values: Array, moving: 
 
 
 def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
-    """Check that a column is not constant.
+    """Check that a column is not constant, but for the rounding of its numbers.
 
     Parameters
     ----------
@@ -152,8 +182,10 @@ def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
     DataError
         At the first row.
     """
-    if np.ptp(values) == 0:
-        table.fail(f"the {name} never changes", 0, "record a motion, from before it begins")
+    change = float(np.ptp(values))
+    if change <= max(SMALLEST, _ROUNDED * np.finfo(float).eps * float(np.abs(values).max())):
+        by = f" by more than {change:.1g}, which is rounding" if change else ""
+        table.fail(f"the {name} never changes{by}", 0, "record a motion, from before it begins")
 
 
 def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> list[tuple[int, int]]:

@@ -174,11 +174,18 @@ def _grouped(
     """
     found: dict[str, dict[str, Column]] = {}
     faults: list[tuple[str, DataError]] = []
+    full = {
+        (name.group, name.quantity)
+        for text in header
+        if (name := read_name(mapping.get(text, text))) and not name.loose
+    }
     for index, text in enumerate(header):
         ours = mapping.get(text)
         name = read_name(text if ours is None else ours)
         # Who maps a quantity means this column, and no other that may be called like it.
         if name is None or name.quantity not in wanted or (ours is None and name.quantity in named):
+            continue
+        if name.loose and (name.group, name.quantity) in full:
             continue
         if not name.known:
             faults.append((name.quantity, _unknown_unit(name, text, "", path, line)))

@@ -70,6 +70,19 @@ _SYNONYMS = {
     "moment": "torque",
     "speed": "velocity",
 }
+# What a letter or a loose word stands for, if its unit fits: a position in deg is an angle. A full
+# word beside it goes first, and of two of these the user chooses.
+_SYMBOLS: Mapping[str, tuple[str, ...]] = {
+    "t": ("time", "torque"),
+    "f": ("force",),
+    "m": ("torque",),
+    "position": ("deflection", "angle"),
+    "pos": ("deflection", "angle"),
+    "disp": ("deflection",),
+    **dict.fromkeys(("x", "y", "z", "d", "s", "delta"), ("deflection",)),
+    **dict.fromkeys(("phi", "theta", "alpha"), ("angle",)),
+    **dict.fromkeys(("w", "omega"), ("velocity",)),
+}
 # How other programs spell a unit, in small letters without blanks.
 _SPELLINGS = {
     "sec": "s",
@@ -126,11 +139,14 @@ class Name:
         As written, or as we write it where that is known.
     group : str
         Suffix, empty for none.
+    loose : bool
+        Whether it is a letter or a word that may mean something else, too.
     """
 
     quantity: str
     unit: str
     group: str = ""
+    loose: bool = False
 
     @property
     def known(self) -> bool:
@@ -157,7 +173,7 @@ def standard_name(quantity: str) -> str:
 
 
 def read_name(text: str) -> Name | None:
-    """Take a name apart: ``angle_rad_2``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``Time, s``.
+    """Take a name apart: ``angle_rad_2``, ``Force [N]``, ``Load (kN)``, ``Time/s``, ``t, s``.
 
     Returns
     -------
@@ -167,21 +183,27 @@ def read_name(text: str) -> Name | None:
     text = text.strip()
     bracketed = _BRACKETED.match(text) or _SLASHED.match(text)
     if bracketed:
-        quantity = _quantity(bracketed["what"])
-        return Name(quantity, read_unit(bracketed["unit"], quantity)) if quantity else None
-    word, _, rest = text.partition("_")
-    if word in UNITS:
-        return Name(word, *_unit_and_group(rest, word))
+        what, unit = bracketed["what"].strip().lower(), bracketed["unit"]
+        quantity = what if what in UNITS else _SYNONYMS.get(what)
+        return Name(quantity, read_unit(unit, quantity)) if quantity else _symbol(what, unit)
+    word, underscore, rest = text.partition("_")
     # Who writes Fz means an axis of his own.
-    if text.lower() in UNITS and len(text) > 2:
-        return Name(text.lower(), "")
-    synonym, _, rest = text.lower().partition("_")
-    quantity = _SYNONYMS.get(synonym)
+    if word in UNITS or (word.lower() in UNITS and len(word) > 2):
+        return Name(word.lower(), *(_unit_and_group(rest, word.lower()) if underscore else ("",)))
+    quantity = _SYNONYMS.get(word.lower())
     # A foreign word without its unit is none of ours.
-    if quantity is None or not rest:
+    if not rest:
         return None
-    name = Name(quantity, *_unit_and_group(text.partition("_")[2], quantity))
+    if quantity is None:
+        return _symbol(word.lower(), rest) if word.lower() == "t" else None
+    name = Name(quantity, *_unit_and_group(rest, quantity))
     return name if name.known else None
+
+
+def _symbol(word: str, unit: str) -> Name | None:
+    """Return what a letter stands for by its unit."""
+    names = (Name(q, read_unit(unit, q), loose=True) for q in _SYMBOLS.get(word, ()))
+    return next((name for name in names if name.known), None)
 
 
 def read_stamp(text: str) -> Name | None:
@@ -231,11 +253,6 @@ def stated_unit(text: str, quantity: str) -> str | None:
     words = text.strip().split("_")
     endings = (read_unit("_".join(words[-n:]), quantity) for n in (2, 1) if len(words) > n)
     return next((unit for unit in endings if unit in known - _NO_ENDINGS), None)
-
-
-def _quantity(text: str) -> str | None:
-    word = text.strip().lower()
-    return word if word in UNITS else _SYNONYMS.get(word)
 
 
 def _unit_and_group(rest: str, quantity: str) -> tuple[str, str]:

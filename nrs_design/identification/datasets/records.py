@@ -15,6 +15,9 @@ from nrs_design.identification.datasets.checks import (
     check_time,
     check_turns,
     check_varies,
+    long_stretches,
+    pauses_text,
+    stretches_in,
 )
 from nrs_design.identification.datasets.table import (
     Array,
@@ -39,6 +42,8 @@ ROLL_PITCH = ("roll", "pitch", *WRENCH)
 # How far from 1 the length of a quaternion may be: it is rounded.
 _ROTATION = 0.01
 RESPONSE = ("frequency", "magnitude", "phase")
+# In dB.
+_LOUDEST = 600.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,6 +94,10 @@ class ActuatorRecord:
         Whether the output is an angle; otherwise it is a velocity.
     unit : str
         Of the command, such as ``rpm``, ``V``, ``A`` or ``counts``.
+    part : int
+        Which of the stretches between pauses of a file this is, from 0.
+    pauses : str or None
+        How pauses part the file, in words, with the first part.
     """
 
     source: Source
@@ -98,11 +107,14 @@ class ActuatorRecord:
     output: Array
     is_angle: bool = True
     unit: str = "rpm"
+    part: int = 0
+    pauses: str | None = None
 
     @property
     def name(self) -> str:
-        """File name without its ending, and the group."""
-        return self.source.path.stem + (f"/{self.group}" if self.group else "")
+        """File name without its ending, the group, and the part beyond the first."""
+        part = f", part {self.part + 1}" if self.part else ""
+        return self.source.path.stem + (f"/{self.group}" if self.group else "") + part
 
     @cached_property
     def step(self) -> float:
@@ -122,11 +134,14 @@ class FrequencyResponse:
         In rad/s.
     response : ndarray of complex, shape (m,)
         In rad/s for each unit of the command.
+    unit : str
+        Of the command, which no column says: that of the motor of the thesis.
     """
 
     source: Source
     frequency: Array
     response: np.ndarray[tuple[int], np.dtype[np.complex128]]
+    unit: str = "rpm"
 
 
 def read_tissue(
@@ -181,7 +196,7 @@ def read_actuator(
     table = read_table(path, (ANGLE, VELOCITY, RESPONSE), mapping or {}, progress)
     if table.layout == RESPONSE:
         return _response(table)
-    return tuple(_actuator(table, group) for group in table.groups)
+    return tuple(record for group in table.groups for record in _actuator(table, group))
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,6 +223,16 @@ class SignalRecord:
     def step(self) -> float:
         """Usual time between samples in s."""
         return float(np.median(np.diff(self.time)))
+
+    @cached_property
+    def stretches(self) -> tuple[slice, ...]:
+        """The rows between pauses of the record."""
+        return stretches_in(self.time)
+
+    @cached_property
+    def longest(self) -> slice:
+        """The longest of these."""
+        return max(self.stretches, key=lambda rows: rows.stop - rows.start)
 
 
 def read_signals(
@@ -319,7 +344,8 @@ def _one_group(table: MeasurementTable) -> Sequence[dict[str, Array]]:
     return list(table.groups.values())
 
 
-def _actuator(table: MeasurementTable, group: str) -> ActuatorRecord:
+def _actuator(table: MeasurementTable, group: str) -> list[ActuatorRecord]:
+    """Return a record for every stretch between pauses in which the motor moves."""
     time, command, output = (table.groups[group][quantity] for quantity in table.layout)
     check_time(table, time)
     check_varies(table, "command", command)
@@ -328,7 +354,15 @@ def _actuator(table: MeasurementTable, group: str) -> ActuatorRecord:
     is_angle = table.layout == ANGLE
     if is_angle:
         check_turns(table, output)
-    return ActuatorRecord(table.source, group, time - time[0], command, output, is_angle, unit)
+    parts: list[ActuatorRecord] = []
+    for rows in long_stretches(time):
+        t, u, y = time[rows], command[rows], output[rows]
+        if np.ptp(u) > 0 and np.ptp(y) > 0:
+            part = len(parts), None if parts else pauses_text(time - time[0])
+            parts.append(ActuatorRecord(table.source, group, t - t[0], u, y, is_angle, unit, *part))
+    if not parts:
+        table.fail("the motor moves in no stretch between its pauses", 0, "record a motion")
+    return parts
 
 
 def _response(table: MeasurementTable) -> FrequencyResponse:
@@ -343,5 +377,9 @@ def _response(table: MeasurementTable) -> FrequencyResponse:
     bad = np.flatnonzero(frequency <= 0)
     if len(bad):
         table.fail("the frequency is not positive", int(bad[0]), "remove the row")
+    bad = np.flatnonzero(np.abs(magnitude) > _LOUDEST)
+    if len(bad):
+        size = f"the magnitude is {magnitude[bad[0]]:.4g} dB: no motor has such a gain"
+        table.fail(size, int(bad[0]), "correct the value, or remove the row")
     response = 10 ** (magnitude / 20) * np.exp(1j * phase)
     return FrequencyResponse(table.source, 2 * np.pi * frequency, response)

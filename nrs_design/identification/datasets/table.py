@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
-from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_sheet
+from nrs_design.identification.datasets.arrays import ARRAYS, check_kind, read_arrays, read_sheet
 from nrs_design.identification.datasets.columns import Column, find_columns
 from nrs_design.identification.datasets.header import BLOCK, SYNTHETIC, read_header
 from nrs_design.identification.datasets.names import UNITS, standard_name
 from nrs_design.identification.datasets.text import MAX_ROWS, Parser, read_blocks
+from nrs_design.spec.quantity import LARGEST
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -139,11 +140,25 @@ def read_table(
             raise DataError("is a folder", path=path, remedy="name files of data")
         with open_regular(path) as file:
             check_kind(file, path)
-            return _read(file, path, wanted, lambda done: progress(min(done / size, 1.0)))
+            table = _read(file, path, wanted, lambda done: progress(min(done / size, 1.0)))
     except OSError as error:
         raise DataError(
             f"cannot be read ({error.strerror})", path=path, remedy="check the name"
         ) from error
+    _check_sizes(table)
+    return table
+
+
+def _check_sizes(table: MeasurementTable) -> None:
+    """Refuse values whose squares, or the squares of those, leave the floats."""
+    for group, columns in table.groups.items():
+        for quantity, values in columns.items():
+            column = table.columns[group][quantity]
+            bad = np.flatnonzero(np.abs(values) > LARGEST)
+            if len(bad):
+                size = f"{values[bad[0]] / column.factor:.4g}"
+                message = f"{column.name} is {size}: no sensor has such a value"
+                table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
 
 
 def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> MeasurementTable:
@@ -174,7 +189,7 @@ def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
 
 def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
     digest = _digest(file)
-    arrays, words = ARRAYS[path.suffix.lower()](file, path)
+    arrays, words = read_arrays(file, path)
     names = list(arrays)
     layout, groups = find_columns(
         names, wanted.layouts, wanted.mapping, path, None, wanted.optional
@@ -182,7 +197,7 @@ def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable
     labels: list[str] = []
     data = {
         group: {
-            key: _values(arrays[column.name], column, path, labels) * column.factor
+            key: _in_si(_values(arrays[column.name], column, path, labels), column)
             for key, column in found.items()
         }
         for group, found in groups.items()
@@ -198,6 +213,12 @@ def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable
     return MeasurementTable(
         Source(path, digest, synthetic), layout, data, groups, tuple(labels), None
     )
+
+
+def _in_si(values: Array, column: Column) -> Array:
+    """Convert a column; what leaves the floats by that is refused with the other sizes."""
+    with np.errstate(over="ignore"):
+        return np.asarray(values * column.factor)
 
 
 def _digest(file: BinaryIO) -> str:
@@ -268,7 +289,7 @@ def _read_text(
     values = np.concatenate(parts) if parts else np.empty((0, len(columns)))
     at = {column: i for i, column in enumerate(columns)}
     data = {
-        name: {key: values[:, at[column]] * column.factor for key, column in group.items()}
+        name: {key: _in_si(values[:, at[column]], column) for key, column in group.items()}
         for name, group in groups.items()
     }
     source = Source(path, digest or hashed.hexdigest(), header.synthetic)

@@ -8,12 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import SignalRecord
-from nrs_design.identification.delay.models import AbstractFollower
+from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
 from nrs_design.identification.statistics import Uncertainty, uncertainty
 from nrs_design.identification.steps import limited_step
 
 Array = NDArray[np.float64]
 
+# So far from where columns are most alike, in samples, a whole number of them is sought.
+_AROUND = 8
 _STEPS = 40
 _HALVINGS = 10
 _CONVERGED = 1e-7
@@ -107,11 +109,50 @@ def fit_delay(
     J = _sensitivities(record, follower, x, rows)
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
     columns = shaped.columns(record, float(x[0]) * record.step)
-    solution = np.linalg.lstsq(columns[rows], record.seen[rows], rcond=None)[0].astype(float)
+    solution = solve(columns[rows], record.seen[rows])
     return DelayFit(
         shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
         columns @ solution, solution,
     )  # fmt: skip
+
+
+def fit_held(record: SignalRecord, delay: float, rows: NDArray[np.int64]) -> DelayFit:
+    """Find the whole number of samples by which a copy is late.
+
+    Parameters
+    ----------
+    record, rows
+        As for `fit_delay`.
+    delay : float
+        Where both columns are most alike, in s.
+    """
+    follower, near = HeldCopy(()), round(delay / record.step)
+
+    def columns(late: int) -> Array:
+        return follower.columns(record, late * record.step)
+
+    def missed(late: int) -> float:
+        error = _errors(record, follower, np.array([float(late)]), rows)
+        return float(error @ error)
+
+    best = min(range(near - _AROUND, near + _AROUND + 1), key=lambda k: (missed(k), abs(k - near)))
+    solution = solve(columns(best)[rows], record.seen[rows])
+    fitted = columns(best) @ solution
+    slope = (columns(best + 1) - columns(best - 1))[rows] @ solution / 2
+    error = record.seen[rows] - fitted[rows]
+    known = uncertainty(slope[:, None], error)
+    return DelayFit(follower, best * record.step, known, slope, error, rows, fitted, solution)
+
+
+def solve(columns: Array, seen: Array) -> Array:
+    """Return the factors of the columns, shape (p,), that fit best, whatever their units."""
+    sizes = _sizes(columns)
+    found = np.linalg.lstsq(columns / sizes, seen, rcond=None)[0]
+    return np.asarray(found / sizes, float)
+
+
+def _sizes(columns: Array) -> Array:
+    return np.asarray(np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
 
 
 def _errors(
@@ -119,7 +160,7 @@ def _errors(
 ) -> Array:
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
     columns = shaped.columns(record, float(x[0]) * record.step)[rows]
-    basis, _ = np.linalg.qr(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
+    basis, _ = np.linalg.qr(columns / _sizes(columns))
     seen = record.seen[rows]
     return np.asarray(seen - basis @ (basis.T @ seen), float)
 

@@ -13,21 +13,38 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import SignalRecord
-from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.delay.fit import DelayFit, fit_delay
+from nrs_design.identification.datasets.checks import (
+    FEWEST_ROWS,
+    doubt_step,
+    gaps_in,
+    pauses_text,
+)
+from nrs_design.identification.delay.fit import DelayFit, fit_delay, fit_held, solve
 from nrs_design.identification.delay.models import (
     AbstractFollower,
-    Copy,
     FirstOrder,
+    HeldCopy,
     Integrator,
     SecondOrder,
+    SmoothCopy,
 )
-from nrs_design.identification.statistics import CONFIDENCE, WHITE, Estimate, student_quantile
+from nrs_design.identification.statistics import (
+    CONFIDENCE,
+    WHITE,
+    Estimate,
+    independent,
+    student_quantile,
+)
+from nrs_design.spec.plausible import doubt_size
 
 Array = NDArray[np.float64]
 
 # Largest delay that is looked for, as a part of the record.
 _LONGEST = 0.1
+# A delay beside a lag is found to so many samples.
+_OFF = 2e-3
+# Errors of this part of the power are rounding.
+_EXACT = 1e-24
 # So near to a whole number, only the arithmetic of a fit without noise keeps a delay from it.
 _SAME = Fraction(1, 10**6)
 _PARTS = 10
@@ -44,6 +61,14 @@ _RELATED = 0.2
 _MISSED = 0.02
 # A command whose power is in one frequency, but for so much, has one phase to tell.
 _OTHER = 0.01
+# Where a spline through every other sample misses those between by more than this part of the
+# change from sample to sample, a command is not smooth between its samples.
+_SMOOTH = 0.05
+# Samples about the whole record's delay in which that of a part is sought.
+_AROUND = 50
+# Rows before a pause that a spline across it may miss, and after it that the command before may
+# reach.
+_BEFORE, _AFTER = 5, 5
 _TIMES = (0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 _SHIFTS = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 _SCANNED = 5000
@@ -71,6 +96,10 @@ class DelayIdentification:
     parts : tuple of (float, Estimate)
         The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
         together.
+    smooth : bool
+        Whether the command is smooth between samples, so that a copy tells parts of them.
+        Otherwise, or beside a lag, nobody knows when within a sample a logged command began: the
+        interval is a sample wide, at least.
     held : tuple of float
         From and to, in samples: they hold the interval and every part of the record. Where errors
         are not noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
@@ -86,6 +115,7 @@ class DelayIdentification:
     samples: Estimate
     peak: tuple[float, float]
     parts: tuple[tuple[float, Estimate], ...]
+    smooth: bool
     held: tuple[float, float]
     doubts: tuple[str, ...]
 
@@ -101,16 +131,41 @@ class DelayIdentification:
 
     @property
     def _is_copy(self) -> bool:
-        return isinstance(self.chosen.follower, Copy)
+        return isinstance(self.chosen.follower, SmoothCopy | HeldCopy)
+
+    @property
+    def slips(self) -> tuple[str, ...]:
+        """What is asked about the size of the delay, and of the steps of time."""
+        asked = doubt_size("delay", self.delay.value, "s")
+        said = () if asked is None else (f"the delay is {self.delay.value:.4g} s: {asked}",)
+        return (*doubt_step(self.record.step), *said)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What the interval rests on, in words."""
+        said = pauses_text(self.record.time)
+        if isinstance(self.chosen.follower, SmoothCopy):
+            rests = f"{self.record.names[0]} is smooth between samples: parts of a sample are told"
+        else:
+            rests = (
+                f"within a sample nobody knows when {self.record.names[0]} changed: no interval is "
+                "below a sample"
+            )
+        return (rests,) if said is None else (said, rests)
 
     @property
     def caveats(self) -> tuple[str, ...]:
         """What whoever takes it for the age of a sample must know: doubts, and dynamics."""
+        sized = [said for said in self.slips if said not in self.doubts]
         if self._is_copy:
-            return self.doubts
+            return (*self.doubts, *sized)
         sent, seen = self.record.names
         name = self.chosen.follower.name
-        return (*self.doubts, f"{name} fits better between {sent} and {seen} than a mere delay")
+        return (
+            *self.doubts,
+            *sized,
+            f"{name} fits better between {sent} and {seen} than a mere delay",
+        )
 
     def in_periods(self, period: Fraction) -> tuple[int, int]:
         """Return what is held, in whole periods of another length in s, rounded outward."""
@@ -138,30 +193,120 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
             path=record.source.path,
             remedy="name other columns with --command and --measured, or record a livelier motion",
         )
-    skipped = max(peak[0], 0.0) + 5 * record.step
-    rows = np.flatnonzero(record.time >= skipped)
-    fits = tuple(fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
+    rows = _reached(record, peak[0])
+    smooth = is_smooth(record)
+    copy = (
+        fit_delay(record, SmoothCopy(()), peak[0], rows)
+        if smooth
+        else fit_held(record, peak[0], rows)
+    )
+    others = (fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
+    fits = (copy, *others)
     chosen = _simplest(fits)
     step = record.step
-    half = student_quantile(chosen.uncertainty.degrees) * float(chosen.uncertainty.errors[0])
     value = chosen.delay / step
-    samples = Estimate(max(value, 0.0), max(value - half, 0.0), max(value + half, 0.0))
+    told = _interval(record, chosen)
+    half = (told.high - told.low) / 2
+    # A delay is not negative; what is left of an interval is a sample where one is the least.
+    low = max(told.low, 0.0)
+    samples = Estimate(max(value, 0.0), low, max(told.high, low + _unknown(chosen), 0.0))
     parts = tuple(_parts(record, chosen, value))
     held = [samples, *(part for _, part in parts)]
     one_frequency = _other_than_one_frequency(record) < _OTHER
     if one_frequency:
         held.append(Estimate(0.0, 0.0, 0.0))
     if one_frequency or chosen.uncertainty.whiteness < WHITE:
-        copy = fits[0]
         held += [part for _, part in _parts(record, copy, copy.delay / step)]
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
-        record, fits, chosen, samples.scaled(step), samples, peak, parts, ends,
+        record, fits, chosen, samples.scaled(step), samples, peak, parts, smooth, ends,
         (
             *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
             *_doubts(record, chosen, value, half, parts),
         ),
     )  # fmt: skip
+
+
+def is_smooth(record: SignalRecord) -> bool:
+    """Tell whether a command is smooth between samples, so that a spline knows it there.
+
+    Every other sample must tell those between them: it does of a measured motion, and does not of a
+    command that is held or steps, nor of noise.
+    """
+    from scipy.interpolate import CubicSpline
+
+    missed, moved = 0.0, 0.0
+    for rows in record.stretches:
+        time, sent = record.time[rows], record.sent[rows]
+        if len(time) < 8:
+            continue
+        # At both ends, a spline is free.
+        between = CubicSpline(time[::2], sent[::2])(time[1::2]) - sent[1::2]
+        missed += 2 * float(np.sum(between[2:-2] ** 2))
+        moved += float(np.sum(np.diff(sent) ** 2))
+    return missed <= _SMOOTH**2 * moved
+
+
+def _reached(record: SignalRecord, lag: float) -> NDArray[np.int64]:
+    """Return the rows that no command from before the record, or a pause of it, can reach."""
+    skipped = max(lag, 0.0) + _AFTER * record.step
+    kept = []
+    for number, rows in enumerate(record.stretches):
+        time = record.time[rows]
+        inside = np.flatnonzero(time >= time[0] + skipped) + rows.start
+        kept.append(inside if number == len(record.stretches) - 1 else inside[:-_BEFORE])
+    found = np.concatenate(kept)
+    if len(found) < FEWEST_ROWS:
+        raise DataError(
+            f"{len(found)} rows are later than the largest correlation after its beginning, or a "
+            f"pause, at least {FEWEST_ROWS} are needed",
+            path=record.source.path,
+            remedy="record longer without a pause",
+        )
+    return found
+
+
+def _interval(record: SignalRecord, fit: DelayFit) -> Estimate:
+    """Return the delay in samples with its 95 % interval; it may be below zero."""
+    value = fit.delay / record.step
+    if isinstance(fit.follower, HeldCopy):
+        return _held_interval(record, fit, fit.rows, round(value), CONFIDENCE)
+    half = student_quantile(fit.uncertainty.degrees) * float(fit.uncertainty.errors[0])
+    if unknown := _unknown(fit):
+        # A search ends a little off, also where no noise shows it.
+        half = max(half, _OFF)
+    return Estimate(value, value - half, value + half + unknown)
+
+
+def _unknown(fit: DelayFit) -> float:
+    """Return by how much longer a delay may be, in samples, than a fit to logged commands says.
+
+    A command is logged up to a sample after it began. Only a copy of one that is smooth in between
+    does not ask when that was.
+    """
+    return 0.0 if isinstance(fit.follower, SmoothCopy) else 1.0
+
+
+def _held_interval(
+    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], near: int, confidence: float
+) -> Estimate:
+    """Return the best whole number of samples, and all delays that the rows do not reject.
+
+    That a copy is k samples late says of its delay that it is between k - 1 and k + 1: the command
+    began up to a sample before it was logged, and its copy, too.
+    """
+    from scipy.special import chdtri
+
+    late = np.arange(near - _AROUND, near + _AROUND + 1)
+    errors = [record.seen[rows] - fit.output(record, k * record.step)[rows] for k in late]
+    powers = np.array([float(error @ error) for error in errors])
+    best = int(np.argmin(powers))
+    # Neighbours that are alike count less; and without noise, rounding decides nothing.
+    count = max(independent(errors[best]), 1.0)
+    least = max(float(powers[best]), _EXACT * float(np.sum(record.seen[rows] ** 2)))
+    kept = late[powers <= least * np.exp(float(chdtri(1, 1 - confidence)) / count)]
+    low, high = float(min(kept, default=late[best])), float(max(kept, default=late[best]))
+    return Estimate(float(late[best]), low - 1.0, high + 1.0)
 
 
 def _simplest(fits: Sequence[DelayFit]) -> DelayFit:
@@ -186,9 +331,11 @@ def correlation_peak(record: SignalRecord) -> tuple[float, float]:
 
 
 def _peak(record: SignalRecord, *, difference: bool) -> tuple[float, float]:
-    count = len(record.time)
-    even = np.linspace(record.time[0], record.time[-1], count)
-    u, y = (np.interp(even, record.time, values) for values in (record.sent, record.seen))
+    rows = record.longest
+    time = record.time[rows]
+    count = len(time)
+    even = np.linspace(time[0], time[-1], count)
+    u, y = (np.interp(even, time, values[rows]) for values in (record.sent, record.seen))
     if difference:
         u, y = np.diff(u), np.diff(y)
     longest = max(int(_LONGEST * count), 2)
@@ -219,8 +366,7 @@ def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
 def _starts(
     record: SignalRecord, lag: float, rows: NDArray[np.int64]
 ) -> Iterator[tuple[AbstractFollower, float]]:
-    """Yield each model with the best of some delays and time constants."""
-    yield Copy(()), lag
+    """Yield each model but a copy with the best of some delays and time constants."""
     step = record.step
     times = [t * step for t in _TIMES]
     families: list[list[AbstractFollower]] = [
@@ -248,7 +394,7 @@ def _missed(
     record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
 ) -> float:
     columns = follower.columns(record, delay)[rows]
-    solution = np.linalg.lstsq(columns, record.seen[rows], rcond=None)[0]
+    solution = solve(columns, record.seen[rows])
     return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
 
 
@@ -263,9 +409,15 @@ def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[
         if float(np.sum(fit.sensitivity[first:last] ** 2)) <= total / _PARTS**2:
             continue
         rows = fit.rows[first:last]
+        middle = float(record.time[rows].mean())
+        if isinstance(fit.follower, HeldCopy):
+            level = 1 - (1 - CONFIDENCE) / _PARTS
+            yield middle, _held_interval(record, fit, rows, round(value), level)
+            continue
         own, power = _own_delay(record, fit, rows, value)
-        half = quantile * math.sqrt(noise / power) if power else math.inf
-        yield float(record.time[rows].mean()), Estimate(own, own - half, own + half)
+        if power:
+            half = quantile * math.sqrt(noise / power)
+            yield middle, Estimate(own, own - half, own + half + _unknown(fit))
 
 
 def _own_delay(
@@ -315,14 +467,15 @@ def _other_than_one_frequency(record: SignalRecord) -> float:
     """Return which part of the command's power no swing of one frequency explains."""
     from scipy.optimize import minimize_scalar
 
-    sent = record.sent - record.sent.mean()
-    count, even = len(sent), np.linspace(record.time[0], record.time[-1], len(sent))
-    spectrum = np.abs(np.fft.rfft(np.interp(even, record.time, sent)))
+    time, sent = record.time[record.longest], record.sent[record.longest]
+    sent = sent - sent.mean()
+    count, even = len(sent), np.linspace(time[0], time[-1], len(sent))
+    spectrum = np.abs(np.fft.rfft(np.interp(even, time, sent)))
     bin_ = 1 / (count * float(even[1] - even[0]))
     near = bin_ * max(int(np.argmax(spectrum[1:])) + 1, 1)
 
     def missed(frequency: float) -> float:
-        phase = 2 * math.pi * frequency * record.time
+        phase = 2 * math.pi * frequency * time
         columns = np.column_stack([np.sin(phase), np.cos(phase), np.ones(count)])
         rest = sent - columns @ np.linalg.lstsq(columns, sent, rcond=None)[0]
         return float(rest @ rest)
@@ -354,7 +507,7 @@ def _doubts(
     if missed > _MISSED and fit.uncertainty.whiteness < WHITE:
         yield f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise"
     steps = np.diff(record.time)
-    jitter = float(np.ptp(steps)) / record.step
+    jitter = float(np.ptp(steps[~gaps_in(record.time)])) / record.step
     if jitter > 0.1:
         yield f"the steps of time vary by {100 * jitter:.0f} %: a sample is no unit of time here"
     earliest = min((part for _, part in parts), key=lambda part: part.high, default=None)

@@ -35,7 +35,7 @@ class AbstractFollower(ABC):
         """Return what the output is a combination of, shape (n, p), at a delay in s."""
 
 
-class Copy(AbstractFollower):
+class SmoothCopy(AbstractFollower):
     """The command itself, later; between samples it is smooth."""
 
     name: ClassVar[str] = "a copy"
@@ -46,6 +46,18 @@ class Copy(AbstractFollower):
 
         at = np.clip(record.time - delay, record.time[0], record.time[-1])
         return np.column_stack([CubicSpline(record.time, record.sent)(at), np.ones_like(at)])
+
+
+class HeldCopy(AbstractFollower):
+    """The command itself, whole samples later; between samples nothing is known of it."""
+
+    name: ClassVar[str] = "a copy"
+
+    def columns(self, record: SignalRecord, delay: float) -> Array:
+        """Return the command and a constant."""
+        rows = np.arange(len(record.time)) - round(delay / record.step)
+        at = np.clip(rows, 0, len(record.time) - 1)
+        return np.column_stack([record.sent[at], np.ones(len(at))])
 
 
 class FirstOrder(AbstractFollower):
@@ -79,7 +91,7 @@ class Integrator(AbstractFollower):
         lags = Lags.first_order(float(np.exp(self.shape[0])))
         held = _held(record, delay)
         angle = lags.angle(held, held.command)[held.samples]
-        return np.column_stack([angle, lags.free(record.time, angle=True), record.time])
+        return np.column_stack([angle, _free(record, lags, angle=True), record.time])
 
 
 @lru_cache(maxsize=32)
@@ -91,5 +103,15 @@ def _held(record: SignalRecord, delay: float) -> Held:
 def _following(record: SignalRecord, lags: Lags, delay: float) -> Array:
     held = _held(record, delay)
     output = lags.velocity(held, held.command)[held.samples]
-    free = lags.free(record.time, angle=False)
-    return np.column_stack([output, np.ones_like(output), free])
+    return np.column_stack([output, np.ones_like(output), _free(record, lags, angle=False)])
+
+
+def _free(record: SignalRecord, lags: Lags, *, angle: bool) -> Array:
+    """Return what initial states add, those of every stretch between pauses, shape (n, p)."""
+    parts = []
+    for rows in record.stretches:
+        free = lags.free(record.time[rows], angle=angle)
+        part = np.zeros((len(record.time), free.shape[1]))
+        part[rows] = free
+        parts.append(part)
+    return np.column_stack(parts)

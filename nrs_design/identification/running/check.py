@@ -13,6 +13,8 @@ class BoundStatus(StrEnum):
     OUTSIDE = "outside"
     # It may be either: intervals lie across the bound.
     UNDECIDED = "undecided"
+    # What a log shows of it is another quantity than the bound is about.
+    ESTIMATED = "estimated"
     NOT_JUDGED = "not judged"
     # The proof has no bound for it: it takes for granted that there is none of it.
     NOT_MODELLED = "not modelled"

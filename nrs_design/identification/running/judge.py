@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import floor
 
 from nrs_design.errors import DataError
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
-from nrs_design.identification.running.contact import judge_contact
+from nrs_design.identification.running.contact import ESTIMATE, estimate_contact
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.signals import (
     judge_delay,
@@ -35,13 +36,16 @@ class RunJudgement:
     checks : tuple of Check
         One for each bound.
     windows : tuple of Window
-        Stiffness at the pivot in N m/rad.
+        Stiffness at the pivot in N m/rad, estimated.
+    share : float
+        Of the time of the log, in which stiffness or free motion could be estimated.
     """
 
     log: RunLog
     bounds: RunBounds
     checks: tuple[Check, ...]
     windows: tuple[Window, ...]
+    share: float
 
     @property
     def first(self) -> Check | None:
@@ -50,12 +54,24 @@ class RunJudgement:
         return min(left, key=lambda c: c.first.time if c.first else 0.0, default=None)
 
     @property
+    def estimates(self) -> str:
+        """What was estimated, for how much of the time (rounded down), and what that is not."""
+        share = floor(1000 * self.share) / 10
+        names = ", ".join(c.name for c in self.checks if c.status is BoundStatus.ESTIMATED)
+        told = f"stiffness or free motion shows in {share:g} % of the time"
+        return f"estimated, not judged: {names}: {ESTIMATE}; {told}" if names else told
+
+    @property
     def verdict(self) -> str:
         """``outside``, ``inside``, or ``inconclusive``."""
         statuses = {check.status for check in self.checks}
         if BoundStatus.OUTSIDE in statuses:
             return "outside"
-        open_ends = {BoundStatus.UNDECIDED, BoundStatus.NOT_JUDGED} & statuses
+        open_ends = statuses & {
+            BoundStatus.UNDECIDED,
+            BoundStatus.ESTIMATED,
+            BoundStatus.NOT_JUDGED,
+        }
         return "inside" if self.bounds.proved and not open_ends else "inconclusive"
 
 
@@ -105,12 +121,9 @@ def judge_run(
     """
     _check_unit(log, bounds)
     bounds = replace(bounds, proved=proved)
-    stiffness, contact, windows = judge_contact(
-        log, bounds, window, losable=losable if proved else bounds.losable
-    )
+    touch = estimate_contact(log, bounds, window, losable=losable if proved else bounds.losable)
     checks = (
-        stiffness,
-        contact,
+        *touch.checks,
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
@@ -123,4 +136,4 @@ def judge_run(
             for name, why, allowed in bounds.unseen
         ),
     )
-    return RunJudgement(log, bounds, checks, tuple(windows))
+    return RunJudgement(log, bounds, checks, touch.windows, touch.share)

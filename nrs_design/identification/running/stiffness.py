@@ -1,4 +1,4 @@
-"""Stiffness in windows of a log, each with an interval that holds whatever is noisy."""
+"""Slope of force over deflection in windows of a log, each with an interval for its noise."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NOISIER = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Stiffness in one window.
+    """Slope of force over deflection in one window.
 
     Parameters
     ----------
@@ -32,7 +32,8 @@ class Window:
     value : float
         Least squares, in force over deflection.
     low, high : float
-        The interval, at 95 % for all windows together; infinite where nothing moves.
+        How far noise may have moved it, at 95 % for all windows together; infinite where nothing
+        moves. The slope is the stiffness only if that does not change within the window.
     """
 
     first: int
@@ -43,22 +44,22 @@ class Window:
 
 
 def cut_windows(
-    time: Array, modes: NDArray[np.int64] | None, length: float
+    time: Array, states: NDArray[np.int64] | None, length: float
 ) -> Iterator[tuple[int, int]]:
-    """Yield first row and end of windows that span neither a gap nor a switch.
+    """Yield first row and end of windows that span neither a gap nor a change.
 
     Parameters
     ----------
     time : ndarray, shape (n,)
         In s.
-    modes : ndarray of int or None, shape (n,)
-        In force at every row.
+    states : ndarray of int or None, shape (n,)
+        At every row, what stays the same in a window: the mode, and whether a torque acts.
     length : float
         In s.
     """
     breaks = gaps_in(time)
-    if modes is not None:
-        breaks |= np.diff(modes) != 0
+    if states is not None:
+        breaks |= np.diff(states) != 0
     edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(time)]
     for begin, end in itertools.pairwise(edges):
         count = max(round(float(time[end - 1] - time[begin]) / length), 1)
@@ -86,7 +87,9 @@ def stiffness_of(
         First row and end of every window.
     """
     confidence = 1 - (1 - CONFIDENCE) / max(len(spans), 1)
-    velocity = np.gradient(deflection, time)
+    # Backward: a later angle has been moved by the force that is regressed.
+    change = np.diff(deflection) / np.diff(time)
+    velocity = np.concatenate([change[:1], change])
     return [
         _window((first, last), deflection, velocity, force, confidence) for first, last in spans
     ]

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from nrs_design.identification.datasets.checks import doubt_step
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty, student_quantile
-from nrs_design.identification.tissue.residuals import doubt_residuals
+from nrs_design.identification.tissue.residuals import doubt_residuals, doubt_signs
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import AbstractContactLaw
+from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
+from nrs_design.spec.plausible import doubt_size
 
 Array = NDArray[np.float64]
 
@@ -25,8 +26,6 @@ _ROUNDING = 0.1
 # Standard errors by which an estimate may be off on average.
 _BIAS = 0.5
 _LOADED = 0.1
-# Deflections of soft tissue, in m and rad.
-_TRAVELS = (1e-5, 0.5), (1e-4, np.pi)
 
 
 def doubts(
@@ -54,9 +53,11 @@ def doubts(
     sensitivities : ndarray, shape (n, p + m)
         Derivatives of the force by p parameters and m offsets.
     """
+    read = slips(law, trial, residuals, sensitivities[:, len(law.values) :])
+    left = doubt_residuals(trial, residuals, sensitivities, len(law.values))
     return (
-        *_units(trial),
-        *doubt_residuals(trial, residuals, sensitivities, len(law.values)),
+        *read,
+        *(doubt for doubt in left if doubt not in read),
         *_bounds(law, bounds),
         *_errors(law, found),
         *_times(law, trial),
@@ -64,13 +65,44 @@ def doubts(
     )
 
 
+def slips(
+    law: AbstractContactLaw, trial: Trial, residuals: Array, offsets: Array
+) -> tuple[str, ...]:
+    """Return those doubts that say that a record is likely read in another unit or sign.
+
+    Parameters
+    ----------
+    law, trial, residuals
+        As for `doubts`.
+    offsets : ndarray, shape (n, m)
+        Derivatives of the force by m offsets.
+    """
+    read = (*_units(trial), *doubt_signs(trial, residuals, offsets))
+    # What comes of a record that was read wrongly has no size of its own.
+    return read or tuple(_sizes(law, rotational=trial.record.rotational))
+
+
+def _sizes(law: AbstractContactLaw, *, rotational: bool) -> Iterator[str]:
+    """Doubt parameters of a size that no tissue has under a robot."""
+    if not isinstance(law, AbstractLinearLaw):
+        return
+    units = law.units(rotational=rotational)
+    for name, key, value, si in zip(law.parameters(), law.keys, law.values, units, strict=True):
+        if asked := doubt_size(key, value, si, f"{value:.3g}"):
+            yield f"{name} is {value:.3g} {si}: {asked}"
+
+
 def _units(trial: Trial) -> Iterator[str]:
-    """Doubt a record of a size that no probe of a robot moves: its units are likely others."""
+    """Doubt a record of a size that no probe of a robot meets: its units are likely others."""
     rotational = trial.record.rotational
-    (least, most), unit = _TRAVELS[rotational], "rad" if rotational else "m"
-    travel = float(np.ptp(trial.motion.deflection))
-    if not least < travel < most:
-        yield f"the deflection spans {travel:.3g} {unit}: is that its unit? (--map names another)"
+    for values, what, name, unit in (
+        (trial.motion.deflection, "deflection", ("deflection", "angle"), ("m", "rad")),
+        (trial.measured, "torque" if rotational else "force", ("force", "torque"), ("N", "N*m")),
+    ):
+        span = float(np.ptp(values))
+        field, si = f"recorded_{name[rotational]}", unit[rotational]
+        if asked := doubt_size(field, span, si, f"{span:.3g}"):
+            yield f"the {what} spans {span:.3g} {si}: {asked} (--map names another)"
     yield from doubt_step(float(np.median(trial.motion.steps)))
 
 

@@ -10,9 +10,14 @@ from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
-from nrs_design.identification.tissue.tangent import Tangent, tangent_of
+from nrs_design.identification.tissue.tangent import Tangent, check_preload, tangent_of
 from nrs_design.identification.tissue.trial import Preparation, Trial, prepare
-from nrs_design.models.contact import LAWS, AbstractContactLaw
+from nrs_design.models.contact import (
+    LAWS,
+    AbstractContactLaw,
+    AbstractNonlinearLaw,
+    HuntCrossley,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.spec.provenance import COVERS, Coverage
 
@@ -90,6 +95,8 @@ def identify_tissue(
     coverage: Coverage = "confidence",
     preload: tuple[float, float] | None = None,
     progress: Progress = silent,
+    *,
+    declared: bool = False,
 ) -> TissueIdentification:
     """Fit all laws to all records and choose.
 
@@ -107,23 +114,32 @@ def identify_tissue(
         Least and largest deflection in m (rad) about which a power law is linearized.
     progress : callable
         Told the name of each law.
+    declared : bool
+        Whether the law is that of a spec, and not one that the user has asked for.
 
     Raises
     ------
     DataError
         If there is no record, linear and rotational ones are mixed, or one is there twice; if too
-        little of one is left to fit, or the records are too few for what ranges shall hold.
+        little of one is left to fit, the records are too few for what ranges shall hold, or the
+        preload is not within their deflections; all before anything is fitted.
     """
     _check(records)
     if coverage != "confidence":
         check_spread(coverage, len(records))
     trials = [prepare(record, preparation) for record in records]
+    if preload is not None:
+        check_preload(HuntCrossley if law is None else LAWS[law], trials, preload)
     models = []
     for name, kind in LAWS.items():
         progress(name)
         models.append(fit_model(kind, trials, coverage))
-    chosen, reason = _choose(models) if law is None else _told(models, law)
-    about = None if preload is None else tangent_of(chosen, preload)
+    chosen, reason = _choose(models) if law is None else _told(models, law, declared=declared)
+    about = None
+    if preload is not None and isinstance(chosen.law, AbstractNonlinearLaw):
+        about = tangent_of(chosen, preload)
+    elif preload is not None:
+        reason += " It is linear, and the same at every preload."
     return TissueIdentification(tuple(records), tuple(models), chosen, reason, about)
 
 
@@ -165,8 +181,11 @@ def _choose(models: Sequence[ModelFit]) -> tuple[ModelFit, str]:
     )
 
 
-def _told(models: Sequence[ModelFit], law: str) -> tuple[ModelFit, str]:
+def _told(models: Sequence[ModelFit], law: str, *, declared: bool) -> tuple[ModelFit, str]:
     chosen = next(model for model in models if model.law.name == law)
     own, _ = _choose(models)
     agrees = "as by the comparison" if own is chosen else f"the comparison prefers {own.law.name}"
-    return chosen, f"{law} was asked for; {agrees}."
+    if not declared:
+        return chosen, f"{law} was asked for; {agrees}."
+    other = "" if own is chosen else f" (--model {own.law.name} would write that)"
+    return chosen, f"{law} is the law of the spec, which is kept; {agrees}{other}."

@@ -19,7 +19,7 @@ from nrs_design.identification.statistics import (
     student_quantile,
     uncertainty,
 )
-from nrs_design.identification.tissue.doubts import doubts, reaches_zero
+from nrs_design.identification.tissue.doubts import doubts, reaches_zero, slips
 from nrs_design.identification.tissue.offsets import (
     Offset,
     estimate_offsets,
@@ -67,6 +67,8 @@ class RecordFit:
         How many searches there were, and how many of them ended here.
     doubts : tuple of str
         Why the record may not determine the parameters.
+    slips : tuple of str
+        Those of them that say that it is likely read in another unit or sign than it has.
     """
 
     trial: Trial
@@ -79,6 +81,7 @@ class RecordFit:
     agreeing: int
     starts: int
     doubts: tuple[str, ...]
+    slips: tuple[str, ...]
 
     @property
     def record(self) -> TissueRecord:
@@ -195,6 +198,7 @@ def _judge(point: Point, bounds: tuple[Array, Array], agreeing: int, starts: int
         agreeing=agreeing,
         starts=starts,
         doubts=tuple(said),
+        slips=slips(law, trial, residuals, J[:, p:]),
     )
 
 

@@ -46,7 +46,7 @@ def doubt_residuals(
     count : int
         p, number of parameters.
     """
-    yield from _signs(trial, residuals, sensitivities[:, count:])
+    yield from doubt_signs(trial, residuals, sensitivities[:, count:])
     yield from _size(trial, residuals)
     yield from _structure(trial, residuals)
     yield from _given_offsets(trial, residuals, sensitivities)
@@ -89,11 +89,18 @@ def structure(values: Array, residuals: Array) -> tuple[float, float]:
     return follows**0.5, fisher_tail(_BINS - 1, len(residuals) - _BINS, between / within)
 
 
-def _signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
+def doubt_signs(trial: Trial, residuals: Array, offsets: Array) -> Iterator[str]:
     """Doubt the sign of the force, unless a law, which pushes back, explains it well.
 
     A tissue that relaxes while it is held has its least force at its largest deflection, too; but
     work was done on it.
+
+    Parameters
+    ----------
+    trial, residuals
+        As for `doubt_residuals`.
+    offsets : ndarray, shape (n, m)
+        Derivatives of the force by m offsets.
     """
     if explained(trial, residuals) >= LEAST_R2 or _takes_work(trial):
         return

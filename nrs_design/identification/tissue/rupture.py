@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.datasets.checks import gaps_in
 from nrs_design.models.contact import Motion
 
 Array = NDArray[np.float64]
@@ -85,7 +86,10 @@ def find_rupture(motion: Motion, force: Array) -> Rupture | None:
     on = (before > _GROWTH / 4 * np.ptp(x)) & (after > _GOES_ON * before)
     grew = size[rows] - size[rows - window] > _GROWTH * span
     noise = float(np.median(np.abs(np.diff(force)))) / span
-    hits = rows[(falls > max(_FALL, _NOISE * noise)) & stays & on & grew]
+    # Over a pause of the record, a tissue relaxes unseen.
+    paused = np.concatenate([[0], np.cumsum(gaps_in(motion.time))])
+    whole = paused[rows + 2 * window] == paused[rows - window]
+    hits = rows[(falls > max(_FALL, _NOISE * noise)) & stays & on & grew & whole]
     if not len(hits):
         return None
     first = int(hits[0])

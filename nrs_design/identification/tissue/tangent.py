@@ -13,7 +13,8 @@ from nrs_design.identification.statistics import Estimate, Uncertainty, joint_le
 from nrs_design.identification.tissue.output_error import RecordFit
 from nrs_design.identification.tissue.pool import ModelFit
 from nrs_design.identification.tissue.ranges import hull, spread_ranges
-from nrs_design.models.contact import AbstractNonlinearLaw, KelvinVoigt
+from nrs_design.identification.tissue.trial import Trial
+from nrs_design.models.contact import AbstractContactLaw, AbstractNonlinearLaw, KelvinVoigt
 
 Array = NDArray[np.float64]
 
@@ -46,6 +47,40 @@ class Tangent:
     power: tuple[Estimate, Estimate, Estimate]
 
 
+def check_preload(
+    kind: type[AbstractContactLaw], trials: Sequence[Trial], preload: tuple[float, float]
+) -> None:
+    """Refuse, before a fit, a preload that the tangent of a law cannot be taken at.
+
+    Parameters
+    ----------
+    kind : type
+        Of the law.
+    trials : sequence of Trial
+        The records.
+    preload : tuple of float
+        Least and largest deflection in m (rad).
+
+    Raises
+    ------
+    DataError
+        If the law is linear, or the preloads are beyond what the records reach.
+    """
+    if not issubclass(kind, AbstractNonlinearLaw):
+        raise DataError(
+            f"{kind.name} is linear: its stiffness is the same at every preload",
+            remedy="leave out --preload, or choose --model hunt-crossley",
+        )
+    low, high = preload
+    reached = min(float(trial.deflection.max()) for trial in trials)
+    if not 0 < low <= high <= reached:
+        raise DataError(
+            f"preloads from {low:.6g} to {high:.6g} are not within the deflections up to "
+            f"{reached:.6g} that every record reaches",
+            remedy="give --preload LOW..HIGH within them, counted from the contact",
+        )
+
+
 def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
     """Return the tangent of a power law over a range of deflections.
 
@@ -65,18 +100,8 @@ def tangent_of(model: ModelFit, preload: tuple[float, float]) -> Tangent:
         If the law is linear, or the preloads are beyond what the records reach.
     """
     law, (low, high) = model.law, preload
-    if not isinstance(law, AbstractNonlinearLaw):
-        raise DataError(
-            f"{law.name} is linear: its stiffness is the same at every preload",
-            remedy="leave out --preload, or choose --model hunt-crossley",
-        )
-    reached = min(float(fit.trial.deflection.max()) for fit in model.fits)
-    if not 0 < low <= high <= reached:
-        raise DataError(
-            f"preloads from {low:.6g} to {high:.6g} are not within the deflections up to "
-            f"{reached:.6g} that every record reaches",
-            remedy="give --preload LOW..HIGH within them, counted from the contact",
-        )
+    check_preload(type(law), [fit.trial for fit in model.fits], preload)
+    assert isinstance(law, AbstractNonlinearLaw)
     ends = [_ranges_at(model, depth) for depth in (low, high)]
     middle = KelvinVoigt(*law.tangent((low + high) / 2))
     ranges = tuple(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.datasets.checks import long_stretches, pauses_text, stretches_in
 from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
 from nrs_design.identification.tissue.drift import shows_drift
@@ -119,6 +121,8 @@ class Trial:
         What is not used, and why.
     cycles : tuple of slice
         Loading cycles, among all samples.
+    stretch : ndarray of int, shape (n,)
+        Counts up at every pause of the record.
     """
 
     record: TissueRecord
@@ -134,20 +138,24 @@ class Trial:
     drift: bool
     cuts: tuple[Cut, ...]
     cycles: tuple[slice, ...]
+    stretch: NDArray[np.int64]
 
     @property
     def unrested(self) -> tuple[slice, ...]:
         """Stretches in contact that may not begin at rest: touches, a loaded or a cut start.
 
         A touch begins where the position of contact is, which is known with an error; what was
-        before ``start``, no sample tells.
+        before ``start``, or during a pause of the record, no sample tells.
         """
-        padded = np.concatenate([[False], self.touching, [False]])
-        edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
+        parts = np.where(self.touching, self.stretch, -1)
+        edges = [0, *(np.flatnonzero(np.diff(parts)) + 1).tolist(), len(parts)]
         loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
-        if self.found is None and not loaded and not self.preparation.start:
+        whole = self.found is None and self.stretch[-1] == self.stretch[0]
+        if whole and not loaded and not self.preparation.start:
             return ()
-        return tuple(slice(a, b) for a, b in edges if self.used[a:b].any())
+        return tuple(
+            slice(a, b) for a, b in pairwise(edges) if self.touching[a] and self.used[a:b].any()
+        )
 
     @property
     def measured(self) -> Array:
@@ -184,6 +192,8 @@ class Trial:
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "
                 "would pass for relaxation"
             )
+        if said := pauses_text(self.record.motion.time):
+            yield said
         if self.drift:
             yield "the tare is fitted as moving in proportion to time"
         yield from map(str, self.cuts)
@@ -205,6 +215,7 @@ class Trial:
             force=self.force[pick],
             used=self.used[pick],
             touching=self.touching[pick],
+            stretch=self.stretch[pick],
         )
 
 
@@ -256,7 +267,9 @@ def _assemble(
         cuts += _runs(time, free, "no contact yet: the tissue has not come back from a touch")
         used = ~edge & ~free
     cycles = find_cycles(deflection)
-    used = used & ~_skipped(time, cycles, wanted, cuts)
+    stretch, beside = _pauses(time)
+    cuts += _runs(time, beside, "beside a pause of the record, or between two of them")
+    used = used & ~beside & ~_skipped(time, cycles, wanted, cuts)
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
             f"{used.sum()} samples in {len(x)} are left to fit, at least {FEWEST} are needed",
@@ -269,8 +282,25 @@ def _assemble(
     motion = Motion(time, deflection)
     return Trial(
         record, wanted, motion, position, force, used, touching, reference, side, found, moving,
-        tuple(cuts), cycles,
+        tuple(cuts), cycles, stretch,
     )  # fmt: skip
+
+
+def _pauses(time: Array) -> tuple[NDArray[np.int64], Flags]:
+    """Return numbers of the stretches between pauses, and the samples that are not used for them.
+
+    These are the last one before a pause and the first one after it, whose velocity is none, and
+    stretches that are too short.
+    """
+    stretch = np.zeros(len(time), np.int64)
+    beside = np.zeros(len(time), bool)
+    kept, every = long_stretches(time), stretches_in(time)
+    for number, rows in enumerate(every):
+        stretch[rows] = number
+        beside[rows] = rows not in kept
+        beside[rows.start] |= number > 0
+        beside[rows.stop - 1] |= number < len(every) - 1
+    return stretch, beside
 
 
 def _edge(position: Array, width: float, wanted: Preparation, found: DetectedContact) -> Flags:

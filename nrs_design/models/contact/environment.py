@@ -10,7 +10,7 @@ from itertools import product
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
-from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.contact.law import AbstractLinearLaw, AbstractNonlinearLaw
 from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 
@@ -31,8 +31,8 @@ class Environment:
         What it consists of, where several environments are touched at once.
     each_losable : bool
         Whether each of these parts may be lost on its own.
-    preloaded : bool
-        Whether the ranges hold for deflections off the surface only, so that contact is kept.
+    nonlinear : type of AbstractNonlinearLaw or None
+        Its own law, where the linear one stands for it within a preload.
     """
 
     name: str
@@ -40,7 +40,12 @@ class Environment:
     ranges: tuple[Interval, ...]
     parts: tuple[Environment, ...] = ()
     each_losable: bool = False
-    preloaded: bool = False
+    nonlinear: type[AbstractNonlinearLaw] | None = None
+
+    @property
+    def preloaded(self) -> bool:
+        """Whether the ranges hold for deflections off the surface only: contact is kept."""
+        return self.nonlinear is not None or any(part.preloaded for part in self.parts)
 
     @property
     def parameters(self) -> dict[str, Interval]:
@@ -120,8 +125,7 @@ def touch_at_once(parts: tuple[Environment, ...], *, losable: bool) -> Environme
     damping = [part.parameters["b"] for part in parts if "b" in part.parameters]
     name = "+".join(part.name for part in parts)
     law, ranges = (KelvinVoigt, (total, _sum(damping))) if damping else (Elastic, (total,))
-    preloaded = any(part.preloaded for part in parts)
-    return Environment(name, law, ranges, parts, losable, preloaded)
+    return Environment(name, law, ranges, parts, losable)
 
 
 def _sum(intervals: Sequence[Interval]) -> Interval:

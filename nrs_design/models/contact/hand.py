@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.errors import AssemblyError, DesignError
@@ -71,11 +72,9 @@ class Hand(AbstractLinearLaw):
         k, b, m = self.values
         return (m, b, k), (0.0, 1.0, 0.0)
 
-    @property
-    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Damping and mass are held while the stiffness grows."""
-        _, b, m = self.values
-        return (m, b, 0.0), (0.0, 0.0, 1.0)
+    def at_stiffness(self, value: Fraction) -> Hand:
+        """Return it with the same damping and mass."""
+        return Hand(value, self.b, self.m)
 
     @property
     def is_spring(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -30,6 +31,7 @@ class HuntCrossley(AbstractNonlinearLaw):
     """
 
     name: ClassVar[str] = "hunt-crossley"
+    title: ClassVar[str] = "a Hunt-Crossley law"
     formula: ClassVar[str] = "F = ρ δ^φ + λ δ^φ δ' in contact"
     kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
     takes_velocity: ClassVar[bool] = True
@@ -79,6 +81,34 @@ class HuntCrossley(AbstractNonlinearLaw):
     def push(self, deflection: float, velocity: float) -> float:
         """Return ``(rho + lam v) delta^phi``; 0 without contact."""
         return 0.0 if deflection <= 0 else (self.rho + self.lam * velocity) * deflection**self.phi
+
+    @classmethod
+    def drawn(cls, numbers: Mapping[str, float]) -> HuntCrossley:
+        """Return the law with this tangent at ``about``."""
+        tangent = numbers["stiffness"], numbers["damping"]
+        return cls.through(*tangent, numbers["exponent"], numbers["about"])
+
+    @classmethod
+    def preload_text(cls, environment: str, low: str, high: str) -> str:
+        """Say that chords from any rest stay in the box of `nrs_design.spec.preload`.
+
+        Parameters
+        ----------
+        environment : str
+            Its name.
+        low, high : str
+            Least and largest deflection of the preload, with their units.
+        """
+        return (
+            f"{environment} is {cls.title} whose deflection stays between {low} and {high}. About "
+            f"a rest anywhere from its surface to {high}, at which the commands hold every mode "
+            "whatever its parameters, its force is then that at rest, plus k "
+            "times the deflection from there, plus b times the velocity, exactly, with k and b "
+            "moving in the ranges of the modes: motions need not be small or slow. Nothing is said "
+            "once the deflection has left this preload, nor of the difference of two motions of "
+            "which neither is at rest. The law moves k and b together, so what is refuted with any "
+            "such k and b may hold with it."
+        )
 
     @classmethod
     def through(cls, k: float, b: float, phi: float, deflection: float) -> HuntCrossley:

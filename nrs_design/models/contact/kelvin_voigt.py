@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
 from nrs_design.models.contact.law import (
@@ -58,10 +59,9 @@ class KelvinVoigt(AbstractLinearLaw):
         """``(b s + k) / s``."""
         return (float(self.b), float(self.k)), (1.0, 0.0)
 
-    @property
-    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """The damping is held while the stiffness grows."""
-        return (float(self.b), 0.0), (0.0, 1.0)
+    def at_stiffness(self, value: Fraction) -> KelvinVoigt:
+        """Return it with the same damping."""
+        return KelvinVoigt(value, self.b)
 
     @property
     def is_spring(self) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -105,6 +105,27 @@ class AbstractContactLaw(ABC):
 class AbstractNonlinearLaw(AbstractContactLaw):
     """A law that enters a design by its tangent: a spring and a damper about a deflection."""
 
+    # What an assumption calls it, with its article.
+    title: ClassVar[str]
+
+    @classmethod
+    @abstractmethod
+    def drawn(cls, numbers: Mapping[str, float]) -> Self:
+        """Return the law at the pivot from the numbers of its spec, by their keys."""
+
+    @classmethod
+    @abstractmethod
+    def preload_text(cls, environment: str, low: str, high: str) -> str:
+        """Say what the ranges of its linear law cover of it within a preload.
+
+        Parameters
+        ----------
+        environment : str
+            Its name.
+        low, high : str
+            Least and largest deflection of the preload, with their units.
+        """
+
     @abstractmethod
     def slope(self, motion: Motion) -> Array:
         """Return the derivative of `simulate` by the deflection, shape (n,), in N/m (N m/rad)."""
@@ -147,15 +168,19 @@ class AbstractLinearLaw(AbstractContactLaw):
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """``Ze = F/v``: numerator and denominator in s, highest power first, of equal length."""
 
-    @property
-    def by_stiffness(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Numerator of `impedance` as ``held + stiffness grown``.
+    def at_stiffness(self, value: Fraction) -> Self:
+        """Return the law with another stiffness that a sudden motion meets.
 
-        Which parameters grow with the stiffness that a sudden motion meets is for the law to say;
-        by default all do, in proportion.
+        Which parameters grow with it is for the law to say; by default all do, in proportion. In
+        either way the characteristic polynomial of a loop is affine in the stiffness.
+
+        Parameters
+        ----------
+        value : Fraction
+            In N/m (N m/rad).
         """
-        numerator, _ = self.impedance
-        return (0.0,) * len(numerator), tuple(c / self.stiffness for c in numerator)
+        share = value / Fraction(getattr(self, self.front))
+        return type(self)(*(share * parameter for parameter in self.exact))
 
     @abstractmethod
     def react(self, velocity: LinearForm, states: Sequence[LinearForm]) -> Reaction:

@@ -34,6 +34,7 @@ from nrs_design.models.robot.enclosure.bounds import (
     bounds_document,
     compute_bounds,
     confirm_bounds,
+    contradict_bounds,
     space_of,
 )
 from nrs_design.models.robot.enclosure.enclose import Enclosed, values_at
@@ -109,6 +110,7 @@ __all__ = [
     "build_robot",
     "compute_bounds",
     "confirm_bounds",
+    "contradict_bounds",
     "coriolis_matrix",
     "correct_separately",
     "correction_coefficients",

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
     from nrs_design.proof.evidence.periodic_quadratic import PeriodicQuadratic
     from nrs_design.proof.evidence.saturated_ellipsoid import SaturatedEllipsoid
+    from nrs_design.proof.evidence.unstable_contact import UnstableContact
     from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
     from nrs_design.proof.evidence.unstable_mode import UnstableMode
     from nrs_design.proof.evidence.unstable_period import UnstablePeriod
@@ -53,6 +54,7 @@ __all__ = [
     "PeriodicQuadratic",
     "SaturatedEllipsoid",
     "Shows",
+    "UnstableContact",
     "UnstableMixture",
     "UnstableMode",
     "UnstablePeriod",
@@ -78,6 +80,7 @@ KINDS: Mapping[str, str] = {
     "parameter-quadratic": "ParameterQuadratic",
     "periodic-quadratic": "PeriodicQuadratic",
     "saturated-ellipsoid": "SaturatedEllipsoid",
+    "unstable-contact": "UnstableContact",
     "unstable-mixture": "UnstableMixture",
     "unstable-mode": "UnstableMode",
     "unstable-period": "UnstablePeriod",

@@ -35,6 +35,13 @@ GROWN_ALONE = (
     "of them."
 )
 GROWN_IN_CONTACT = "This growth is that in kept contact, the environment pulling as it pushes."
+GROWN_AT_ANY_DEFLECTION = (
+    "This growth is that of contact that is lost and made at any deflection, the environment "
+    "pulling as it pushes."
+)
+# The same in a few words, beside a verdict that leaves the loss of contact open.
+IN_KEPT_CONTACT = "in kept contact"
+AT_ANY_DEFLECTION = "where contact is lost and made at any deflection"
 
 
 class Shows(StrEnum):
@@ -42,6 +49,7 @@ class Shows(StrEnum):
 
     STABILITY = "stability"
     INSTABILITY = "instability"
+    INSTABILITY_IN_CONTACT = "instability if the environment pulled"
     NO_COMMON_QUADRATIC = "no common quadratic function"
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
@@ -54,7 +62,6 @@ _IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.BOUND: (WHILE_KEPT,),
     Shows.CONVERGENCE: (WHILE_KEPT,),
     Shows.REGION: (WHILE_KEPT,),
-    Shows.INSTABILITY: (GROWN_IN_CONTACT,),
 }
 _EXACT: Mapping[Shows, tuple[str, ...]] = {
     Shows.STABILITY: (NOT_ROUNDED,),
@@ -103,7 +110,8 @@ class AbstractEvidence(ABC):
     attains_rate: ClassVar[bool] = False
     # What is shown of the modes is shown of their convex combinations too.
     covers_mixtures: ClassVar[bool] = False
-    # It holds while contact is lost and made again, where the system says how that happens.
+    # It holds while contact is lost and made again, where the system says how that happens; ask
+    # `covers_loss` of evidence of instability, which may be that of free motion alone.
     covers_lost_contact: ClassVar[bool] = False
     # It holds for all axes at once, where the system says what they do to each other.
     covers_coupling: ClassVar[bool] = False
@@ -136,6 +144,34 @@ class AbstractEvidence(ABC):
         return False
 
     @property
+    def used(self) -> frozenset[str] | None:
+        """Names of the modes that a motion which grows is in; None if that may be any of them."""
+        return None
+
+    def covers_loss(self, system: SwitchedSystem) -> bool:
+        """TRUSTED: tell whether it holds for contact as the system says that it is lost and made.
+
+        What grows in modes that are the same in contact and free does.
+        """
+        if system.flights is None or self.used is None:
+            return self.covers_lost_contact
+        felt = {*system.flights.touching, *system.flights.flying}
+        return self.covers_lost_contact or not self.used & felt
+
+    def is_of_modes(self, system: SwitchedSystem) -> bool:
+        """Tell whether it is about the modes of a system, none of `Contact.free` among them."""
+        return self.used is None or self.used <= {mode.name for mode in system.modes}
+
+    def shown(self, system: SwitchedSystem) -> Shows:
+        """TRUSTED: say what follows for a system if it holds.
+
+        Growth for which the environment would have to pull refutes nothing where contact is lost.
+        """
+        if self.shows is Shows.INSTABILITY and system.is_losable and not self.covers_loss(system):
+            return Shows.INSTABILITY_IN_CONTACT
+        return self.shows
+
+    @property
     def start_size(self) -> Fraction | None:
         """Size of the start of a saturating system that motions decay from, if it shows one."""
         return None
@@ -166,13 +202,23 @@ class AbstractEvidence(ABC):
         said, rate = [self.claim_in_scope(system)], self.proved_rate(system)
         if system.sample_time is not None and rate is not None:
             said.append(_in_seconds(rate, system.sample_time))
-        if system.contact is not None and not self.covers_lost_contact:
-            said += _IN_CONTACT.get(self.shows, ())
+        said += self._said_of_contact(system)
         if system.roundings:
             said += (ROUNDED,) if self.covers_rounding else _EXACT.get(self.shows, ())
         if system.couplings and self.shows is Shows.INSTABILITY:
             said.append(GROWN_ALONE)
         return " ".join(said)
+
+    def _said_of_contact(self, system: SwitchedSystem) -> tuple[str, ...]:
+        """Say for which contact it holds, where that is not the one that the system describes."""
+        if self.shows is Shows.INSTABILITY:
+            pulled = not self.covers_loss(system)
+            if system.flights is not None and pulled:
+                return (GROWN_AT_ANY_DEFLECTION,)
+            return (GROWN_IN_CONTACT,) if system.contact is not None and pulled else ()
+        if system.contact is None or self.covers_lost_contact:
+            return ()
+        return _IN_CONTACT.get(self.shows, ())
 
     @abstractmethod
     def claim_in_scope(self, system: SwitchedSystem) -> str:

@@ -218,7 +218,8 @@ class CoupledAxes(AbstractFunction):
         bound = "rho^t |w(0)|" if discrete else "exp(-alpha t) |w(0)|"
         return (
             "For any number of axes that act on each other within the stated bounds "
-            f"({names}), each by itself in any of {moves}, every solution satisfies "
+            f"({names}), which are taken on trust, each by itself in any of {moves}, every "
+            "solution satisfies "
             f"|w(t)| <= {bound} with {rate_words(self.rate, system.time)}, {w} "
             f"in the norm |w|^2 = sum of w_i' Q w_i over the axes.{end}"
         )

@@ -51,6 +51,11 @@ class UnstableMixture(AbstractEvidence):
         """Instability."""
         return Shows.INSTABILITY
 
+    @property
+    def used(self) -> frozenset[str]:
+        """The modes of the average."""
+        return frozenset(name for name, _ in self.weights)
+
     def fits(self, switching: Switching) -> bool:
         """Tell whether switching is arbitrary, so that it can be as fast as needed."""
         return switching.is_arbitrary

@@ -17,7 +17,7 @@ from nrs_design.proof.exact import (
     is_schur,
     spectrum_work,
 )
-from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
@@ -28,7 +28,9 @@ from nrs_design.proof.system import SwitchedSystem
 class UnstableMode(AbstractEvidence):
     """Staying in one mode, which is not Hurwitz (discrete time: not Schur), is admissible.
 
-    It is not where the mode has a longest dwell time: such a mode may be unstable.
+    It is not where the mode has a longest dwell time: such a mode may be unstable. Where contact
+    must be covered as it is lost, the mode may be one of free motion, without the deflection: far
+    enough from the surface, such a motion goes on for as long as is wanted.
 
     Parameters
     ----------
@@ -54,19 +56,26 @@ class UnstableMode(AbstractEvidence):
         """True: that is what it shows."""
         return True
 
+    @property
+    def used(self) -> frozenset[str]:
+        """The mode."""
+        return frozenset((self.mode,))
+
+    def covers_loss(self, system: SwitchedSystem) -> bool:
+        """Tell whether the mode is one of free motion, or the same in contact and free."""
+        return _is_free(system, self.mode) or AbstractEvidence.covers_loss(self, system)
+
     def fits(self, switching: Switching) -> bool:
         """Tell whether no rule forces a signal to leave the mode."""
         return switching.stay(self.mode).longest is None
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check that the mode exists and is not stable."""
-        named = [mode for mode in system.modes if mode.name == self.mode]
-        if len(named) != 1:
+        if (A := matrix_of(system, self.mode)) is None:
             return f"there is no single mode named {self.mode}"
-        (mode,) = named
-        if is_spectrum_too_large(mode.A):
+        if is_spectrum_too_large(A):
             return f"the numbers of mode {self.mode} are too large to check"
-        return f"mode {self.mode} is stable" if is_stable(mode.A, system.time) else None
+        return f"mode {self.mode} is stable" if is_stable(A, system.time) else None
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield nothing: no matrix has to be positive definite."""
@@ -77,9 +86,13 @@ class UnstableMode(AbstractEvidence):
         continuous = system.time is Time.CONTINUOUS
         region = "Hurwitz" if continuous else "Schur"
         law = "x' = A x" if continuous else "x+ = A x"
+        free = _is_free(system, self.mode)
+        beside = ", the deflection aside," if free else ""
+        again = ", for as long as is wanted if it begins far from the surface" if free else ""
         return (
-            f"Mode {self.mode} is not {region} (eigenvalue about {self.eigenvalue}): staying in "
-            f"it is an admissible switching signal, so {law} is not uniformly exponentially stable."
+            f"Mode {self.mode}{beside} is not {region} (eigenvalue about {self.eigenvalue}): "
+            f"staying in it is an admissible switching signal{again}, so {law} is not uniformly "
+            "exponentially stable."
         )
 
     def to_fields(self) -> dict[str, Any]:
@@ -90,10 +103,58 @@ class UnstableMode(AbstractEvidence):
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read the mode's name; its eigenvalue is computed again."""
         name = read_text(fields["mode"])
-        matrix = next((mode.A for mode in system.modes if mode.name == name), None)
+        matrix = matrix_of(system, name)
         if matrix is None:
             raise ValueError(f"the spec has no mode {name}")
         return cls(name, worst_eigenvalue(matrix, system.time))
+
+
+def free_motions(system: SwitchedSystem) -> tuple[Mode, ...]:
+    """TRUSTED: return the modes of free motion without the deflection, where they must be covered.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the modes; where they take turns, none of them is in force for long.
+    """
+    contact = system.contact
+    if contact is None or not contact.required or system.clock is not None:
+        return ()
+    return tuple(
+        Mode(mode.name, RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator))
+        for mode in contact.free
+    )
+
+
+def decides(system: SwitchedSystem, mode: str) -> bool:
+    """Tell whether a mode that is not stable refutes the system, and not in kept contact alone.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the mode.
+    mode : str
+        Its name.
+    """
+    return UnstableMode(mode, "").shown(system) is Shows.INSTABILITY
+
+
+def matrix_of(system: SwitchedSystem, name: str) -> RationalMatrix | None:
+    """TRUSTED: return the matrix of a mode, of free motion without the deflection; None if unclear.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the mode.
+    name : str
+        Of the mode.
+    """
+    named = [mode.A for mode in (*system.modes, *free_motions(system)) if mode.name == name]
+    return named[0] if len(named) == 1 else None
+
+
+def _is_free(system: SwitchedSystem, name: str) -> bool:
+    return any(mode.name == name for mode in free_motions(system))
 
 
 def is_spectrum_too_large(A: RationalMatrix) -> bool:

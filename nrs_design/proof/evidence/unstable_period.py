@@ -55,6 +55,11 @@ class UnstablePeriod(AbstractEvidence):
         """Instability."""
         return Shows.INSTABILITY
 
+    @property
+    def used(self) -> frozenset[str]:
+        """The modes of the signal."""
+        return frozenset(name for name, _ in self.steps)
+
     def fits(self, switching: Switching) -> bool:
         """Tell whether every dwell time is long and short enough, and every switch allowed."""
         if len(self.steps) > MAX_STEPS:

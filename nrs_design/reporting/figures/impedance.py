@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from nrs_design.design.impedance import displayed_impedance_at, sensitivity
-from nrs_design.design.measures import IMPEDANCE_ERROR
+from nrs_design.design.measures import IMPEDANCE_ERROR, SENSITIVITY_PEAK
 from nrs_design.reporting.style import (
     INK,
     MUTED,
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from nrs_design.design.analysis import ImpedanceAnalysis
+    from nrs_design.design.loops import Loops
     from nrs_design.design.transfer import FloatArray
 
 _POINTS = 400
@@ -43,9 +43,11 @@ def draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
     figure, axes = new_axes(3.9)
     omega = _frequencies(items)
     for index, item in enumerate(items):
-        shown = np.abs(displayed_impedance_at(item.problem.loop, item.Mt, item.Bt, omega))
-        look = curve(index, len(items), len(omega))
-        axes.loglog(omega, shown, label=f"{item.name}, displayed", **look)
+        nominal = item.requirement.nominal[0]
+        shown = item.requirement.displayed(nominal, item.Mt, item.Bt, omega)
+        if shown is not None:
+            look = curve(index, len(items), len(omega))
+            axes.loglog(omega, np.abs(shown), label=f"{item.name}, displayed", **look)
     for desired, names in _wanted(items).items():
         index = next(i for i, item in enumerate(items) if item.name == names[0])
         axes.axhline(
@@ -75,15 +77,16 @@ def draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
 
 @styled
 def draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
-    """Draw the magnitude of the sensitivity with its peak Ms, one curve for each controller."""
+    """Draw the magnitude of the sensitivity where its peak Ms is worst, a curve a controller."""
     figure, axes = new_axes(3.9)
     omega = _frequencies(items)
     for index, item in enumerate(items):
-        magnitude = np.abs(sensitivity(item.problem.loop, item.Mt, item.Bt, omega))
-        peak, at = item.margins.sensitivity_peak, item.margins.sensitivity_peak_frequency
-        label = f"{item.name}, Ms = {peak:.3f}"
+        worst, loops = item.worst(SENSITIVITY_PEAK), _worst_loops(item)
+        magnitude = np.abs(1 / (1 + loops.response(omega)[0]))
+        peak, at = worst.value, float(loops.peak_frequency()[0])
+        label = f"{item.name}, Ms = {worst.measure.text(peak)}"
         axes.loglog(omega, magnitude, label=label, **curve(index, len(items), len(omega)))
-        if math.isfinite(at):
+        if math.isfinite(at) and math.isfinite(peak):
             axes.plot(
                 at, peak, marker(index), color=color(index), markeredgecolor=INK, markersize=8
             )
@@ -91,6 +94,12 @@ def draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
     _finish(axes, items, "Sensitivity magnitude |L| [1]")
     legend(figure, axes)
     return figure
+
+
+def _worst_loops(item: ImpedanceAnalysis) -> Loops:
+    """Return the open loop at the corner where Ms is worst."""
+    corner = item.requirement.corner(item.worst(SENSITIVITY_PEAK).where)
+    return item.requirement.loops(corner, np.array([item.Mt]), np.array([item.Bt]))
 
 
 def band_factor(item: ImpedanceAnalysis) -> float:
@@ -110,9 +119,12 @@ def _wanted(items: Sequence[ImpedanceAnalysis]) -> dict[float, list[str]]:
 def _frequencies(items: Sequence[ImpedanceAnalysis]) -> FloatArray:
     """Return frequencies in rad/s from far below the bandwidth to beyond it and every peak."""
     bandwidth = items[0].problem.bandwidth
-    peaks = [item.margins.sensitivity_peak_frequency for item in items]
-    highest = max([bandwidth, *(peak for peak in peaks if math.isfinite(peak))])
-    return np.geomspace(bandwidth / 100, 10 * highest, _POINTS)
+    peaks = [float(_worst_loops(item).peak_frequency()[0]) for item in items]
+    highest = 10 * max([bandwidth, *(peak for peak in peaks if math.isfinite(peak))])
+    period = _worst_loops(items[0]).period
+    return np.geomspace(
+        bandwidth / 100, min(highest, math.pi / (period or math.pi / highest)), _POINTS
+    )
 
 
 def _finish(axes: Axes, items: Sequence[ImpedanceAnalysis], ylabel: str) -> None:

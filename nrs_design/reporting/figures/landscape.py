@@ -134,7 +134,7 @@ def draw_delay_borne(items: Sequence[ImpedanceAnalysis], sampled: float | None) 
     stiffness = np.geomspace(min(nominal) / 10, 10 * highest, _POINTS)
     shown = []
     for index, item in enumerate(items):
-        borne = 1e3 * delay_borne(item.problem.loop, item.Mt, item.Bt, stiffness)
+        borne = 1e3 * delay_borne(item.requirement, item.Mt, item.Bt, stiffness)
         borne = np.where(np.isfinite(borne), borne, np.nan)
         shown.append(float(np.interp(item.highest_stiffness, stiffness, np.nan_to_num(borne))))
         axes.plot(stiffness, borne, label=item.name, **curve(index, len(items), len(stiffness)))

@@ -102,8 +102,7 @@ def _bound_name(*, holds: bool) -> str:
 
 
 def _legend(figure: Figure, spreads: Sequence[Spread]) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
+    from nrs_design.plotting import Line2D, Patch
 
     handles: list[Line2D | Patch] = [
         Patch(facecolor=BLUE, alpha=_PALE, label="peaks of the runs"),

@@ -229,7 +229,7 @@ def _second_scale(axes: Axes, label: str, factor: float) -> None:
 
 
 def _legend(figure: Figure, handles: dict[str, Artist], names: Sequence[str]) -> None:
-    from matplotlib.patches import Patch
+    from nrs_design.plotting import Patch
 
     shades = [
         Patch(facecolor=_SHADES[i % len(_SHADES)], alpha=_PALE, label=f"controller: {name}")

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from nrs_design.reporting.style import (
     ALARM,
     BLUE,
     INK,
     MUTED,
-    VERMILLION,
     new_axes,
     new_figure,
     styled,
@@ -37,7 +34,7 @@ _LABELS = {
 
 @styled
 def draw_stiffness(found: RunJudgement) -> Figure:
-    """Draw the stiffness in every window over time, and the ranges of the spec."""
+    """Draw the slope in every window over time, and the ranges of the spec."""
     log = found.log
     figure, axes = new_axes(3.6)
     known = [s for s in found.bounds.stiffness.values() if s is not None]
@@ -47,17 +44,13 @@ def draw_stiffness(found: RunJudgement) -> Figure:
     for low, high in ranges:
         axes.axhspan(low, high, color=BLUE, alpha=0.14, linewidth=0)
     for w in found.windows:
-        if not w.high < np.inf:
-            continue
         middle = log.begin + float(log.time[w.first : w.last].mean())
-        left = any(low <= w.high and w.low <= high for low, high in ranges)
-        tint = BLUE if left else VERMILLION
-        axes.plot([middle, middle], [max(w.low, bottom), min(w.high, top)], color=tint)
-        axes.plot(middle, min(max(w.value, bottom), top), "o", color=tint, markersize=4)
+        axes.plot([middle, middle], [max(w.low, bottom), min(w.high, top)], color=BLUE)
+        axes.plot(middle, min(max(w.value, bottom), top), "o", color=BLUE, markersize=4)
     axes.set_ylim(bottom, top)
     axes.set_xlim(log.begin, log.begin + float(log.time[-1]))
     axes.set_xlabel("Time [s]")
-    axes.set_ylabel("Stiffness at the pivot [N m/rad]")
+    axes.set_ylabel("Slope at the pivot [N m/rad]")
     _mark(found, axes)
     return figure
 

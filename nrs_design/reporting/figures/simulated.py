@@ -119,9 +119,7 @@ def _shade(axes: Axes, response: TimeResponse) -> None:
 def _legend(
     figure: Figure, rows: Sequence[Axes], response: TimeResponse, about: bool | None
 ) -> None:
-    from matplotlib.colors import to_rgba
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
+    from nrs_design.plotting import Line2D, Patch, to_rgba
 
     handles: list[Line2D | Patch] = [
         Line2D([], [], color=BLUE, label="simulated"),

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from matplotlib.patches import Rectangle
-
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.reporting.style import BLUE, INK, MUTED, VERMILLION, legend, new_axes, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle as Cell
 
     from nrs_design.pipeline.stability_map import StabilityMap
 
@@ -25,6 +24,8 @@ _LOOKS = {
 @styled
 def draw_stability_map(found: StabilityMap) -> Figure:
     """Draw a cell for each decision, the declared one framed."""
+    from nrs_design.plotting import Rectangle
+
     figure, axes = new_axes(1.6 + 0.42 * len(found.delays))
     for (row, column), verdict in found.verdicts.items():
         axes.add_patch(_cell(verdict, (column - 0.5, row - 0.5)))
@@ -50,7 +51,9 @@ def draw_stability_map(found: StabilityMap) -> Figure:
     return figure
 
 
-def _cell(verdict: Verdict, corner: tuple[float, float], label: str = "") -> Rectangle:
+def _cell(verdict: Verdict, corner: tuple[float, float], label: str = "") -> Cell:
+    from nrs_design.plotting import Rectangle
+
     tint, hatch, _, _ = _LOOKS[verdict]
     cell = Rectangle(corner, 1, 1, facecolor=tint, edgecolor=INK, linewidth=0.5, alpha=0.3)
     cell.set_hatch(hatch)

@@ -92,8 +92,7 @@ def _draw_errors(
 
 
 def _legend(figure: Figure, controllers: list[str], on_robot: bool) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
+    from nrs_design.plotting import Line2D, Patch
 
     handles: list[Line2D | Patch] = [
         Patch(color=color(place), label=f"{name}, simulated")

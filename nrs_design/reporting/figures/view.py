@@ -41,7 +41,7 @@ class Span:
 
     def ticks(self) -> list[float]:
         """Return ticks of both parts, where the axis has two."""
-        from matplotlib.ticker import MaxNLocator
+        from nrs_design.plotting import MaxNLocator
 
         assert self.bend is not None
         inner = MaxNLocator(6).tick_values(-self.bend, self.bend)

@@ -22,6 +22,7 @@ from nrs_design.proof.evidence import (
     ParameterQuadratic,
     PeriodicQuadratic,
     SaturatedEllipsoid,
+    UnstableContact,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
@@ -44,6 +45,7 @@ from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
 from nrs_design.reporting.kinds.parameter_quadratic import ParameterQuadraticPage
 from nrs_design.reporting.kinds.periodic_quadratic import PeriodicQuadraticPage
 from nrs_design.reporting.kinds.saturated_ellipsoid import SaturatedEllipsoidPage
+from nrs_design.reporting.kinds.unstable_contact import UnstableContactPage
 from nrs_design.reporting.kinds.unstable_mixture import UnstableMixturePage
 from nrs_design.reporting.kinds.unstable_mode import UnstableModePage
 from nrs_design.reporting.kinds.unstable_period import UnstablePeriodPage
@@ -65,6 +67,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     ParameterQuadratic: ParameterQuadraticPage,
     PeriodicQuadratic: PeriodicQuadraticPage,
     SaturatedEllipsoid: SaturatedEllipsoidPage,
+    UnstableContact: UnstableContactPage,
     UnstableMixture: UnstableMixturePage,
     UnstableMode: UnstableModePage,
     UnstablePeriod: UnstablePeriodPage,

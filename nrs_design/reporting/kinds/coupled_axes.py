@@ -24,7 +24,7 @@ from nrs_design.reporting.sections.titles import EVIDENCE
 from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
 from nrs_design.simulation.switched import worst_direction
-from nrs_design.spec.robot_bounds import COMPUTED
+from nrs_design.spec.robot_bounds import ON_TRUST
 
 _DECIDED = (
     "Q and the multipliers hold integers over a power of two, and integer arithmetic decides that "
@@ -33,8 +33,9 @@ _DECIDED = (
 )
 _DECLARED = "They are declared by the spec, and nothing here shows them."
 _OF_ROBOT = (
-    "They were computed from the spec of the robot for all poses of a workspace, with its masses "
-    "and lengths; that the robot stays in there, and below the speed, is taken for granted."
+    "They are taken on trust from the file of bounds of the robot, over all poses of a workspace; "
+    "`nrs-design gate` and `nrs-design verify --bounds` compute them again from its spec. That the "
+    "robot stays in there, and below the speed, is taken for granted."
 )
 _ONE = (
     "The run is that of a single axis, with the inertia of its links (and what else acts within "
@@ -71,11 +72,11 @@ class CoupledAxesPage(AbstractKindPage[CoupledAxes]):
 
     def limits(self) -> tuple[str, ...]:
         """Say what a constant force would change, and that the bounds are assumptions."""
-        computed = any(COMPUTED in text for text in self.system.assumptions)
+        on_trust = any(ON_TRUST in text for text in self.system.assumptions)
         return (
             MOVED_REST,
             "Poses and speeds in which the links do more than the bounds say. "
-            + (_OF_ROBOT if computed else _DECLARED),
+            + (_OF_ROBOT if on_trust else _DECLARED),
         )
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:

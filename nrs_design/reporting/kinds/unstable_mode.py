@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from nrs_design.proof.evidence import UnstableMode
-from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.proof.evidence.unstable_mode import free_motions, worst_eigenvalue
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Section
@@ -51,8 +53,9 @@ class UnstableModePage(AbstractKindPage[UnstableMode]):
     def run(self) -> Section:
         """Stay in the mode, from the eigenvector of its worst eigenvalue."""
         name = self.evidence.mode
-        index = next(i for i, mode in enumerate(self.system.modes) if mode.name == name)
-        single = alone(self.system, index)
+        modes = (*self.system.modes, *free_motions(self.system))
+        index = next(i for i, mode in enumerate(modes) if mode.name == name)
+        single = alone(replace(self.system, modes=modes), index)
         response = unstable_run(single, 0)
         eigenvalue = worst_eigenvalue(single.modes[0].A, single.time)
         growth, norms = _growth(single, response), euclidean_norms(response)

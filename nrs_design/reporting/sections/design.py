@@ -15,7 +15,6 @@ from nrs_design.reporting.sections.impedance import (
     CURVES,
     by_controller,
     impedance_section,
-    nominal_note,
 )
 from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
@@ -27,6 +26,11 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
     from nrs_design.pipeline import Designed
 
+_NOMINAL = (
+    "Design values in floating point, for contact at the nominal stiffness, in continuous time; no "
+    "part of the proof. Design goals below has the worst margins over all corners, of the loop "
+    "that is proved; warnings are about those."
+)
 _OFFSET = (
     "Steady error and peak torque with an offset: for an axis that arrives at the largest velocity "
     "of the spec, and a switch to force control exactly at its torque limit, which is Fd."
@@ -66,7 +70,8 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
     parts = [gains, _motion_section(designed, analysis)]
     if analysis.impedance:
         parts.append(impedance_section(designed, analysis.impedance))
-        parts.append(landscape_section(designed, analysis.impedance))
+        if all(item.requirement.axis is not None for item in analysis.impedance):
+            parts.append(landscape_section(designed, analysis.impedance))
     if sensor := creep_section(designed, analysis):
         parts.append(sensor)
     if analysis.force:
@@ -230,7 +235,7 @@ def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         ],
     )
     loci = (_force_locus(item) for item in analysis.force[:CURVES])
-    texts = [nominal_note(designed)]
+    texts = [Paragraph(_NOMINAL)]
     if any(item.peak is not None for item in analysis.force):
         texts.append(Paragraph(_OFFSET))
     if any(item.approach.offset == "none" for item in analysis.force):

@@ -14,7 +14,15 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Derived
 from nrs_design.reporting.formatting import plural, shortened
 from nrs_design.reporting.sections.places import linked
-from nrs_design.reporting.sections.titles import EVIDENCE, MODES, RECHECK, RUNGS, SATURATION, SPEC
+from nrs_design.reporting.sections.titles import (
+    EVIDENCE,
+    MEANT,
+    MODES,
+    RECHECK,
+    RUNGS,
+    SATURATION,
+    SPEC,
+)
 from nrs_design.spec import InteractionDesignSpec, RobotSpec
 from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
@@ -28,10 +36,16 @@ NO_CLAIM = (
 )
 
 
+REFUTED_ASIDE = (
+    "Refuted {}, for which the environment would have to pull. Where contact may be lost:"
+)
+
+
 def claim_of(certification: Certification) -> str:
     """Return what the certificate claims about stability, or that there is nothing to claim."""
     if certification.evidence is None:
-        return NO_CLAIM
+        where = certification.refuted_in
+        return NO_CLAIM if where is None else f"{REFUTED_ASIDE.format(where)} {NO_CLAIM}"
     return certification.evidence.claim(certification.system)
 
 
@@ -56,6 +70,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         ("Switching", linked(result.loaded, switching_words(result), "switching")),
         ("Switches among", Derived(f"{count}, in {system.time} time", MODES)),
         ("Common quadratic function", str(certification.common_quadratic)),
+        *_aside(certification),
         (
             "Settled by",
             Derived(certification.method if certification.evidence else "nothing", RUNGS),
@@ -76,6 +91,12 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
         ),
     ]
     return tuple(rows)
+
+
+def _aside(certification: Certification) -> list[tuple[str, str]]:
+    """Return what is refuted beside a verdict that is open."""
+    where = certification.refuted_in
+    return [] if where is None else [("Refuted", Derived(where, MEANT))]
 
 
 def switching_words(result: Result) -> str:

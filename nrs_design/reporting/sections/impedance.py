@@ -5,8 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
+from nrs_design.design.measures import (
+    COST_MEANING,
+    LIMIT_MEANING,
+    MARGINS,
+    MEANING,
+    ONE_AXIS,
+    PASSIVITY_NOT_COMPUTED,
+    Measure,
+)
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
@@ -23,14 +33,11 @@ if TYPE_CHECKING:
 _COLUMNS = 4
 CURVES = 6
 
-NOMINAL = (
-    "Design values in floating point, for contact at the nominal stiffness; no part of the proof. "
-    "Design goals below has the worst values over all corners, which warnings are about."
-)
-_CONTINUOUS = (
-    " Margins and limits of stiffness are those of the loop in continuous time, with the force of "
-    "the moment: the sampling that the spec declares takes from them. The proof is about the "
-    "sampled loop."
+_PASSIVE = (
+    "Passive: the admittance from the torque of a hand to the velocity of the tool, as it is "
+    "assembled: with the load of the motor, the filter and the spring, wherever gains and motor "
+    "are in their ranges, each of them constant. Decided exactly, by Sturm's theorem. At the "
+    "frequency at which it is said not to be passive, it is not at a corner of the ranges."
 )
 _SUDDEN = (
     "Viscoelastic contact: the stiffness is that which a sudden motion meets, and up to the "
@@ -39,13 +46,24 @@ _SUDDEN = (
 
 _PASSIVE_SAMPLED = (
     "Sampled: any force whose frequencies all lie below takes no energy from the robot, at the "
-    "worst of the ages of the force sample, each of them kept, with the nominal motor. No law that "
+    "worst of the ages of the force sample, each of them kept. No law that "
     "samples a force is passive for every force: between two samples it acts unseen."
 )
 
 
+def _worst(measure: Measure, item: ImpedanceAnalysis) -> str:
+    return measure.text(item.worst(measure).value)
+
+
+def _limit(value: float) -> str:
+    """Write a limit of stiffness, rounded down."""
+    if math.isnan(value):
+        return "not computed"
+    return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)
+
+
 def _at_arm(item: ImpedanceAnalysis) -> str:
-    return "" if item.limit_at_arm is None else number(item.limit_at_arm)
+    return "" if item.limit_at_arm is None else _limit(item.limit_at_arm)
 
 
 def _optimal(item: ImpedanceAnalysis, gain: str) -> str:
@@ -69,17 +87,12 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Bt as shipped [N·m·s/rad]", lambda item: number(item.Bt, 6)),
     ("Kt as given [N·m/rad]", _spring),
     ("Cost as shipped [1]", lambda item: number(item.cost, 5)),
-    ("Sensitivity peak Ms [1]", lambda item: number(item.margins.sensitivity_peak)),
-    ("Frequency of Ms [rad/s]", lambda item: number(item.margins.sensitivity_peak_frequency)),
-    ("Gain margin, up [factor]", lambda item: number(item.margins.gain_margin)),
-    ("Gain margin, down [factor]", lambda item: number(item.margins.gain_margin_low)),
-    ("Phase margin [deg]", lambda item: number(math.degrees(item.margins.phase_margin))),
-    ("Delay margin [ms]", lambda item: number(1e3 * item.margins.delay_margin)),
-    ("Disk margin [1]", lambda item: number(item.margins.disk_margin)),
-    ("Stiffness limit [N·m/rad]", lambda item: number(item.margins.stiffness_limit)),
-    ("Stiffness limit at the lever arm [N/m]", _at_arm),
+    *((f"{measure.title}, worst", partial(_worst, measure)) for measure in MARGINS),
+    ("k limit [N·m/rad], worst", lambda item: _limit(item.lowest_limit)),
+    ("k limit at the lever arm [N/m], worst", _at_arm),
     ("Displayed admittance passive up to [Hz], exact", lambda item: _passive(item.band)),
-    ("The same, sampled [Hz], exact", lambda item: _sampled(item.sampled)),
+    ("Not passive near [Hz], exact", lambda item: _not_passive(item.band)),
+    ("Sampled: passive up to [Hz], exact", lambda item: _sampled(item.sampled)),
     ("Sampled, not passive near [Hz]", lambda item: _broken(item.sampled)),
 )
 
@@ -105,17 +118,6 @@ def _home(item: ImpedanceAnalysis) -> tuple[str, str]:
     return "environments", item.given.environment
 
 
-def nominal_note(designed: Designed) -> Paragraph:
-    """Say what nominal values are about.
-
-    Parameters
-    ----------
-    designed : Designed
-        Whose values are shown.
-    """
-    return Paragraph(NOMINAL + (_CONTINUOUS if designed.spec.sampling is not None else ""))
-
-
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
     """Show cost, margins and curves of the impedance controllers.
 
@@ -126,40 +128,54 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     items : tuple of ImpedanceAnalysis
         At least one.
     """
-    drawn = items[:CURVES]
+    drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
-    displayed = Illustration(
-        "displayed-impedance",
-        "Displayed and desired impedance",
-        "Magnitude of the impedance that the operator feels in nominal contact (solid) and the "
-        "desired one (dashed); the dotted line is the bandwidth of the motion. Shaded: what the "
-        f"goal allows up to there, or what is usual.{rest}",
-        draw_displayed_impedance(drawn),
-    )
-    sensitivity = Illustration(
-        "sensitivity",
-        "Sensitivity",
-        "Magnitude of L = 1/(1 + G Ze Y) in nominal contact; the marker is its peak Ms. A value "
-        f"above 1 (gray line) amplifies disturbances of that frequency.{rest}",
-        draw_sensitivity(drawn),
-    )
     rows = [
         (label, [_linked(designed, label, item, value(item)) for item in items])
         for label, value in _IMPEDANCE_ROWS
     ]
     rows = [(label, values) for label, values in rows if any(values)]
     tables = by_controller(
-        "Impedance controllers, at nominal values",
+        "Impedance controllers: gains, and the worst over the ranges",
         [label for label, _ in rows],
         [item.name for item in items],
         [list(column) for column in zip(*(values for _, values in rows), strict=True)],
     )
-    paragraphs = [nominal_note(designed)]
+    spec = designed.spec
+    axes = [ONE_AXIS] if spec.coupling is not None else []
+    said = (MEANING[0], LIMIT_MEANING, *axes, MEANING[-1], COST_MEANING)
+    paragraphs = [Paragraph(" ".join(said))]
+    if any(item.band for item in items):
+        paragraphs.append(Paragraph(_PASSIVE))
+    if spec.sampling is not None and not all(item.sampled for item in items):
+        paragraphs.append(Paragraph(PASSIVITY_NOT_COMPUTED))
     if any(item.problem.loop.contact.remembers for item in items):
         paragraphs.append(Paragraph(_SUDDEN))
     if any(item.sampled for item in items):
         paragraphs.append(Paragraph(_PASSIVE_SAMPLED))
-    return Section("Impedance control", (*paragraphs, *tables, displayed, sensitivity))
+    figures = _figures(drawn, rest) if drawn else ()
+    return Section("Impedance control", (*paragraphs, *tables, *figures))
+
+
+def _figures(drawn: Sequence[ImpedanceAnalysis], rest: str) -> tuple[Illustration, Illustration]:
+    displayed = Illustration(
+        "displayed-impedance",
+        "Displayed and desired impedance",
+        "Magnitude of the impedance that the operator feels in nominal contact, of the loop that "
+        "is proved at its nominal values (solid; a sampled law with a spring has no curve), and "
+        "the desired one (dashed); the dotted line is the bandwidth of the motion. Shaded: what "
+        f"the goal allows up to there, or what is usual.{rest}",
+        draw_displayed_impedance(drawn),
+    )
+    sensitivity = Illustration(
+        "sensitivity",
+        "Sensitivity",
+        "Magnitude of 1/(1 + L) with the open loop L, at the corner of the ranges where its peak "
+        "is largest; the marker is that peak Ms. A value above 1 (gray line) amplifies "
+        f"disturbances of that frequency.{rest}",
+        draw_sensitivity(drawn),
+    )
+    return displayed, sensitivity
 
 
 def _passive(band: PassiveBand | None) -> str:
@@ -168,6 +184,13 @@ def _passive(band: PassiveBand | None) -> str:
     if band.passive is None:
         return "every frequency"
     return lower(band.passive * Fraction(1000, 6284), 4)
+
+
+def _not_passive(band: PassiveBand | None) -> str:
+    """Write a frequency at which it is not passive; rounded, so near it."""
+    if band is None or band.broken is None:
+        return ""
+    return upper(band.broken * Fraction(1000, 6283), 4)
 
 
 def _sampled(bands: Sequence[SampledBand]) -> str:

@@ -21,17 +21,23 @@ _GAINS = ("Mt", "Bt")
 _TEXT = (
     "The cost weighs how far the displayed impedance is from the desired one against the mean "
     "sensitivity, up to the bandwidth. Where gains may be chosen, each row of a table is the best "
-    "for something else: what it gains there, it gives up in the other columns. Nominal contact, "
-    "floating point, goals left out; no part of the proof."
+    "for something else: what it gains there, it gives up in the other columns. The cost is that "
+    "of the thesis: its loop G Ze H Y at nominal values, in continuous time and without a load "
+    "of the motor. Floating point, goals left out; no part of the proof."
 )
-_MAP = "Lines of equal cost, with the values of some. Shaded: the nominal loop is unstable."
+_MAP = (
+    "Lines of equal cost, with the values of some. Shaded: the loop that is proved is unstable at "
+    "its nominal values."
+)
 _BOX = (
     " The dashed box is where the spec allows the gains to be; an optimum on its edge was chosen "
     "by the bound, not by the cost."
 )
 _DELAY = (
     "A curve ends at zero where the loop is unstable without any dead time. Below its curve, a "
-    "controller bears that dead time in contact of that stiffness, constant and by itself. Dotted: "
+    "controller bears that dead time in contact of that stiffness, constant and by itself, at "
+    "every corner of the other ranges of its contact and of the motor; a sampled one bears it "
+    "beside the age of its force sample, in whole samples. Dotted: "
     "the stiffest contact that it is designed for."
 )
 
@@ -66,7 +72,7 @@ def landscape_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
 
 
 def _map(item: ImpedanceAnalysis) -> Illustration:
-    found = map_cost(item.problem, item.Mt, item.Bt)
+    found = map_cost(item.problem, item.requirement, item.Mt, item.Bt)
     remarks = [f"{gain} is on its {side} bound." for gain, side in _on_bounds(item)]
     if given := _given(item):
         verb = "is" if len(given) == 1 else "are"

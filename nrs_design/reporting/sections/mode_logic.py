@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Paragraph, Section, Table
@@ -47,7 +50,7 @@ def logic_section(spec: InteractionDesignSpec) -> Section | None:
 def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:
     """Say in sentences what the numbers of a mode logic mean, and what the proof makes of them."""
     assert spec.mode_logic is not None
-    texts = _CHATTER_FREE if spec.mode_logic.type == "thresholds" else _ESTIMATED
+    texts = _PAGES[spec.mode_logic.type].meaning
     if spec.switching.is_arbitrary:
         return (*texts, "The statement about stability needs none of this: switching is arbitrary.")
     return (*texts, "The statement about stability is for the switching that this logic can give.")
@@ -56,9 +59,11 @@ def logic_meaning(spec: InteractionDesignSpec) -> tuple[str, ...]:
 def logic_tables(spec: InteractionDesignSpec) -> tuple[Table, ...]:
     """Return what a mode logic does, in tables of text."""
     assert spec.mode_logic is not None
-    if spec.mode_logic.type == "thresholds":
-        return _switches(spec.mode_logic), _stays(spec.mode_logic)
-    return (_decision(spec, spec.mode_logic),)
+    return _PAGES[spec.mode_logic.type].tables(spec, spec.mode_logic)
+
+
+def _threshold_tables(_: InteractionDesignSpec, logic: ThresholdLogicSpec) -> tuple[Table, ...]:
+    return _switches(logic), _stays(logic)
 
 
 def _switches(logic: ThresholdLogicSpec) -> Table:
@@ -119,7 +124,7 @@ def _stays(logic: ThresholdLogicSpec) -> Table:
     return Table("How long every controller stays active", columns, tuple(rows))
 
 
-def _decision(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Table:
+def _decision(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> tuple[Table, ...]:
     found = decide(estimator, spec.controllers, spec.environments)
     soft, stiff = found.environments
     right = f"{found.softer}/{soft}, {found.stiffer}/{stiff}"
@@ -132,30 +137,32 @@ def _decision(spec: InteractionDesignSpec, estimator: EstimatorSpec) -> Table:
         ("Right modes", right),
         ("Wrong modes, until the decision", wrong),
     )
-    return Table("How the environment is told", ("What", "Value"), rows)
+    return (Table("How the environment is told", ("What", "Value"), rows),)
 
 
 def logic_summary(spec: InteractionDesignSpec) -> dict[str, object]:
     """Return the numbers of a mode logic in SI units, each rounded to its safe side."""
     assert spec.mode_logic is not None
     logic = spec.mode_logic
-    used = not spec.switching.is_arbitrary
-    if logic.type == "estimator":
-        found = decide(logic, spec.controllers, spec.environments)
-        return {
-            "type": logic.type,
-            "used_in_proof": used,
-            "stiffness_limit": float(found.limit),
-            "travel": float(upper(found.travel)),
-            "decision_at_most": float(found.delay),
-            "right_at_least": float(found.stay),
-            "environments": list(found.environments),
-            "controllers": [found.softer, found.stiffer],
-            "units": {"stiffness_limit": "N*m/rad", "travel": "rad", "decision_at_most": "s"},
-        }
+    own = _PAGES[logic.type].summary(spec, logic)
+    return {"type": logic.type, "used_in_proof": not spec.switching.is_arbitrary, **own}
+
+
+def _estimator_summary(spec: InteractionDesignSpec, logic: EstimatorSpec) -> dict[str, object]:
+    found = decide(logic, spec.controllers, spec.environments)
     return {
-        "type": logic.type,
-        "used_in_proof": used,
+        "stiffness_limit": float(found.limit),
+        "travel": float(upper(found.travel)),
+        "decision_at_most": float(found.delay),
+        "right_at_least": float(found.stay),
+        "environments": list(found.environments),
+        "controllers": [found.softer, found.stiffer],
+        "units": {"stiffness_limit": "N*m/rad", "travel": "rad", "decision_at_most": "s"},
+    }
+
+
+def _threshold_summary(_: InteractionDesignSpec, logic: ThresholdLogicSpec) -> dict[str, object]:
+    return {
         "controllers": [_controller_summary(logic, name) for name in logic.controllers],
         "switches": [
             {
@@ -186,3 +193,20 @@ def _controller_summary(logic: ThresholdLogicSpec, name: str) -> dict[str, objec
             for apart in logic.pairs(name)
         ],
     }
+
+
+@dataclass(frozen=True, slots=True)
+class _Page:
+    """What is said of one type of mode logic."""
+
+    meaning: tuple[str, ...]
+    tables: Callable[[InteractionDesignSpec, Any], tuple[Table, ...]]
+    summary: Callable[[InteractionDesignSpec, Any], dict[str, object]]
+
+
+_PAGES: Mapping[str, _Page] = MappingProxyType(
+    {
+        "thresholds": _Page(_CHATTER_FREE, _threshold_tables, _threshold_summary),
+        "estimator": _Page(_ESTIMATED, _decision, _estimator_summary),
+    }
+)

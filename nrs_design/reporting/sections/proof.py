@@ -169,11 +169,12 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
     ]
     if _every_mode_is_stable(certification):
         texts.append("Every mode by itself is stable, which was decided exactly.")
-    if certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
+    if certification.statements:
         statements = certification.statements
         pages = [page_of(certification.system, statement) for statement in statements]
         texts += [statement.claim(certification.system) for statement in statements]
         texts += dict.fromkeys(text for page in pages for text in page.meaning())
+    if certification.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE:
         may = "The system may be stable with a function of another kind"
     else:
         may = (
@@ -181,7 +182,9 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
             "stable without one"
         )
     texts.append(f"{may}, or some switching signal may make it unstable.")
-    return (Bullets("Neither proved nor refuted", tuple(texts)), _what_may_help(certification))
+    where = certification.refuted_in
+    title = "Neither proved nor refuted" if where is None else f"Open; refuted {where}"
+    return (Bullets(title, tuple(texts)), _what_may_help(certification))
 
 
 def _every_mode_is_stable(certification: Certification) -> bool:

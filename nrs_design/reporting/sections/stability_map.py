@@ -57,10 +57,22 @@ def stability_map_section(loaded: LoadedSpec, found: StabilityMap) -> Section:
         (
             Paragraph(_TEXT),
             Illustration(
-                "stability-map", "Proved and refuted", _CAPTION, draw_stability_map(found)
+                "stability-map",
+                "Proved and refuted",
+                _CAPTION + _aside(found),
+                draw_stability_map(found),
             ),
             Table("Stiffness that is proved, and that is refuted", columns, rows),
         ),
+    )
+
+
+def _aside(found: StabilityMap) -> str:
+    if not found.refuted_in:
+        return ""
+    return (
+        f" What is refuted, is so {found.refuted_in}, where the environment would have to pull; "
+        "with contact that may be lost, these cells are undecided."
     )
 
 

@@ -43,8 +43,16 @@ _PROOF = {
 def summary_of(result: Result) -> tuple[str, str]:
     """Return what was shown, and under which assumptions, in a sentence each."""
     system, evidence = result.certification.system, result.certification.evidence
-    names = "; ".join(dict.fromkeys(item.kind.name for item in register_of(system.assumptions)))
+    names = "; ".join(
+        dict.fromkeys(item.kind.name for item in register_of(result.certification.granted))
+    )
     granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
+    if evidence is None and (where := result.certification.refuted_in) is not None:
+        return (
+            f"Refuted {where}, where the environment would have to pull; with contact that may be "
+            "lost, neither proved nor refuted.",
+            f"What was searched for would have taken for granted: {names}.",
+        )
     if evidence is None:
         return (
             "Neither proved nor refuted: this report makes no statement about stability.",
@@ -52,7 +60,7 @@ def summary_of(result: Result) -> tuple[str, str]:
         )
     if evidence.shows is Shows.STABILITY:
         return _proved(result, evidence), granted
-    kept = ", in kept contact" if system.contact is not None else ""
+    kept = _grown(system, evidence)
     if system.roundings:
         kept += ", among modes that enclose what the motor does"
     name = page_of(system, evidence).name
@@ -61,6 +69,15 @@ def summary_of(result: Result) -> tuple[str, str]:
         f"witness: {name}.",
         granted,
     )
+
+
+def _grown(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
+    """Say for which contact there is growth."""
+    if system.contact is None and system.flights is None:
+        return ""
+    if evidence.covers_loss(system):
+        return ", with contact that is lost and made as a motion itself says"
+    return ", in kept contact"
 
 
 def _proved(result: Result, evidence: AbstractEvidence) -> str:
@@ -77,7 +94,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
         _rate(system, evidence),
     ]
     if system.couplings and evidence.covers_coupling:
-        parts.insert(1, "for axes that act on each other within the stated bounds")
+        parts.insert(1, "for axes that act on each other within the stated bounds, taken on trust")
     if system.roundings:
         parts.append(
             "with what the processor rounds"
@@ -152,6 +169,8 @@ def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, .
         What the design achieves; None where there is none, or a nominal loop is unstable.
     """
     state, text = _PROOF[Verdict(result.certification.verdict)]
+    if (where := result.certification.refuted_in) is not None:
+        text = f"{text}; refuted {where}"
     proof = Light("Proof", state, text, MEANT)
     spec = result.loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
@@ -191,7 +210,7 @@ def _data(spec: InteractionDesignSpec) -> Light:
 def _open(result: Result) -> Light:
     spec = result.loaded.spec
     design = spec if isinstance(spec, InteractionDesignSpec) else None
-    found = register_of(result.certification.system.assumptions, design)
+    found = register_of(result.certification.granted, design)
     count = sum(item.standing == "open" for item in found)
     state = State.DOUBTFUL if count else State.GOOD
     text = f"{count} of {len(found)} open: to be tested on the robot"

@@ -38,7 +38,7 @@ def assumptions_section(result: Result) -> Section:
             e.kind.test,
             str(e.standing),
         )
-        for e in register_of(result.certification.system.assumptions, design)
+        for e in register_of(result.certification.granted, design)
     )
     columns = ("Assumption", "Statement", "Bound", "If it is false", "Test", "State")
     table = Table("What is taken for granted", columns, rows)

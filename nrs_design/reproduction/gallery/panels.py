@@ -19,8 +19,8 @@ ARM = 0.24
 FORCE = ("Force at 240 mm [N]", 1 / ARM)
 T_MAX = "T_max, 0.3 N m"
 ENGINE = (
-    "Continuous time, exact between events. Not in it: sampling at 500 Hz, noise and bias of the "
-    "force sensor, joint clearance, gravity, the other axes."
+    "Continuous time, exact between events. Not in it: sampling (motion loop at 500 Hz, admittance "
+    "every 0.1 ms), noise and bias of the force sensor, joint clearance, gravity, the other axes."
 )
 
 

@@ -1,13 +1,16 @@
 """`nrs-design identify tissue`, as a user types it."""
 
+import contextlib
 import json
 import shutil
+from unittest.mock import patch
 
 import pytest
 
-from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.spec import read_spec
 from tests.cli.identify.records import NOSE, SOFT
-from tests.identification.support import quick
+from tests.identification.support import quick, record
 from tests.identification.unilateral import robot_record
 from tests.support import ROOT, SOFT_TISSUE, run
 
@@ -140,8 +143,138 @@ def test_opposite_signs_stop_the_writing(tmp_path):
     arguments = ("identify", "tissue", robot_csv(tmp_path, -1), "--write", spec)
     result = run(*arguments, cwd=tmp_path)
     assert "force and deflection have opposite signs" in result.stderr
-    assert run(*arguments, "--negate-force", "-q", cwd=tmp_path).stderr == ""
+    told = (*arguments, "--negate-force", "--model", "kelvin-voigt", "-q")
+    assert run(*told, cwd=tmp_path).stderr == ""
     assert "doubts" not in spec.read_text()
+
+
+VOIGT = ("    model: elastic\n", "    model: kelvin-voigt\n    damping: 30 N*s/m\n")
+
+
+def damped_csv(folder, b=30.0, seed=1):
+    """Presses on 400 N/m and 30 N s/m."""
+    made = record(KelvinVoigt(400.0, b) if b else Elastic(400.0), quick(seed), 0.02, seed)
+    rows = zip(made.motion.time, made.motion.deflection, made.force, strict=True)
+    path = folder / "press.csv"
+    text = "\n".join(f"{t:.3f},{x:.8f},{f:.5f}" for t, x, f in rows)
+    path.write_text(f"t [s],x [m],F [N]\n{text}\n")
+    return path
+
+
+def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
+    arguments = ("identify", "tissue", damped_csv(tmp_path), "--write", spec)
+    kept = run(*arguments, cwd=tmp_path)
+    assert kept.returncode == 0, kept.stderr
+    assert "kelvin-voigt is the law of the spec, which is kept" in kept.stdout
+    assert "changed: environments.soft.damping: 30 N*s/m -> 29." in kept.stderr
+    assert "no longer there" not in kept.stderr
+    soft = read_spec(spec).spec.environments["soft"]
+    assert soft.model == "kelvin-voigt"
+    assert soft.damping.range[0].si < 30 < soft.damping.range[1].si
+    told = run(*arguments, "--model", "elastic", "-q", cwd=tmp_path)
+    assert told.returncode == 0, told.stderr
+    assert "warning: no longer there: environments.soft.damping: 29." in told.stderr
+    assert "warning: kelvin-voigt describes the records better than elastic" in told.stderr
+
+
+def test_a_law_that_is_not_refused_before_the_fit_does_not_lose_it(tmp_path):
+    """Records of a spring do not tell the damper of the spec: what was found is printed."""
+    spec, text = tmp_path / "copy.nrs.yaml", SOFT_TISSUE.read_text().replace(*VOIGT)
+    spec.write_text(text)
+    record_, options = damped_csv(tmp_path, b=0.0), ("--contact", "given", "--zero", "0 m")
+    arguments = ("identify", "tissue", record_, *options, "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "BIC - least" in result.stdout
+    assert "choose a simpler law with --model" in result.stderr
+    assert spec.read_text() == text
+    document = json.loads(run(*arguments, "--json", cwd=tmp_path).stdout)
+    assert document["chosen"] == "kelvin-voigt"
+    assert "unlimited" in str(document["not_written"])
+
+
+def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)
+    sent = tmp_path / "link.nrs.yaml"
+    sent.symlink_to(spec)
+    path = damped_csv(tmp_path)
+    volts = tmp_path / "volts.csv"
+    text = "".join(f"{i / 100:.2f},{i % 7},{i % 5}\n" for i in range(100))
+    volts.write_text(f"time_s,command_V,velocity_rad_s\n{text}")
+    nose = ROOT / "specs/neuroboscope/nose.nrs.yaml"
+    other = ROOT / "specs/examples/commuting.nrs.yaml"
+    rpm = SOFT_TISSUE
+    poses = ROOT / "specs/data/tool-poses.csv"
+    delay = ("delay", volts, "--command", "command_V", "--measured", "velocity_rad_s")
+    fits = ("tissue.identify_tissue", "actuator.identify_actuator", "delay.identify_delay",
+            "tool.identify_tool")  # fmt: skip
+    with contextlib.ExitStack() as stack:
+        for name in fits:
+            fit = f"nrs_design.identification.{name}"
+            stack.enter_context(patch(fit, side_effect=AssertionError("fitted")))
+        for arguments, message in (
+            (("tissue", path, "--write", spec, "--environment", "hard"), "no environment 'hard'"),
+            (("tissue", path, "--write", nose), "has no lever_arm"),
+            (("tissue", path, "--write", other), "has no place for identified values"),
+            (("tissue", path, "--write", tmp_path / "none.nrs.yaml"), "none.nrs.yaml"),
+            (("tissue", path, "--write", sent), "link"),
+            (("tissue", path, "--write", rpm, "--model", "hunt-crossley"), "has no place"),
+            (("tissue", path, "--lever-arm", "3 kg"), "--lever-arm"),
+            (("actuator", volts, "--write", rpm), "commands in V, and derivative_gain is 2060 rpm"),
+            (("actuator", volts, "--write", other), "has no place for identified values"),
+            ((*delay, "--write", rpm), "the spec has no sampling"),
+            (("tool", poses, "--write", other), "has no place for identified values"),
+        ):
+            result = run("identify", *arguments, cwd=tmp_path)
+            assert result.returncode == 2, (arguments, result.stderr)
+            assert message in result.stderr, arguments
+
+
+@pytest.mark.parametrize(
+    ("scales", "said"),
+    [
+        ((1.0, 1e-3), "the force spans 0.00265 N: is that its unit? did you mean 0.00265 kN?"),
+        pytest.param(
+            (1e3, 1.0),
+            "the deflection spans 6.61 m: is that its unit? did you mean 6.61 mm",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            (1e-3, 1.0),
+            "the deflection spans 6.61e-06 m: is that its unit?",
+            marks=pytest.mark.slow,
+        ),
+        ((1.0, -1.0), "force and deflection have opposite signs"),
+        pytest.param(
+            (-1.0, 1.0), "force and deflection have opposite signs", marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
+    """kN for N, mm for m, m for mm, and both signs: each has a doubt, the exit code, the gate."""
+    made = record(KelvinVoigt(400.0, 3.0), quick(1), 0.001, 1)
+    rows = zip(made.motion.time, scales[0] * made.motion.deflection, scales[1] * made.force,
+               strict=True)  # fmt: skip
+    path, spec = tmp_path / "press.csv", tmp_path / "copy.nrs.yaml"
+    path.write_text("time_s,deflection_m,force_N\n" + "\n".join(f"{t},{x},{f}" for t, x, f in rows))
+    shutil.copy(SOFT_TISSUE, spec)
+    result = run("identify", "tissue", path, cwd=tmp_path)
+    assert result.returncode == 3
+    assert f"warning: press: {said}" in result.stderr
+    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    assert any(said in slip for slip in document["slips"])
+    options = ("--write", spec, "--model", "elastic", "-q")
+    written = run("identify", "tissue", path, *options, cwd=tmp_path)
+    if "signs" in said:
+        # No spring pushes that way: its range has no end, and nothing is written.
+        assert written.returncode == 2
+        assert spec.read_text() == SOFT_TISSUE.read_text()
+        return
+    assert written.returncode == 3
+    assert any(said in doubt for doubt in read_spec(spec).spec.environments["soft"].doubts)
 
 
 @pytest.mark.parametrize(
@@ -152,7 +285,9 @@ def test_opposite_signs_stop_the_writing(tmp_path):
         (("--from", "99"), "lie between --from and --to"),
         (("--skip-cycles", "9"), "9 cycles are to be set apart"),
         (("--covers", "tolerance"), "needs several records"),
-        (("--preload", "1 mm..2 mm"), "the same at every preload"),
+        (("--preload", "1 mm..2 mm", "--model", "elastic"), "the same at every preload"),
+        (("--preload", "1 mm..2 m"), "not within the deflections"),
+        (("--environment", "soft"), "name a spec by --write, too"),
         (("--preload", "1 N"), "--preload: "),
     ],
 )

@@ -9,7 +9,7 @@ from nrs_design.errors import DataError
 from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.phasors import phasors_of
-from nrs_design.identification.datasets import FrequencyResponse
+from nrs_design.identification.datasets import FrequencyResponse, read_actuator
 from nrs_design.identification.held import Held
 from tests.identification import motors, synthetic
 from tests.identification.support import MOTOR, sinusoids, source
@@ -176,3 +176,22 @@ def test_no_range_for_other_records(runs, data, said):
     given = {"one": runs[:1], "response": [response()], "at rest": [runs[0], still]}[data]
     with pytest.raises(DataError, match=said):
         identify_actuator(given, MOTOR, "prediction")
+
+
+def test_pauses_part_a_record_whose_stretches_are_fitted_together(tmp_path):
+    whole = motors.record("PRBS", 1)
+    kept = np.r_[0:800, 900:1000, 1010:1040, 1100 : len(whole.time)]
+    rows = np.column_stack([whole.time, whole.command, whole.output])[kept]
+    path = tmp_path / "paused.csv"
+    np.savetxt(path, rows, "%.9g", ",", header="time_s,command_rpm,angle_rad", comments="")
+    records = read_actuator(path)
+    assert [(r.name, len(r.time)) for r in records] == [
+        ("paused", 800), ("paused, part 2", 100), ("paused, part 3", len(whole.time) - 1100),
+    ]  # fmt: skip
+    found = identify_actuator(records, MOTOR)
+    assert found.ranges[0].covers(motors.GAIN)
+    assert found.ranges[1].covers(motors.TIME_CONSTANT)
+    assert found.remarks[0].startswith("paused: 3 pauses part the record: its stretches are fitted")
+    assert found.doubts == ()
+    with pytest.raises(DataError, match="needs several records"):
+        identify_actuator(records, MOTOR, "prediction")

@@ -57,8 +57,10 @@ def test_time_goes_back(tmp_path):
 
 
 def test_gap(tmp_path):
-    fails(tmp_path, "a gap of 0.06 s, where steps are 0.01 s", 102,
-          time=TIME + 0.05 * (np.arange(200) >= 100))  # fmt: skip
+    """Stretches of 50 rows are fitted together; shorter ones alone are no record."""
+    fails(tmp_path, "a gap of 0.06 s, where steps are 0.01 s, and no 50 rows without one", 42,
+          time=TIME + 0.05 * (np.arange(200) // 40))  # fmt: skip
+    assert len(tissue(tmp_path, time=TIME + 0.05 * (np.arange(200) // 50)).force) == 200
 
 
 def test_jitter_is_no_gap(tmp_path):

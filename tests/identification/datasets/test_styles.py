@@ -200,12 +200,51 @@ def test_readers_are_silent(tmp_path):
         ("Force (lbf)", Name("force", "lbf")),
         ("Force (mn)", Name("force", "mn")),
         ("Load cell serial", None),
+        ("t [s]", Name("time", "s", loose=True)),
+        ("time (s)", Name("time", "s")),
+        ("t/ms", Name("time", "ms", loose=True)),
+        ("t_s", Name("time", "s", loose=True)),
+        ("Time_s", Name("time", "s")),
+        ("TIME_MS", Name("time", "MS")),
+        ("Force_kN", Name("force", "kN")),
+        ("F [kN]", Name("force", "kN", loose=True)),
+        ("x [mm]", Name("deflection", "mm", loose=True)),
+        ("Position (deg)", Name("angle", "deg", loose=True)),
+        ("Position (mm)", Name("deflection", "mm", loose=True)),
+        ("T [Nm]", Name("torque", "Nm", loose=True)),
+        ("t [N]", None),
+        ("f_Hz", None),
+        ("s_m", None),
+        ("t", None),
         ("Load", None),
         ("Fz", None),
     ],
 )
 def test_names(text, name):
     assert read_name(text) == name
+
+
+@pytest.mark.parametrize(
+    "head",
+    ["t [s],x [mm],F [kN]", "time (s),Position (mm),force [kN]", "t/s,Displacement/mm,F/kN",
+     "Time_s,Deflection_mm,Force_kN", "Time [s],d [mm],Load [kN]", "t [s],deflection_mm,F [kN]"],
+)  # fmt: skip
+def test_symbols_with_a_unit(tmp_path, head):
+    path = tmp_path / "record.csv"
+    path.write_text(f"{head}\n{rows(',', '.', (1, 1e3, 1e-3))}")
+    check(read_tissue(path))
+
+
+def test_a_full_name_goes_before_a_symbol_and_of_two_symbols_the_user_chooses(tmp_path):
+    path = tmp_path / "record.csv"
+    body = rows(",", ".", (1, 1e3, 1)).replace("\n", ",1\n")
+    path.write_text(f"t [s],deflection_mm,F [N],x [mm]\n{body}")
+    check(read_tissue(path))
+    path.write_text(f"t [s],z [mm],F [N],x [mm]\n{body}")
+    with pytest.raises(DataError, match=r"there twice \('z \[mm\]' and 'x \[mm\]'\)") as caught:
+        read_tissue(path)
+    assert "--map deflection_m=NAME" in str(caught.value.remedy)
+    check(read_tissue(path, parse_mapping(["deflection_mm=z [mm]"])))
 
 
 def test_mega_is_not_milli():

@@ -1,6 +1,7 @@
 """Wrong files: each has one message that says what, where and what to do."""
 
 import sys
+from io import BytesIO
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.io import savemat
 from scipy.io.matlab import MatlabOpaque
 
 from nrs_design.errors import DataError
+from nrs_design.foreign import read_mat, read_parquet, unpack_sheet
 from nrs_design.identification.datasets import (
     read_actuator,
     read_poses,
@@ -107,7 +109,35 @@ WRONG = {
     "a quote that does not end": ("a.csv", text(replace=[(7, '"0.07,0.007,7')]), "has 1 values", 9),
     "time repeats": ("a.csv", text(replace=[(5, BODY[4])]), "time repeats", 7),
     "time goes back": ("a.csv", text(replace=[(5, "0.01,0.005,5")]), "time goes back", 7),
-    "a gap": ("a.csv", text(body=[*BODY[:55], "9.5,0.01,3"]), "a gap of", None),
+    "a gap": ("a.csv", text(body=[*BODY[:45], "9.5,0.01,3", "9.51,0.02,2", "9.52,0.03,1"] + [
+        f"9.{i},0.01,{i % 7}" for i in range(53, 60)]), "a gap of .* and no 50 rows", 47),
+    "a huge value": (
+        "a.csv",
+        text(replace=[(5, "0.05,1e297,5")]),
+        r"deflection_m is 1e\+297: no sensor",
+        7,
+    ),
+    "huge in another unit": (
+        "a.csv",
+        text(HEAD.replace("time_s", "time_min"), [(59, "1e308,0.1,5")]),
+        "time_min is inf",
+        61,
+    ),
+    "huge in NumPy": (
+        "a.npz",
+        {"time_s": TIME, "deflection_m": TIME, "force_N": np.where(TIME == 0.05, -1e31, 1)},
+        r"force_N is -1e\+31: .*\(row 6\)",
+        None,
+    ),
+    "infinite": ("a.csv", text(replace=[(5, "0.05,0.1,-inf")]), "force_N is -inf", 7),
+    "tiny changes": ("a.csv", column(1, 1e-200 * TIME), "never changes by more than 6e-201", 2),
+    "changes by rounding": (
+        "a.csv",
+        column(2, 0.3 + 1e-17 * FLAT),
+        "force never changes by more than",
+        2,
+    ),
+    "no time passes": ("a.csv", column(0, 1e-200 * TIME), "time hardly advances", 61),
     "too short": ("a.csv", text(body=BODY[:10]), "has 10 rows", 11),
     "nothing moves": ("a.csv", column(1, [0.1] * 60), "deflection never changes", 2),
     "sensor saturated": ("a.csv", column(2, FLAT), "saturated", 32),
@@ -327,9 +357,10 @@ def test_an_archive_of_objects_is_not_run(tmp_path):
 def test_the_extra_is_named(tmp_path, monkeypatch, ending, package):
     monkeypatch.setitem(sys.modules, package, None)
     path = tmp_path / f"a.{ending}"
-    path.write_bytes(b"PAR1" if ending == "parquet" else b"PK\x03\x04")
+    # In this process, where the package is hidden.
+    reader = read_parquet if ending == "parquet" else unpack_sheet
     with pytest.raises(DataError, match=package) as caught:
-        read_tissue(path)
+        reader(BytesIO(b""), path)
     assert "nrs-design[tables]" in caught.value.remedy
 
 
@@ -346,7 +377,6 @@ def test_an_object_of_matlab(tmp_path, monkeypatch):
     opaque = MatlabOpaque(np.array((b"T", b"MCOS", b"timetable", None), dtype=kind))
     monkeypatch.setattr("scipy.io.loadmat", lambda *_, **__: {"None": opaque})
     path = tmp_path / "a.mat"
-    savemat(path, {"x": TIME})
     with pytest.raises(DataError, match="an object of a MATLAB class") as caught:
-        read_tissue(path)
+        read_mat(BytesIO(b""), path)
     assert "writetimetable" in caught.value.remedy

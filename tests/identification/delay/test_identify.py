@@ -9,7 +9,7 @@ import pytest
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import read_signals
 from nrs_design.identification.delay import identify_delay
-from nrs_design.identification.delay.identify import correlation_peak
+from nrs_design.identification.delay.identify import correlation_peak, is_smooth
 from tests.identification import motors, signals
 from tests.support import ROOT
 
@@ -80,7 +80,7 @@ def test_a_square_wave_turned_into_an_angle():
     noise = 3e-4 * np.random.default_rng(1).normal(size=signals.COUNT)
     found = identify_delay(signals.pair(sent, angle + noise))
     assert found.samples.covers(delay)
-    assert found.samples.high - found.samples.low < 1
+    assert found.samples.high - found.samples.low < 2
 
 
 @pytest.mark.slow
@@ -142,6 +142,59 @@ def test_columns_without_relation():
     assert "--command" in caught.value.remedy
 
 
+@pytest.mark.parametrize(
+    ("delay", "begins", "noise"),
+    [
+        (0.5, 0.25, 0.01),
+        (2.0, 0.0, 0.0),
+        *(
+            pytest.param(delay, begins, noise, marks=pytest.mark.slow)
+            for delay in (0.0, 0.5, 1.0, 1.4, 2.999, 3.0, 4.6)
+            for begins in (0.0, 0.3, 0.5)
+            for noise in (0.0, 0.1)
+        ),
+    ],
+)
+@pytest.mark.parametrize("lasts", [1.0, pytest.param(3.7, marks=pytest.mark.slow)])
+def test_a_held_command_tells_no_part_of_a_sample(delay, begins, noise, lasts):
+    """It changes at the samples of the log or between them, which no log says."""
+    found = identify_delay(signals.held(1, delay, lasts=lasts, begins=begins, noise=noise))
+    assert not found.smooth
+    assert found.samples.covers(delay)
+    assert found.samples.high - found.samples.low >= 1
+    low, high = found.whole_samples
+    assert low <= delay <= high
+    assert "no interval is below a sample" in found.remarks[0]
+    assert all(part.covers(delay) for _, part in found.parts)
+
+
+def test_what_is_smooth_between_samples():
+    assert is_smooth(signals.copy(1))
+    assert not is_smooth(signals.held(1, 0.0, lasts=30.0))
+    noise = np.random.default_rng(0).normal(size=signals.COUNT)
+    assert not is_smooth(replace(signals.copy(1), sent=noise))
+
+
+@pytest.mark.slow
+def test_a_pause_parts_a_record():
+    record = signals.copy(1)
+    kept = np.r_[0:700, 760:1400, 1430:2000]
+    parted = replace(record, time=record.time[kept], sent=record.sent[kept], seen=record.seen[kept])
+    found = identify_delay(parted)
+    assert found.samples.covers(signals.DELAY)
+    assert found.remarks[0].startswith(
+        "2 pauses part the record: its stretches are fitted together"
+    )
+    assert found.doubts == ()
+    lagging = signals.lag(1)
+    parted = replace(
+        lagging, time=lagging.time[kept], sent=lagging.sent[kept], seen=lagging.seen[kept]
+    )
+    found = identify_delay(parted)
+    assert found.chosen.follower.name == "a first-order lag"
+    assert found.samples.covers(LATE)
+
+
 def test_peak_of_the_correlation():
     lag, correlation = correlation_peak(signals.copy(1, delay=7.0, noise=0.0))
     assert lag == pytest.approx(7 / signals.RATE, rel=1e-6)
@@ -160,4 +213,14 @@ def test_coverage(kind):
         else:
             record, truth = signals.lag(seed, "multisine", is_angle=True), LATE
         hits.append(identify_delay(record).samples.covers(truth))
-    assert 0.92 <= np.mean(hits) <= 0.98, np.mean(hits)
+    # Beside a lag, an interval has a sample more: nobody knows when a logged command began.
+    assert 0.92 <= np.mean(hits) <= (0.98 if kind == "copy" else 1.0), np.mean(hits)
+
+
+def test_milliseconds_that_pass_for_seconds_are_no_success():
+    record = signals.held(1, 2.0)
+    found = identify_delay(replace(record, time=1e3 * record.time))
+    step, delay = found.slips
+    assert "the steps of time are 2 s: is that their unit? did you mean 2 ms?" in step
+    assert "the delay is 4 s: is that its unit? did you mean 4 ms?" in delay
+    assert set(found.slips) <= set(found.caveats)

@@ -2,11 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue import identify_tissue
-from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell
+from nrs_design.models.contact import LAWS, Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
 
@@ -26,6 +27,17 @@ def test_the_true_law_is_chosen(law, motion, noise, q):
     assert "least BIC" in found.reason
     assert [model.law.name for model in found.models] == list(LAWS)
     assert found.synthetic
+
+
+@pytest.mark.parametrize("step", [0.0, pytest.param(1e-6, marks=pytest.mark.slow)])
+def test_a_clean_ramp_tells_its_law(step):
+    """The change of a ramp from sample to sample, here 50 um, is not the step of its sensor."""
+    time = np.arange(1500) / 100
+    motion = Motion(time, 0.005 * np.interp(time % 5, [0, 0.5, 1.5, 2.5, 3.5], [0, 0, 1, 1, 0]))
+    found = identify_tissue([record(KelvinVoigt(400.0, 30.0), motion, 0.02, 1, step)])
+    assert found.chosen.law.name == "kelvin-voigt"
+    assert found.caveats == ()
+    assert all(e.covers(v) for e, v in zip(found.chosen.ranges, (400.0, 30.0), strict=True))
 
 
 def test_a_law_can_be_asked_for():

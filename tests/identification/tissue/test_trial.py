@@ -1,11 +1,13 @@
 """What of a record is used."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue, prepare
-from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
+from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.support import quick, record, slow
 
@@ -62,3 +64,28 @@ def test_the_first_cycle_is_doubted_and_set_apart():
     assert fit.estimates[0].covers(750.0)
     assert found.caveats == ()
     assert "set apart" in "; ".join(fit.trial.remarks)
+
+
+@pytest.mark.parametrize(
+    ("law", "noise"),
+    [(KelvinVoigt(0.574, 0.957), 0.01), pytest.param(synthetic.NOSE, 0.01, marks=pytest.mark.slow)],
+)
+def test_pauses_part_a_record_whose_stretches_are_fitted_together(law, noise):
+    """What happens in a pause is not recorded: the tissue relaxes on, and the probe moves."""
+    motion = slow(3)
+    whole = record(law, motion, noise, 3)
+    kept = np.r_[0:500, 640:660, 700:1100, 1250 : len(motion)]
+    parted = replace(
+        whole,
+        motion=Motion(motion.time[kept], motion.deflection[kept]),
+        force=whole.force[kept],
+    )
+    found = identify_tissue([parted])
+    assert found.chosen.law.name == law.name
+    assert found.caveats == ()
+    assert all(e.covers(v) for e, v in zip(found.chosen.ranges, law.values, strict=True))
+    (fit,) = found.chosen.fits
+    (said,) = (text for text in fit.trial.remarks if "pauses" in text)
+    assert said.startswith("3 pauses part the record: its stretches are fitted together (0 s to ")
+    assert said.endswith("; 20 samples in shorter stretches are left out")
+    assert fit.trial.used.sum() == len(kept) - 20 - 4

@@ -28,8 +28,7 @@ def test_impedance_at_a_frequency():
     s = 5j
     above, below = HAND.impedance
     assert np.polyval(above, s) / np.polyval(below, s) == pytest.approx(57 / s + 7 + 0.2 * s)
-    held, grown = HAND.by_stiffness
-    assert np.add(held, 57 * np.array(grown)) == pytest.approx(above)
+    assert HAND.at_stiffness(Fraction(60)) == Hand(60, 7.0, 0.2)
 
 
 def test_without_mass_it_is_a_spring_beside_a_damper():

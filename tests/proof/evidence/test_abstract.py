@@ -330,10 +330,11 @@ FACTS = {
     "allows_unequal_modes": RULED | {"unstable-mode"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
-    "covers_clock": {"periodic-quadratic", "unstable-period"},
+    "covers_clock": {"periodic-quadratic", "unstable-contact", "unstable-period"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"},
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
+    | {"unstable-contact"},
     "covers_mixtures": SETS
     | BOUNCING
     | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},

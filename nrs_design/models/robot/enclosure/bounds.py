@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from nrs_design.errors import DesignError
-from nrs_design.models.robot.enclosure.enclose import Enclosed, Goal, enclose
+from nrs_design.models.robot.enclosure.enclose import Enclosed, Goal, enclose, find_largest
 from nrs_design.models.robot.enclosure.quantities import (
     AbstractQuantity,
     GravityGradient,
@@ -84,7 +84,7 @@ def compute_bounds(
     space : Space
         The poses.
     budget : float
-        Time for each quantity in s.
+        Work for each quantity, in units.
     progress : callable
         Told what is being done.
 
@@ -93,7 +93,9 @@ def compute_bounds(
     PoseError
         If a leg cannot reach one of the poses.
     DesignError
-        If the time was over before something was shown.
+        If the work did not suffice to show something.
+    ClockError
+        If the clock stopped it.
     """
     _refuse_unreachable(robot, space)
     found = {}
@@ -126,7 +128,7 @@ def confirm_bounds(
     document : mapping
         The file.
     budget : float
-        Time for each quantity in s.
+        Work for each quantity, in units.
     progress : callable
         Told what is being done.
 
@@ -135,10 +137,52 @@ def confirm_bounds(
     PoseError
         If a leg cannot reach one of the poses.
     DesignError
-        If the time was over before something was decided.
+        If the work did not suffice to decide something.
+    ClockError
+        If the clock stopped it.
     """
     space = space_of(document)
     _refuse_unreachable(robot, space)
+    for key, quantity, goal in _claimed(document):
+        shown = enclose(robot, quantity, space.workspace, goal_of(0.0, goal), budget, progress)
+        if shown.found > goal * (1 + ROUNDING):
+            yield _exceeded(key, quantity, shown.found, shown.pose)
+        elif not shown.cover.reached:
+            raise _undecided(shown)
+
+
+def contradict_bounds(
+    robot: Robot, document: Mapping[str, Any], progress: Progress = silent
+) -> Iterator[str]:
+    """Look for poses that exceed the bounds of a file, in seconds; yield what is wrong with them.
+
+    Where nothing is wrong, nothing is shown either: `confirm_bounds` shows them.
+
+    Parameters
+    ----------
+    robot : Robot
+        Whose bounds they are said to be.
+    document : mapping
+        The file.
+    progress : callable
+        Told what is being done.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot reach one of the poses.
+    """
+    space = space_of(document)
+    _refuse_unreachable(robot, space)
+    for key, quantity, goal in _claimed(document):
+        progress(f"{quantity.name}: looking for the largest value")
+        found, pose = find_largest(robot, quantity, space.workspace)
+        if found > goal * (1 + ROUNDING):
+            yield _exceeded(key, quantity, found, pose)
+
+
+def _claimed(document: Mapping[str, Any]) -> Iterator[tuple[str, AbstractQuantity, float]]:
+    """Yield what the bounds of a file claim of each quantity; no float above that will do."""
     for key, quantity in _QUANTITIES.items():
         claimed = parse_exact(document["bounds"][key])
         if key == "lightest":
@@ -147,13 +191,18 @@ def confirm_bounds(
                 continue
             claimed = 1 / claimed
         goal = float(claimed)
-        # No float above what is claimed will do.
-        goal = float(np.nextafter(goal, -inf)) if Fraction(goal) > claimed else goal
-        shown = enclose(robot, quantity, space.workspace, goal_of(0.0, goal), budget, progress)
-        if shown.found > goal * (1 + ROUNDING):
-            yield f"{key.replace('_', ' ')}: {pose_text(shown)} exceeds the bound in the file"
-        elif not shown.cover.reached:
-            raise _undecided(shown)
+        yield (
+            key,
+            quantity,
+            float(np.nextafter(goal, -inf)) if Fraction(goal) > claimed else goal,
+        )
+
+
+def _exceeded(
+    key: str, quantity: AbstractQuantity, found: float, pose: tuple[float, float, float]
+) -> str:
+    said = _pose_words(quantity, found, pose)
+    return f"{key.replace('_', ' ')}: {said} exceeds the bound in the file"
 
 
 def goal_of(room: float, least: float = NOTHING) -> Goal:
@@ -226,10 +275,14 @@ def value_of(key: str, number: float) -> float:
 
 def pose_text(item: Enclosed) -> str:
     """Say what was found, and where."""
-    phi, psi, d = item.pose
-    value = f"{item.found:.6g} {item.quantity.unit}"
+    return _pose_words(item.quantity, item.found, item.pose)
+
+
+def _pose_words(quantity: AbstractQuantity, found: float, pose: tuple[float, float, float]) -> str:
+    phi, psi, d = pose
+    value = f"{found:.6g} {quantity.unit}"
     return (
-        f"{item.quantity.name} {value} at phi {degrees(phi):.4g} deg, psi {degrees(psi):.4g} deg, "
+        f"{quantity.name} {value} at phi {degrees(phi):.4g} deg, psi {degrees(psi):.4g} deg, "
         f"d {1e3 * d:.4g} mm"
     )
 
@@ -252,7 +305,7 @@ def _undecided(item: Enclosed) -> DesignError:
     cover = item.cover
     left = int(np.sum(~(cover.bounds <= cover.goal)))
     return DesignError(
-        f"no bound of {item.quantity.name} was shown in the time that was given: "
+        f"no bound of {item.quantity.name} was shown with the work that was allowed: "
         f"{left} boxes of poses are left; found so far: {pose_text(item)}",
         remedy="narrow the workspace where a leg is nearly stretched or folded (--phi, --psi, "
         "--depth), or raise --budget",

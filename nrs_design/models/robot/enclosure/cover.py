@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from time import monotonic
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.models.robot.enclosure.balls import OUTWARD, Floats
+from nrs_design.work import Allowance, Cost
 
 # Boxes that are treated at once: enough that NumPy computes, and Python only calls it.
 BATCH = 4096
@@ -109,10 +109,11 @@ def cover(
     whole: Boxes,
     bound: Bound,
     goal: float,
-    deadline: float = np.inf,
+    allowance: Allowance | None = None,
+    work: Callable[[int], float] = lambda count: 0.0,
     progress: Callable[[int, int], None] = lambda done, left: None,
 ) -> Cover:
-    """Halve boxes until none may exceed a goal, or the time is over.
+    """Halve boxes until none may exceed a goal, or the allowed work does not suffice for the next.
 
     Parameters
     ----------
@@ -122,23 +123,35 @@ def cover(
         What is not exceeded in each of some boxes.
     goal : float
         To be shown.
-    deadline : float
-        Of `time.monotonic`.
+    allowance : Allowance, optional
+        Work; unlimited by default.
+    work : callable
+        What a batch of so many boxes takes of it.
     progress : callable
         Told how many boxes are done and how many are known to be left, after each batch.
+
+    Raises
+    ------
+    ClockError
+        If the clock stopped it.
     """
+    allowance = allowance or Allowance()
     done: list[tuple[Boxes, Floats]] = []
     left, count = whole, 0
-    while left.count and monotonic() < deadline:
-        halves = []
-        for start in range(0, left.count, BATCH):
-            boxes = left.part(slice(start, start + BATCH))
+    while left.count:
+        batches = [left.part(slice(k, k + BATCH)) for k in range(0, left.count, BATCH)]
+        if not allowance.affords(Cost(sum(work(boxes.count) for boxes in batches))):
+            break
+        halves, waiting = list[Boxes](), left.count
+        for boxes in batches:
+            allowance.charge(work(boxes.count))
             bounds, axis = bound(boxes)
             below = bounds <= goal
             done.append((boxes.part(below), bounds[below]))
             halves.append(boxes.part(~below).halved(axis[~below]))
             count += int(below.sum())
-            progress(count, left.count - start - boxes.count + sum(part.count for part in halves))
+            waiting -= boxes.count
+            progress(count, waiting + sum(part.count for part in halves))
         left = joined(halves)
     done.append((left, np.full(left.count, np.inf)))
     boxes = joined([part for part, _ in done])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, sin
-from time import monotonic
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +14,7 @@ from nrs_design.models.robot.enclosure.cover import Boxes, Cover, cover, cut
 from nrs_design.models.robot.enclosure.quantities import AbstractQuantity
 from nrs_design.models.robot.robot import Robot, Workspace
 from nrs_design.progress import Progress, silent
+from nrs_design.work import Allowance, Fuse
 
 # A sine and a number of a spec are off by a few units of the last place at most.
 OUTSIDE = 2.0**-45
@@ -147,7 +147,7 @@ def enclose(
     goal : callable
         Which bound will do, given the largest value that was found.
     budget : float
-        Time in s.
+        Work, in units.
     progress : callable
         Told what is being done.
     """
@@ -155,7 +155,7 @@ def enclose(
     found, pose = find_largest(robot, quantity, workspace)
     wanted = goal(found)
     # What a pose exceeds is not shown of boxes either, however long they are halved.
-    deadline = monotonic() + budget if found <= wanted else -inf
+    allowance = Allowance(budget if found <= wanted else 0.0, fuse=Fuse.of(budget))
 
     def bound(boxes: Boxes) -> tuple[Floats, Floats]:
         return quantity.over(robot, boxes, wanted)
@@ -167,5 +167,7 @@ def enclose(
         quantity,
         found,
         pose,
-        cover(cut(*box_of(workspace), quantity.widest), bound, wanted, deadline, told),
+        cover(
+            cut(*box_of(workspace), quantity.widest), bound, wanted, allowance, quantity.work, told
+        ),
     )

@@ -29,6 +29,13 @@ class AbstractQuantity(ABC):
     order: ClassVar[int] = 1
     # How wide a box is at most at the first look: larger ones show nothing.
     widest: ClassVar[tuple[float, float, float]] = (0.041, 0.04, 0.011)
+    # Work of enclosing a batch of boxes, and of each of them.
+    per_batch: ClassVar[float] = 0.15
+    per_box: ClassVar[float] = 1.5e-4
+
+    def work(self, boxes: int) -> float:
+        """Return the work of enclosing a batch of so many boxes, in units."""
+        return self.per_batch + self.per_box * boxes
 
     @abstractmethod
     def forms(self, links: Links) -> list[Matrix]:
@@ -127,6 +134,8 @@ class VelocityTorques(AbstractQuantity):
     unit = "N*m*s^2/rad^2"
     order = 2
     widest = (0.0205, 0.02, 0.0055)
+    per_batch = 1.3
+    per_box = 9e-4
 
     def forms(self, links: Links) -> list[Matrix]:
         """Return the matrix of the quadratic form of each torque."""

@@ -3,11 +3,12 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import count
 
 import numpy as np
 import pytest
 
-from nrs_design.errors import DesignError, PoseError
+from nrs_design.errors import ClockError, DesignError, PoseError
 from nrs_design.models.robot import (
     Space,
     bounds_document,
@@ -26,6 +27,7 @@ from nrs_design.models.robot.enclosure.quantities import (
     VelocityTorques,
 )
 from nrs_design.spec.robot_bounds import content_id
+from nrs_design.work import Allowance, Fuse
 from tests.support import ROOT
 
 QUANTITIES = {
@@ -151,6 +153,35 @@ def test_a_goal_below_the_truth_is_never_reached():
         cover(whole, bound, 0.99, progress=stop)
 
 
+@pytest.mark.parametrize("pace", [0.0, 1e-3, 1.0])
+def test_work_ends_a_cover_at_the_same_boxes_whatever_the_clock_says(pace):
+    ticks = (pace * tick for tick in count())
+
+    def bound(boxes):
+        return boxes.high[0], np.zeros(boxes.count, dtype=int)
+
+    def covered(work):
+        fuse = Fuse(1e3, clock=lambda: next(ticks))
+        whole = cut(np.zeros(3), np.ones(3), (1.0, 1.0, 1.0))
+        return cover(whole, bound, 0.5, Allowance(work, fuse=fuse), lambda boxes: 1.0 + boxes)
+
+    # Two units for the whole, then three for its halves; a third round has but one box.
+    assert [covered(work).boxes.count for work in (1.9, 2.0, 4.9, 5.0)] == [1, 2, 2, 3]
+    assert not covered(5.0).reached
+
+
+def test_a_cover_that_the_clock_stops_shows_nothing():
+    ticks = count(0, 400)
+    whole = cut(np.zeros(3), np.ones(3), (1.0, 1.0, 1.0))
+    with pytest.raises(ClockError, match="the clock stopped this"):
+        cover(
+            whole,
+            lambda boxes: (np.full(boxes.count, np.inf), np.zeros(boxes.count, dtype=int)),
+            0.5,
+            Allowance(fuse=Fuse(1e3, clock=lambda: float(next(ticks)))),
+        )
+
+
 @pytest.mark.slow
 def test_inertia_over_a_small_workspace(robot):
     shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: 1.05 * found)
@@ -160,7 +191,7 @@ def test_inertia_over_a_small_workspace(robot):
 
 
 @pytest.mark.slow
-def test_time_that_is_over_shows_nothing(robot):
+def test_work_that_does_not_suffice_shows_nothing(robot):
     shown = enclose(robot, Inertia(), SPACE.workspace, lambda found: found, budget=0.0)
     assert not shown.cover.reached
     assert shown.bound == np.inf

@@ -1,0 +1,310 @@
+"""Plant, controllers, contacts and closed loops of one axis as A, B, C and D, with units.
+
+All are in continuous time and at nominal values. A closed loop is the feedback of the parts beside
+it and of nothing else, so whoever has the parts can build it again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.linear_form import coordinates, zero
+from nrs_design.models.plant import Plant
+
+Matrix = NDArray[np.float64]
+Rows = Sequence[Sequence[Fraction]]
+UNITS = {"velocity": "rad/s", "position": "rad"}
+FORCE = "N*m"
+
+
+@dataclass(frozen=True, slots=True)
+class LinearPart:
+    """A linear system with one input.
+
+    Parameters
+    ----------
+    name : str
+        What it is.
+    A, B, C, D : array
+        ``x' = A x + B u``, ``y = C x + D u``; shapes (n, n), (n, 1), (m, n), (m, 1).
+    input : (str, str)
+        Name and unit of u.
+    outputs : tuple of (str, str)
+        Name and unit of each y.
+    """
+
+    name: str
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+    input: tuple[str, str]
+    outputs: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class LinearParts:
+    """All of one axis.
+
+    Parameters
+    ----------
+    actuator, motion_loop : LinearPart
+        From the command of the motor to the position, and from commanded to measured motion.
+    controllers : tuple of LinearPart
+        From the force that a law gets to what it adds to the command.
+    force_filter : LinearPart or None
+        Through which the laws get the force.
+    contacts : tuple of LinearPart
+        What is touched, from motion to force.
+    loops : tuple of LinearPart
+        Of each controller at each contact: a torque that acts on the sensor beside that of the
+        contact makes a motion and a torque of the contact. States are those of the motion loop, the
+        contact, the filter and the controller.
+    left_out : tuple of str
+        Which loops are not there, and why.
+    """
+
+    actuator: LinearPart
+    motion_loop: LinearPart
+    controllers: tuple[LinearPart, ...]
+    force_filter: LinearPart | None
+    contacts: tuple[LinearPart, ...]
+    loops: tuple[LinearPart, ...]
+    left_out: tuple[str, ...]
+
+
+def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:
+    """Return plant, controllers, contacts and closed loops at nominal values.
+
+    Parameters
+    ----------
+    plant : Plant
+        One whose motor what is touched acts on (`load_inertia`) has no loops made of these parts.
+    design : ControllerDesign
+        The gains that ship.
+    """
+    actuator, motion = _plant_parts(plant, design)
+    low_pass, loops = design.sensor.filter, tuple(_loops(plant, design))
+    return LinearParts(
+        actuator,
+        motion,
+        tuple(_controller_part(item) for item in design.controllers),
+        None if low_pass is None else _filter_part(low_pass),
+        tuple(_contacts(plant, design)),
+        loops,
+        tuple(_left_out(plant, design, {loop.name for loop in loops})),
+    )
+
+
+def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, LinearPart]:
+    """Return the actuator, and the closed motion loop from commands to motions.
+
+    Parameters
+    ----------
+    plant : Plant
+        At its nominal values, and not loaded by what is touched.
+    design : ControllerDesign
+        The gains that ship.
+    """
+    Km, tau, motion = plant.actuator.gain, plant.actuator.time_constant, design.motion
+    loop = plant.motion_loop(motion.Kp, motion.Kd)
+    command, _, _ = design.units[motion.name]["Kp"].partition("/")
+    return (
+        _of_transfer(
+            "actuator",
+            (Km,),
+            (tau, Fraction(1), Fraction(0)),
+            ("command", command),
+            ("position", "rad"),
+        ),
+        _of_transfer(
+            "motion_loop",
+            loop.numerator,
+            loop.denominator,
+            # Of velocities to velocities, and likewise of positions to positions.
+            ("command", "rad/s or rad"),
+            ("motion", "rad/s or rad"),
+        ),
+    )
+
+
+def _controller_part(controller: Controller) -> LinearPart:
+    """Return a law, from the force that it gets to what it adds to the command.
+
+    Where it has a spring, the offset q that the spring acts on is a state.
+    """
+    law = controller.law
+    own, spring = len(law.states), law.spring
+    size = own + (spring != 0) + 1
+    forms = coordinates(size)
+    force = list(forms[-1])
+    if spring:
+        force[own] -= spring
+    command, rates = law.respond(force, forms[:own])
+    if spring:
+        rates = [*rates, [-entry for entry in command]]
+    return _of_rows(
+        controller.name, rates, command, ("force", FORCE), (law.commands, UNITS[law.commands])
+    )
+
+
+def _filter_part(low_pass: LowPass) -> LinearPart:
+    """Return the filter of the force, from the force to what the laws get."""
+    forms = coordinates(low_pass.order + 1)
+    felt, rates = low_pass.respond(forms[-1], forms[:-1])
+    return _of_rows("force_filter", rates, felt, ("force", FORCE), ("filtered_force", FORCE))
+
+
+def _contact_part(name: str, contact: AbstractLinearLaw, motion: str) -> LinearPart | None:
+    """Return what is touched, from motion to force; None if that is not proper.
+
+    Parameters
+    ----------
+    name : str
+        Of the environment.
+    contact : AbstractLinearLaw
+        At fixed parameters.
+    motion : {"velocity", "position"}
+        What the controller commands.
+    """
+    if contact.has_mass:
+        return None
+    own, output = len(contact.states), ("contact_force", FORCE)
+    if motion == "velocity":
+        forms = coordinates(own + 1)
+        force, rates = contact.react(forms[-1], forms[:-1])
+        return _of_rows(name, rates, force, ("velocity", "rad/s"), output)
+    # Of a position: a spring alone, whose force does not take the velocity.
+    damped, _ = contact.react(coordinates(1)[0], [zero(1)] * own)
+    if own > 1 or any(damped):
+        return None
+    force, _ = contact.react(zero(1), coordinates(1))
+    return _of_rows(name, [], force, ("position", "rad"), output)
+
+
+def _loops(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
+    """Yield the closed loop of each controller at each contact, as far as it is made of the parts.
+
+    The input is a torque that acts on the sensor beside that of the contact; outputs are the motion
+    and the torque of the contact. States are those of the motion loop, the contact, the filter of
+    the force and the controller.
+
+    Parameters
+    ----------
+    plant : Plant
+        One whose motor what is touched acts on (`load_inertia`) has no such loops.
+    design : ControllerDesign
+        The gains that ship.
+    """
+    if plant.load_inertia is not None:
+        return
+    motion, low_pass = _plant_parts(plant, design)[1], design.sensor.filter
+    for controller in design.controllers:
+        law = _controller_part(controller)
+        kind = law.outputs[0][0]
+        if low_pass is not None:
+            law = _in_series(_filter_part(low_pass), law)
+        for environment in plant.among(controller.contacts):
+            contact = _contact_part(environment.name, environment.nominal, kind)
+            if contact is not None:
+                name = f"{controller.name}/{environment.name}"
+                yield _closed(name, motion, contact, law, kind)
+
+
+def _contacts(plant: Plant, design: ControllerDesign) -> Iterator[LinearPart]:
+    """Yield each environment that is touched, by what the controllers at it command."""
+    for environment in plant.environments:
+        kinds = {c.law.commands: None for c in design.controllers if environment.name in c.contacts}
+        parts = (_contact_part(environment.name, environment.nominal, kind) for kind in kinds)
+        yield from (part for part in parts if part is not None)
+
+
+def _left_out(plant: Plant, design: ControllerDesign, there: set[str]) -> Iterator[str]:
+    """Yield why a closed loop is not there."""
+    if plant.load_inertia is not None:
+        yield "all: what is touched acts on the motor, which the motion loop here does not know"
+        return
+    for controller in design.controllers:
+        for environment in plant.among(controller.contacts):
+            if (name := f"{controller.name}/{environment.name}") not in there:
+                yield f"{name}: its force takes more than the motion that is commanded"
+
+
+def _closed(
+    name: str, motion: LinearPart, contact: LinearPart, law: LinearPart, kind: str
+) -> LinearPart:
+    """Return ``y = M u``, ``F = E y``, ``u = K (F + f)`` from f to (y, F); M is strictly proper."""
+    m, e, k = (len(part.A) for part in (motion, contact, law))
+    size = m + e + k
+    x = np.eye(size + 1)
+    xm, xe, xk, f = x[:m], x[m : m + e], x[m + e : size], x[size:]
+    y = motion.C @ xm
+    force = contact.C @ xe + contact.D @ y
+    felt = force + f
+    u = law.C @ xk + law.D @ felt
+    rates = np.vstack(
+        [
+            motion.A @ xm + motion.B @ u,
+            contact.A @ xe + contact.B @ y,
+            law.A @ xk + law.B @ felt,
+        ]
+    )
+    said = np.vstack([y, force])
+    return LinearPart(
+        name,
+        rates[:, :size],
+        rates[:, size:],
+        said[:, :size],
+        said[:, size:],
+        ("force", FORCE),
+        ((kind, UNITS[kind]), ("contact_force", FORCE)),
+    )
+
+
+def _in_series(first: LinearPart, second: LinearPart) -> LinearPart:
+    zeros = np.zeros((len(first.A), len(second.A)))
+    return LinearPart(
+        second.name,
+        np.block([[first.A, zeros], [second.B @ first.C, second.A]]),
+        np.vstack([first.B, second.B @ first.D]),
+        np.hstack([second.D @ first.C, second.C]),
+        second.D @ first.D,
+        first.input,
+        second.outputs,
+    )
+
+
+def _of_rows(
+    name: str, rates: Rows, output: Sequence[Fraction], given: tuple[str, str], out: tuple[str, str]
+) -> LinearPart:
+    """Return the system of rates and an output, each of all states and of the input at the end."""
+    size = len(output)
+    rows = np.zeros((size, size))
+    for index, row in enumerate([*rates, output]):
+        rows[index] = [float(entry) for entry in row]
+    A, B, C, D = rows[:-1, :-1], rows[:-1, -1:], rows[-1:, :-1], rows[-1:, -1:]
+    return LinearPart(name, A, B, C, D, given, (out,))
+
+
+def _of_transfer(
+    name: str,
+    numerator: Sequence[Fraction],
+    denominator: Sequence[Fraction],
+    given: tuple[str, str],
+    out: tuple[str, str],
+) -> LinearPart:
+    """Return the controllable canonical form of a strictly proper transfer function."""
+    n, leading = len(denominator) - 1, denominator[0]
+    A, B, C = np.eye(n, k=1), np.zeros((n, 1)), np.zeros((1, n))
+    A[-1] = [float(-c / leading) for c in reversed(denominator[1:])]
+    B[-1] = 1.0
+    C[0, : len(numerator)] = [float(c / leading) for c in reversed(numerator)]
+    return LinearPart(name, A, B, C, np.zeros((1, 1)), given, (out,))

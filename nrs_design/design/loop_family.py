@@ -1,0 +1,211 @@
+"""The open loops of many admittances in one contact, from a few assembled modes.
+
+`nrs_design.switched.cut_loop` gives the polynomials of a mode exactly. They are affine in the
+stiffness of the contact, and in two coordinates of the law, so those of three admittances at two
+stiffnesses are those of all. From here on it is floating point.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.design.loops import Loops
+from nrs_design.design.transfer import (
+    FloatArray,
+    hurwitz,
+    positive_roots,
+    product_parts,
+    squared_magnitude,
+)
+from nrs_design.models.contact import AbstractLinearLaw
+from nrs_design.switched.cut_loop import AbstractAxis, Place, ProcessorAxis
+
+# What the polynomials of a mode are called.
+_OPENED, _CLOSED, _FREE = "opened", "closed", "free"
+# A virtual mass in kg m^2 that is next to none.
+_LEAST = 1e-12
+
+
+@dataclass(frozen=True)
+class LoopFamily:
+    """The loops of all admittances with one spring, in contacts that differ in stiffness alone.
+
+    Parameters
+    ----------
+    axis : AbstractAxis
+        Whose modes they are.
+    contact : AbstractLinearLaw
+        Its own stiffness is not used.
+    spring : Fraction
+        Kt in N m/rad; zero is none.
+    place : Place
+        Of the motor, and the age of the force.
+    """
+
+    axis: AbstractAxis
+    contact: AbstractLinearLaw
+    spring: Fraction
+    place: Place
+
+    def loops(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
+        """Return the open loops, cut where the law takes the force.
+
+        Parameters
+        ----------
+        Mt, Bt : ndarray, shape (n,)
+            Virtual masses in kg m^2 and dampings in N m s/rad.
+        stiffness : ndarray, shape (n,), or float
+            Of the contact, N m/rad.
+        """
+        return self._loops(_OPENED, Mt, Bt, stiffness)
+
+    def felt(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
+        """Return the open loops of who holds the robot, cut where the force acts on it.
+
+        Parameters
+        ----------
+        Mt, Bt, stiffness
+            As for `loops`.
+        """
+        return self._loops(_FREE, Mt, Bt, stiffness)
+
+    def stiffness_limit(self, Mt: float, Bt: float) -> float:
+        """Return the largest stiffness up to which the closed loop is stable throughout.
+
+        The characteristic polynomial is ``A + k B``: a root can reach the right half plane only
+        across the imaginary axis, so the limit is the smallest positive ``k = -A/B`` that is real
+        there. None crosses at zero, where a positive k only adds to what is positive.
+
+        Parameters
+        ----------
+        Mt, Bt : float
+            kg m^2 and N m s/rad; Mt may be zero.
+
+        Returns
+        -------
+        float
+            In N m/rad: infinite if no stiffness destabilizes the loop, 0 if the loop is unstable
+            however soft the contact is.
+        """
+        one = np.array([Mt]), np.array([Bt])
+        free, contact = (self._polynomials(_CLOSED, *one)[i][0] for i in (0, 1))
+        real, imaginary = product_parts(free.tolist(), contact.tolist())
+        x = positive_roots(imaginary)
+        critical = -np.polyval(real, x) / np.polyval(squared_magnitude(contact.tolist()), x)
+        ends = [-free[0] / contact[0]] if contact[0] else []
+        limit = min((float(k) for k in (*critical, *ends) if k > 0), default=math.inf)
+        probe = limit / 2 if math.isfinite(limit) else 1.0
+        return limit if bool(hurwitz(free + probe * contact)) else 0.0
+
+    def over_admittance(self, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return numerator and denominator of what the velocity of the law makes of the force.
+
+        That is ``1/(H Y)``, in s or what stands for it. Sampled, a delay is left out, whose
+        magnitude is 1, and there is no spring.
+
+        Parameters
+        ----------
+        Mt, Bt
+            As for `loops`.
+        """
+        n = len(Mt)
+        if not isinstance(self.axis, ProcessorAxis):
+            low_pass = getattr(self.axis, "low_pass", None)
+            lags = (1.0,) if low_pass is None else low_pass.denominator
+            spring = [np.full(n, float(self.spring))] if self.spring else []
+            law = np.stack([Mt, Bt, *spring], axis=1)
+            rows = np.array([np.convolve(row, lags) for row in law])
+            return rows, np.tile((1.0, 0.0) if self.spring else (1.0,), (n, 1))
+        half, (a, b) = float(self.axis.period) / 2, self._coordinates(Mt, Bt)
+        factors = [np.ones((n, 1))]
+        if Mt.any():
+            factors.append(np.stack([(1 + a) * half, 1 - a], axis=1))
+        if self.axis.low_pass is not None:
+            lag = self.axis.low_pass.sampled(self.axis.period)
+            p, q = float(lag.p), float(lag.q)
+            factors += lag.order * [np.tile(((1 + p) * half / q, (1 - p) / q), (n, 1))]
+        above, below = factors[0] / b[:, None], np.ones(1)
+        for factor in factors[1:]:
+            above = np.array([np.convolve(*rows) for rows in zip(above, factor, strict=True)])
+            below = np.convolve(below, (half, 1.0))
+        return above, np.tile(below, (n, 1))
+
+    def _loops(
+        self, cut: str, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float
+    ) -> Loops:
+        k = np.broadcast_to(np.asarray(stiffness, np.float64), Mt.shape)[:, None]
+        denominator, numerator = (
+            held + k * grown
+            for held, grown in (self._polynomials(name, Mt, Bt) for name in (cut, f"from {cut}"))
+        )
+        period = self.axis.period
+        return Loops(numerator, denominator, None if period is None else float(period))
+
+    def _polynomials(
+        self, name: str, Mt: FloatArray, Bt: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return those at no stiffness, and what 1 N m/rad adds."""
+        p, q = self._coordinates(Mt, Bt)
+        held, grown = (
+            rows[0] + np.multiply.outer(p, rows[1]) + np.multiply.outer(q, rows[2])
+            for rows in (self._inert if Mt.any() else self._static)[name]
+        )
+        return held, grown
+
+    def _coordinates(self, Mt: FloatArray, Bt: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return in what the polynomials are affine: as the processor holds it, if there is one."""
+        if not isinstance(self.axis, ProcessorAxis):
+            return Mt, Bt
+        T, method = float(self.axis.period), self.axis.sampling.admittance
+        if not Mt.any():
+            return np.zeros_like(Bt), _single(1 / Bt)
+        # Beside others, one without inertia counts as one that has next to none.
+        Mt = np.maximum(Mt, _LEAST)
+        if method == "euler":
+            return _single(1 - Bt * T / Mt), _single(T / Mt)
+        return _single(np.exp(-Bt * T / Mt)), _single(-np.expm1(-Bt * T / Mt) / Bt)
+
+    @cached_property
+    def _inert(self) -> dict[str, FloatArray]:
+        return self._basis(inert=True)
+
+    @cached_property
+    def _static(self) -> dict[str, FloatArray]:
+        return self._basis(inert=False)
+
+    def _basis(self, *, inert: bool) -> dict[str, FloatArray]:
+        """Return the polynomials by name, shape (2, 3, n): at no stiffness and of 1 N m/rad."""
+        made = [
+            self.axis.admittances(
+                self.contact.at_stiffness(Fraction(k)), self.spring, self.place, inert=inert
+            )
+            for k in (1, 2)
+        ]
+        exact = {
+            name: np.array(
+                [[getattr(loop, name) for loop in three] for three in made], dtype=object
+            )
+            for name in (_OPENED, _FREE, _CLOSED)
+        }
+        for cut in (_OPENED, _FREE):
+            exact[f"from {cut}"] = exact[_CLOSED] - exact[cut]
+        return {name: _affine(values) for name, values in exact.items()}
+
+
+def _affine(values: NDArray[np.object_]) -> FloatArray:
+    """Return the parts of what is affine in a stiffness of 1 and 2, and in `COORDINATES`."""
+    unit, first, second = values[:, 0], values[:, 1], values[:, 2]
+    p, q = first - unit, second - unit
+    parts = np.stack([unit - 2 * (p + q), p, q], axis=1)
+    return np.stack([2 * parts[0] - parts[1], parts[1] - parts[0]]).astype(np.float64)
+
+
+def _single(values: FloatArray) -> FloatArray:
+    """Round to single precision."""
+    return values.astype(np.float32).astype(np.float64)

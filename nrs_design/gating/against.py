@@ -1,0 +1,220 @@
+"""What became weaker than in a base, such as the branch that a pull request wants to change.
+
+A gate shows that what specs say is proved. Who asks for less passes it more easily, so this is
+looked at by itself. The base is another folder with the same paths; it is only read.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+from nrs_design import __version__
+from nrs_design.errors import NrsDesignError
+from nrs_design.gating.find_specs import find_specs
+from nrs_design.gating.lock import LockedSpec, read_lock_if_any
+from nrs_design.gating.obligations import (
+    BaseChanges,
+    Caution,
+    GateOutcome,
+    Obligation,
+    SpecOutcome,
+    Status,
+)
+from nrs_design.gating.places import Places
+from nrs_design.gating.recorded import hash_recorded
+from nrs_design.gating.rules import NOT_WEAKER
+from nrs_design.spec import LoadedSpec, read_spec
+from nrs_design.spec.document import to_data
+from nrs_design.spec.weaker import Change, find_changes
+
+_GONE = "this spec of the base is gone: what it asked for is not shown any more"
+# Verdicts, from the one that shows most.
+_VERDICTS = ("proved", "inconclusive", "refuted")
+
+
+def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
+    """Return where the paths of this folder are in the base; those that are not there are left out.
+
+    Raises
+    ------
+    NrsDesignError
+        If the base is no folder, or a path is not below this one.
+    """
+    if not base.is_dir():
+        remedy = "name a checkout of the base branch"
+        raise NrsDesignError("is not a folder", path=base, remedy=remedy)
+    if os.path.realpath(base) == os.path.realpath("."):
+        raise NrsDesignError("is this folder itself", path=base, remedy="name another checkout")
+    relative = [Path(os.path.relpath(path)) for path in paths]
+    if outside := [path for path in relative if path.parts[:1] == ("..",) or path.is_absolute()]:
+        raise NrsDesignError(
+            "is not below the working folder, so its place in the base is not known",
+            path=outside[0],
+            remedy="run the command where the paths begin in both folders",
+        )
+    return tuple(base / path for path in relative if os.path.lexists(base / path))
+
+
+def compare_with_base(
+    outcome: GateOutcome, paths: Sequence[Path], base: Path, lock: Path
+) -> GateOutcome:
+    """Add what is weaker as obligations that are not fulfilled, and list what else has changed.
+
+    Parameters
+    ----------
+    outcome : GateOutcome
+        Of the specs here.
+    paths : sequence of Path
+        That were named.
+    base : Path
+        The other folder.
+    lock : Path
+        Lock file here; that of the base is at the same place there.
+
+    Raises
+    ------
+    NrsDesignError
+        If the base cannot be read.
+    """
+    there = find_specs_if_any(base_paths(paths, base))
+    entries = _locked(base, lock)
+    here = {Path(os.path.relpath(spec.path)): spec for spec in outcome.specs}
+    found: dict[Path, list[Change]] = {}
+    gone: list[SpecOutcome] = []
+    for path in there:
+        name = Path(os.path.relpath(path, base))
+        now = here.get(name) or _moved(path, there, base, outcome)
+        if now is None:
+            gone.append(_gone(name))
+            continue
+        entry = entries.get(os.path.normpath(name))
+        if os.path.lexists(now.path):
+            found[now.path] = [*_of_spec(path, now), *_of_lock(entry, now)]
+        else:
+            # It is an outcome, since the lock file here names it still.
+            found[now.path] = [Change((), _GONE, True)]
+    specs = [_with(spec, found.get(spec.path, ())) for spec in outcome.specs]
+    weaker = sum(change.weaker for changes in found.values() for change in changes) + len(gone)
+    others = tuple(
+        _caution(spec, change)
+        for spec in outcome.specs
+        for change in found.get(spec.path, ())
+        if not change.weaker
+    )
+    return replace(outcome, specs=(*specs, *gone), changes=BaseChanges(base, weaker, others))
+
+
+def find_specs_if_any(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """List the specs of files and folders; a folder may have none."""
+    found: list[Path] = []
+    for path in paths:
+        try:
+            found += find_specs([path])
+        except NrsDesignError as error:
+            # That of a folder without specs; what cannot be read is another.
+            if type(error) is not NrsDesignError:
+                raise
+    return tuple(dict.fromkeys(found))
+
+
+def _locked(base: Path, lock: Path) -> dict[str, LockedSpec]:
+    """Return what the base has locked, by path from its root."""
+    file = base / os.path.relpath(lock)
+    folder = Path(os.path.relpath(lock)).parent
+    entries = read_lock_if_any(file).specs
+    return {os.path.normpath(folder / entry.path): entry for entry in entries}
+
+
+def _moved(
+    path: Path, there: Sequence[Path], base: Path, outcome: GateOutcome
+) -> SpecOutcome | None:
+    """Return the spec here that has the name of one of the base and is not at a place of it."""
+    known = {os.path.normpath(os.path.relpath(other, base)) for other in there}
+    name = _name_of(path)
+    for spec in outcome.specs:
+        new = os.path.normpath(os.path.relpath(spec.path)) not in known
+        if new and name is not None and name == _name_of(spec.path):
+            return spec
+    return None
+
+
+def _name_of(path: Path) -> str | None:
+    try:
+        return read_spec(path).spec.name
+    except NrsDesignError:
+        return None
+
+
+def _gone(name: Path) -> SpecOutcome:
+    return SpecOutcome(name, (Obligation(NOT_WEAKER, name, "spec", Status.MISSED, _GONE),))
+
+
+def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
+    """Yield in what the spec of the base differs from the one here."""
+    try:
+        after = read_spec(now.path)
+    except NrsDesignError:
+        # Said already, as what is wrong with this spec.
+        return
+    try:
+        before = read_spec(path)
+    except NrsDesignError as error:
+        yield Change((), f"cannot be compared: that of the base cannot be read ({error})", True)
+        return
+    changes = tuple(find_changes(to_data(before.root), to_data(after.root)))
+    yield from changes
+    if not changes and before.sha256 != after.sha256:
+        yield Change(("coupling",), "the bounds of its robot are others", True)
+    yield from _of_recorded(before, after)
+
+
+def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
+    """Yield the files of commands that are others: a limit may be easy to keep in another run."""
+    was, now = hash_recorded(before), hash_recorded(after)
+    for name in was.keys() & now.keys():
+        if was[name] != now[name]:
+            yield Change(("scenarios",), f"the commands in {name} are others", False)
+
+
+def _of_lock(entry: LockedSpec | None, now: SpecOutcome) -> Iterator[Change]:
+    """Yield what is less than the base has locked: verdict and rate; and other versions."""
+    if entry is None:
+        return
+    if now.verdict is None or _VERDICTS.index(now.verdict) > _VERDICTS.index(entry.verdict):
+        yield Change((), f"{entry.verdict} before, {now.verdict or 'without a verdict'} now", True)
+    if entry.rate is not None and now.rate is not None and entry.rate != now.rate:
+        change = Fraction(now.rate) - Fraction(entry.rate)
+        slower = change < 0 if now.rate_name == "alpha" else change > 0
+        yield Change((), f"certified rate {entry.rate} before, {now.rate} now", slower)
+    if entry.version != __version__:
+        message = f"designed by nrs-design {entry.version} before, {__version__} now"
+        yield Change((), message, False)
+
+
+def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
+    """Return a spec with an obligation for each thing that is weaker, at its place."""
+    broken = []
+    for change in changes:
+        if change.weaker:
+            caution = _caution(spec, change)
+            where = ".".join(map(str, change.at)) or "spec"
+            status = Status.MISSED
+            broken.append(
+                Obligation(
+                    *(NOT_WEAKER, spec.path, where, status, caution.message),
+                    *(caution.line, caution.column),
+                )
+            )
+    return replace(spec, obligations=(*spec.obligations, *broken))
+
+
+def _caution(spec: SpecOutcome, change: Change) -> Caution:
+    try:
+        place = Places(read_spec(spec.path)).at(*change.at)
+    except NrsDesignError:
+        return Caution(spec.path, change.message, 1, 1)
+    return Caution(spec.path, change.message, place.line, place.column)

@@ -1,0 +1,115 @@
+"""What the controller managers of a parameter file run, and what of it nobody decides."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+
+from nrs_design.ros2.law import TYPE
+from nrs_design.ros2.parameters import RosNode, texts
+from nrs_design.spec.document import Position
+
+MANAGER = "controller_manager"
+# Types of ros2_controllers that publish what they read: none of them moves a robot.
+SILENT = frozenset(
+    {
+        "battery_state_broadcaster/BatteryStateBroadcaster",
+        "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster",
+        "gps_sensor_broadcaster/GPSSensorBroadcaster",
+        "imu_sensor_broadcaster/IMUSensorBroadcaster",
+        "joint_state_broadcaster/JointStateBroadcaster",
+        "magnetometer_broadcaster/MagnetometerBroadcaster",
+        "pose_broadcaster/PoseBroadcaster",
+        "range_sensor_broadcaster/RangeSensorBroadcaster",
+        "state_interfaces_broadcaster/StateInterfacesBroadcaster",
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PassedOver:
+    """What a file names beside the controllers that are decided.
+
+    Parameters
+    ----------
+    name : str
+        Of the node, or of the controller that a manager runs.
+    position : Position
+        Where it stands.
+    why : str
+        What it is, and what is missing.
+    silent : bool
+        Whether it commands nothing.
+    """
+
+    name: str
+    position: Position
+    why: str
+    silent: bool
+
+
+def managers_of(node: RosNode, nodes: Collection[RosNode]) -> list[RosNode]:
+    """Return the controller managers in the namespace of a node, or all.
+
+    Parameters
+    ----------
+    node : RosNode
+        The node.
+    nodes : collection of RosNode
+        All nodes of the file.
+    """
+    managers = [n for n in nodes if n.base_name == MANAGER]
+    return [n for n in managers if n.namespace == node.namespace] or managers
+
+
+def kind_of(node: RosNode, nodes: Collection[RosNode]) -> str | None:
+    """Return the type of a controller, as its manager or the node itself says.
+
+    Parameters
+    ----------
+    node : RosNode
+        The node.
+    nodes : collection of RosNode
+        All nodes of the file.
+    """
+    own = texts(node.values["type"]) if "type" in node.values else None
+    listed = _types(managers_of(node, nodes)).get(node.base_name)
+    return listed or (own[0].text if own else None)
+
+
+def find_undecided(
+    nodes: Collection[RosNode], decided: Collection[RosNode]
+) -> Iterator[PassedOver]:
+    """Yield whatever may be a controller, and is none of those that are decided.
+
+    Parameters
+    ----------
+    nodes : collection of RosNode
+        All nodes of the file.
+    decided : collection of RosNode
+        Those that are decided.
+    """
+    for node in nodes:
+        if node not in decided and node.base_name != MANAGER and "*" not in node.base_name:
+            kind = kind_of(node, nodes)
+            why = "nothing in this file says of which type it is"
+            if kind is not None:
+                why = f"no model of a controller of type {kind} is here"
+            yield PassedOver(node.name, node.position, why, kind in SILENT)
+    here = {node.base_name for node in nodes}
+    for manager in (node for node in nodes if node.base_name == MANAGER):
+        for name, kind in _types([manager]).items():
+            if name in here or (kind == TYPE and "**" in here):
+                continue
+            why = f"{manager.name} runs it as {kind}, and no node of this name is here"
+            yield PassedOver(name, manager.place(f"{name}.type"), why, kind in SILENT)
+
+
+def _types(managers: Iterable[RosNode]) -> dict[str, str]:
+    """Return the types of controllers, as their managers say."""
+    types: dict[str, str] = {}
+    for name, value in (pair for manager in managers for pair in manager.values.items()):
+        listed = texts(value)
+        if name.endswith(".type") and listed:
+            types[name.removesuffix(".type")] = listed[0].text
+    return types

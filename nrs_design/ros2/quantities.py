@@ -1,0 +1,12 @@
+"""What is asked about a robot: each kind with an example, which its option takes as it stands."""
+
+from __future__ import annotations
+
+from nrs_design.spec.quantity import QuantityKind
+
+STIFFNESS = QuantityKind("a stiffness for translations", ("N/m",), "200..2000 N/m")
+ROTATIONAL = QuantityKind("a stiffness for rotations", ("N*m/rad",), "5..40 N*m/rad")
+LAG = QuantityKind("a time", ("s",), "5..20 ms")
+# Endings of a rate, which is per second without one, too.
+RATE_UNITS = (" 1/s", "Hz")
+RATE = "--rate '500 1/s'"

@@ -1,0 +1,257 @@
+"""Search for a motion that grows while contact is lost and made as the motion itself says.
+
+Many motions are simulated at once, each with its own way to choose among the modes that the signs
+of the moment allow: always the same, the one that makes it largest, or any. Where one of them comes
+back to its direction and is larger, what it was in since is a sequence to propose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import groupby, islice, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.enclosure import characteristic_sign, precision
+from nrs_design.proof.evidence import UnstableContact, UnstableMode
+from nrs_design.proof.evidence.unstable_contact import product as product_of
+from nrs_design.proof.evidence.unstable_mode import free_motions
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.balance import scale_states
+from nrs_design.search.candidates import Candidate, Candidates
+from nrs_design.search.family import Family, stand_ins, to_floats
+from nrs_design.search.unstable_mode import unstable_modes
+from nrs_design.work import Cost
+
+Array = NDArray[np.float64]
+Steps = tuple[tuple[str, int], ...]
+
+NOTHING_GROWS = "no sequence of contact and flight that was tried grows and keeps its signs"
+# How many motions are followed, for how many steps, and how long sequences may get.
+MOTIONS, LENGTH, LONGEST = 192, 480, 160
+# Of the motions, those that keep to one mode in contact and one free, and those that are greedy.
+PAIRS, GREEDY = 96, 48
+# How often others choose at random.
+SHARE = 0.1
+# When a direction has come back, and how many sequences are looked at closely.
+NEAR, LOOKS, PROPOSED = 0.9, 400, 8
+# What is at rest in the air begins anew.
+AT_REST = 1e-9
+# An eigenvalue is sought so near to the one of floating point, and enclosed with so many halvings.
+AROUND, HALVINGS = 1e-7, 120
+
+
+def examine_free_motion(family: Family) -> Candidates[UnstableMode]:
+    """Test exactly every mode of free motion, without the deflection."""
+    return (yield from unstable_modes(free_motions(family.system), family))
+
+
+def search_contact(family: Family) -> Candidates[UnstableContact]:
+    """Search for a mode that pushes in and grows, and for sequences of contact and flight.
+
+    Raises
+    ------
+    NotAffordableError
+        If time or memory do not suffice.
+    """
+    loop = _Loop.of(family)
+    for mode in range(len(loop.names)):
+        yield from loop.candidates([mode])
+    if family.system.time is Time.CONTINUOUS:
+        return "no mode has a real eigenvalue along which it grows and pushes in"
+    size = loop.matrices[0].size
+    family.allowance.take(
+        Cost(2e-8 * MOTIONS * LENGTH * len(loop.names) * size, 64.0 * MOTIONS * LENGTH * size),
+        "simulating the loss of contact",
+    )
+    found = (c for sequence in islice(loop.sequences(), LOOKS) for c in loop.candidates(sequence))
+    yield from islice(found, PROPOSED)
+    return NOTHING_GROWS
+
+
+@dataclass(frozen=True, slots=True)
+class _Loop:
+    """The modes in floating point, where each may be in force, and the forces.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The exact one.
+    names : tuple of str
+        Of the modes that differ.
+    matrices : ndarray, shape (m, n, n)
+        Scaled.
+    touching, flying : ndarray of bool, shape (m,)
+        Modes in which the environment acts, and those without it.
+    pulls : ndarray, shape (p, n)
+        Forces.
+    turns : ndarray of bool, shape (length of a round, m)
+        Which modes are on turn at each step.
+    """
+
+    system: SwitchedSystem
+    names: tuple[str, ...]
+    matrices: Array
+    touching: NDArray[np.bool_]
+    flying: NDArray[np.bool_]
+    pulls: Array
+    turns: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, family: Family) -> _Loop:
+        system, contact, flights = family.system, family.system.contact, family.system.flights
+        free: Sequence[Mode] = () if contact is None else contact.free
+        touching = {m.name for m in system.modes} if flights is None else {*flights.touching}
+        flying = {m.name for m in free} if flights is None else {*flights.flying}
+        first = frozenset(() if system.clock is None else system.clock.first)
+        kinds: dict[tuple[bool, ...], list[Mode]] = {}
+        for mode in (*system.modes, *free):
+            kind = tuple(mode.name in part for part in (touching, flying, first))
+            kinds.setdefault(kind, []).append(mode)
+        modes = [mode for group in kinds.values() for mode in _distinct(group)]
+        names = tuple(mode.name for mode in modes)
+        rows = [] if contact is None else contact.pulls
+        rows = rows if flights is None else flights.pulls
+        pulls = [np.ldexp(np.array(row.floats())[0], family.exponents) for row in rows]
+        turns = np.ones((1, len(names)), dtype=bool)
+        if system.clock is not None:
+            begins = np.array([name in first for name in names])
+            turns = np.array([begins, *[~begins] * (system.clock.length - 1)])
+        return cls(
+            system,
+            names,
+            scale_states(to_floats([mode.A for mode in modes]), family.exponents),
+            np.array([name in touching for name in names]),
+            np.array([name in flying for name in names]),
+            np.array(pulls).reshape(len(pulls), system.order),
+            turns,
+        )
+
+    def allowed(self, x: Array) -> NDArray[np.bool_]:
+        """Return which modes may be in force at states of shape (k, n); shape (k, m)."""
+        delta, forces = x[:, -1], x @ self.pulls.T
+        touches = (delta > 0) & (forces > 0).all(axis=1)
+        flies = (delta <= 0) | ((forces <= 0).all(axis=1) & bool(len(self.pulls)))
+        # Where some forces would pull and others push, either may be.
+        unclear = ~(touches | flies)[:, None]
+        felt = touches[:, None] & self.touching | flies[:, None] & self.flying
+        return felt | unclear | ~(self.touching | self.flying)
+
+    def sequences(self) -> Iterator[list[int]]:
+        """Yield what motions were in while they came back to their direction, larger."""
+        chosen, states, sizes = self._simulated()
+        round_ = len(self.turns)
+        # How much larger, by the motion and the number of steps since.
+        for end in range(LENGTH, LENGTH // 2, -max(1, LENGTH // 8)):
+            end -= end % round_
+            lengths = np.arange(round_, min(LONGEST, end) + 1, round_)
+            cosines = np.einsum("ki,lki->lk", states[end], states[end - lengths])
+            growth = sizes[end] - sizes[end - lengths]
+            growth = np.where(cosines > NEAR, growth / lengths[:, None], -np.inf)
+            order = np.argsort(-growth, axis=None)[: LOOKS // 4]
+            for place in order:
+                k, motion = np.unravel_index(place, growth.shape)
+                if growth[k, motion] > 0:
+                    yield _once([int(i) for i in chosen[end - lengths[k] : end, motion]])
+
+    def _simulated(self) -> tuple[NDArray[np.int64], Array, Array]:
+        """Return chosen modes, shape (steps, motions), directions and logarithms of sizes."""
+        rng = np.random.default_rng(0)
+        count, n = len(self.names), self.matrices.shape[1]
+        pairs = [*product(np.flatnonzero(self.touching), np.flatnonzero(self.flying))]
+        favoured = np.zeros((MOTIONS, count), dtype=bool)
+        for motion in range(PAIRS if pairs else 0):
+            favoured[motion, [*pairs[motion % len(pairs)]]] = True
+        random = np.arange(MOTIONS) >= PAIRS + GREEDY
+        x = rng.normal(size=(MOTIONS, n))
+        x /= np.linalg.norm(x, axis=1)[:, None]
+        chosen = np.zeros((LENGTH, MOTIONS), dtype=np.int64)
+        states, sizes = np.zeros((LENGTH + 1, MOTIONS, n)), np.zeros((LENGTH + 1, MOTIONS))
+        states[0] = x
+        for step in range(LENGTH):
+            images = np.einsum("mij,kj->kmi", self.matrices, x)
+            value = np.linalg.norm(images, axis=2)
+            value = np.where(favoured, np.inf, value)
+            guess = random[:, None] & (rng.uniform(size=(MOTIONS, 1)) < SHARE)
+            value = np.where(guess, rng.uniform(size=value.shape), value)
+            possible = self.allowed(x) & self.turns[step % len(self.turns)]
+            # Where no mode is on turn for these signs, any of the turn is followed.
+            possible |= ~possible.any(axis=1)[:, None] & self.turns[step % len(self.turns)]
+            chosen[step] = np.where(possible, value, -np.inf).argmax(axis=1)
+            x = images[np.arange(MOTIONS), chosen[step]]
+            size = np.linalg.norm(x, axis=1)
+            moving = np.column_stack([x[:, :-1], np.maximum(x[:, -1], 0)])
+            rests = ~(np.linalg.norm(moving, axis=1) > AT_REST * size)
+            x = np.where(rests[:, None], rng.normal(size=x.shape), x / size[:, None])
+            x /= np.linalg.norm(x, axis=1)[:, None]
+            sizes[step + 1] = np.where(rests, -np.inf, sizes[step] + np.log(size))
+            sizes[step + 1] = np.where(np.isfinite(sizes[step + 1]), sizes[step + 1], 0.0)
+            states[step + 1] = x
+        return chosen, states, sizes
+
+    def candidates(self, sequence: Sequence[int]) -> Iterator[Candidate[UnstableContact]]:
+        """Yield a sequence, for every eigenvalue that grows along a motion with its signs."""
+        M = self.matrices[sequence[0]]
+        for mode in sequence[1:]:
+            M = self.matrices[mode] @ M
+            M = M / max(np.abs(M).max(), 1e-300) if len(sequence) > LONGEST else M
+        if not np.isfinite(M).all():
+            return
+        limit = 1.0 if self.system.time is Time.DISCRETE else 0.0
+        values, vectors = np.linalg.eig(M)
+        for value, vector in zip(values, vectors.T, strict=True):
+            if abs(value.imag) > 1e-9 * abs(value) or not value.real > limit:
+                continue
+            v = vector.real
+            if any(self._keeps_signs(sequence, x) for x in (v, -v)):
+                steps = tuple((self.names[mode], len([*same])) for mode, same in groupby(sequence))
+                factor = _bracket(self.system, steps, float(value.real))
+                if factor is not None:
+                    yield Candidate(UnstableContact(steps, factor))
+
+    def _keeps_signs(self, sequence: Sequence[int], x: Array) -> bool:
+        for mode in sequence:
+            if not self.allowed(x[None])[0, mode]:
+                return False
+            x = self.matrices[mode] @ x
+            x = x / max(float(np.abs(x).max()), 1e-300)
+        return True
+
+
+def _once(sequence: list[int]) -> list[int]:
+    """Return what a sequence repeats."""
+    count = len(sequence)
+    return next(
+        sequence[:k]
+        for k in range(1, count + 1)
+        if count % k == 0 and sequence[:k] * (count // k) == sequence
+    )
+
+
+def _distinct(modes: Sequence[Mode]) -> list[Mode]:
+    """Return modes without those that differ by an enclosed number."""
+    named = stand_ins([mode.name for mode in modes], to_floats([mode.A for mode in modes]))
+    return [mode for mode in modes if named[mode.name] == mode.name]
+
+
+def _bracket(
+    system: SwitchedSystem, steps: Steps, value: float
+) -> tuple[Fraction, Fraction] | None:
+    """Enclose an eigenvalue between two near numbers; None if it is not where it was seen."""
+    limit = Fraction(system.time is Time.DISCRETE)
+    low = max(Fraction(value * (1 - AROUND)), limit)
+    high = Fraction(value * (1 + AROUND))
+    with precision():
+        M = product_of(system, steps)
+        below = characteristic_sign(M, low)
+        if below * characteristic_sign(M, high) >= 0:
+            return None
+        for _ in range(HALVINGS):
+            middle = (low + high) / 2
+            sign = characteristic_sign(M, middle)
+            low, high = (middle, high) if sign == below else (low, middle) if sign else (low, high)
+    return low, high

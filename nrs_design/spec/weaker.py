@@ -1,0 +1,233 @@
+"""In which places a spec asks for less, or takes more for granted, than another one did.
+
+The two are compared by what they say. That something is weaker is decided by rules about the kind
+of a place: a range that no longer covers the other, a limit of a goal, something that is not said
+any more. Of what no rule knows, only that it has changed is said: a motor of another gain is
+another motor, and neither more nor less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.errors import SpecError
+from nrs_design.proof.text import quoted
+from nrs_design.spec.document import Data
+from nrs_design.spec.exact import is_number, parse_exact
+from nrs_design.spec.quantity import Quantity, is_less
+
+# What is assumed of switching, and why a doubt does not count: with it, less is shown.
+_ASSUMED = frozenset(
+    {"dwell_time", "longest_dwell_time", "transitions", "mode_logic", "accept_doubt"}
+)
+# What a proof is not about: words for people, where values come from, how long is searched.
+_BESIDE = frozenset({"title", "description", "provenance", "certification", "design"})
+# Limits below which something must stay, and above which: of a goal, a scenario, a disturbance.
+_AT_MOST = frozenset({"peak_torque", "dwell_time"})
+_AT_LEAST = frozenset({"decay_rate", "delay", "initial_force", "longest_dwell_time"})
+# Places all of whose numbers are limits that must be kept, and all that must be borne.
+_LIMITS, _BORNE = "limits", "disturbances"
+# Of two words, the one that asks for more.
+_STRONGER = {"contact": "losable", "switching": "arbitrary", "varies": "true"}
+# Lists that say what may occur; whatever is left out is not shown.
+_SETS = frozenset({"contacts", "doubts"})
+# Ranges that stand alone, as lists of their ends.
+_RANGES = frozenset({"range", "delay"})
+
+Place = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One place where two specs differ.
+
+    Parameters
+    ----------
+    at : tuple of str or int
+        Keys that lead to it.
+    message : str
+        What has changed; one line.
+    weaker : bool
+        Whether less is asked for, or more taken for granted, than before. Otherwise, it is
+        stronger, or neither.
+    """
+
+    at: Place
+    message: str
+    weaker: bool
+
+
+def find_changes(before: Data, after: Data) -> Iterator[Change]:
+    """Yield where a spec differs from an earlier one.
+
+    Parameters
+    ----------
+    before, after : dict, tuple or str
+        What the files say, as `nrs_design.spec.document.to_data` gives it.
+    """
+    yield from _changes(before, after, ())
+
+
+def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
+    key = next((part for part in reversed(at) if isinstance(part, str)), "")
+    if before == after:
+        return
+    was, now = _range_of(before, key), _range_of(after, key)
+    two_values = isinstance(before, str) and isinstance(after, str)
+    if was is not None and now is not None and not two_values:
+        yield from _of_ranges(was, now, at, (_said(before), _said(after)))
+        if isinstance(before, dict) and isinstance(after, dict):
+            beside = {"range", "nominal"}
+            yield from _of_keys(_without(before, beside), _without(after, beside), at)
+    elif isinstance(before, dict) and isinstance(after, dict):
+        yield from _of_keys(before, after, at)
+    elif isinstance(before, tuple) and isinstance(after, tuple):
+        yield from _of_lists(before, after, at, key)
+    else:
+        weaker = _is_weaker(before, after, at)
+        yield Change(at, f"{_name(at)}: {_said(before)} before, {_said(after)} now", weaker)
+
+
+def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iterator[Change]:
+    for key, said in before.items():
+        here = (*at, key)
+        if key in after:
+            yield from _changes(said, after[key], here)
+        else:
+            weaker = key not in _ASSUMED and _BESIDE.isdisjoint(map(str, here))
+            yield Change(here, f"{_name(here)} is gone, {_said(said)} before", weaker)
+    for key, said in after.items():
+        if key not in before:
+            here = (*at, key)
+            weaker = key in _ASSUMED
+            yield Change(here, f"{_name(here)} is new: {_said(said)}", weaker)
+
+
+def _of_lists(
+    before: tuple[Data, ...], after: tuple[Data, ...], at: Place, key: str
+) -> Iterator[Change]:
+    """Compare lists: what may occur as sets, named items by name, others by place."""
+    if key == "transitions" or key in _SETS:
+        lost = [item for item in before if item not in after]
+        new = [item for item in after if item not in before]
+        for what, items in (("no longer has", lost), ("now has", new)):
+            for item in items:
+                yield Change(at, f"{_name(at)} {what} {_said(item)}", items is lost)
+        return
+    names = [_named(items) for items in (before, after)]
+    if names[0] and names[1]:
+        yield from _of_keys(names[0], names[1], at)
+        return
+    for index, pair in enumerate(zip(before, after, strict=False)):
+        yield from _changes(*pair, (*at, index))
+    for index, item in enumerate(before[len(after) :], len(after)):
+        yield Change((*at, index), f"{_name((*at, index))} is gone, {_said(item)} before", True)
+    for index, item in enumerate(after[len(before) :], len(before)):
+        yield Change((*at, index), f"{_name((*at, index))} is new: {_said(item)}", False)
+
+
+def _named(items: tuple[Data, ...]) -> dict[str, Data]:
+    """Return items by their names; nothing if one has none."""
+    found: dict[str, Data] = {
+        str(item["name"]): item for item in items if isinstance(item, dict) and "name" in item
+    }
+    return found if len(found) == len(items) else {}
+
+
+def _of_ranges(
+    before: tuple[Quantity, Quantity],
+    after: tuple[Quantity, Quantity],
+    at: Place,
+    said: tuple[str, str],
+) -> Iterator[Change]:
+    """Compare what values are covered: less than before is weaker, if it was more than one."""
+    (low, high), (new_low, new_high) = before, after
+    if low.dimension != new_low.dimension:
+        yield Change(at, f"{_name(at)}: {said[0]} before, {said[1]} now", True)
+        return
+    was_point = not is_less(low, high)
+    covers = not is_less(low, new_low) and not is_less(new_high, high)
+    same = covers and not is_less(new_low, low) and not is_less(high, new_high)
+    if not (same and said[0] == said[1]):
+        message = f"{_name(at)}: {said[0]} before, {said[1]} now"
+        weaker = not covers and not was_point
+        yield Change(at, message + weaker * " (values of before are not covered)", weaker)
+
+
+def _is_weaker(before: Data, after: Data, at: Place) -> bool:
+    """Tell whether one value, or one way to say it, asks for less than another."""
+    path = [part for part in at if isinstance(part, str)]
+    key = path[-1] if path else ""
+    if stronger := _STRONGER.get(key):
+        return before == stronger
+    was, now = _number(before), _number(after)
+    if was is None or now is None or was.dimension != now.dimension:
+        said_otherwise = isinstance(before, str) is not isinstance(after, str)
+        return said_otherwise and _BESIDE.isdisjoint(path)
+    goal = "goals" in path
+    most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
+    least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path)
+    least |= path[:1] == [_BORNE]
+    grown, shrunk = is_less(was, now), is_less(now, was)
+    return (most and grown) or (least and shrunk)
+
+
+def _is_limit(path: list[str]) -> bool:
+    """Tell whether a place is a limit that a scenario must keep, or the one of the torque."""
+    return (_LIMITS in path and "scenarios" in path) or path == [_LIMITS, "torque"]
+
+
+def _range_of(said: Data, key: str) -> tuple[Quantity, Quantity] | None:
+    """Return the ends of what is said of a value with a range; None if that is something else."""
+    if isinstance(said, dict) and "nominal" in said:
+        ends = said.get("range", (said["nominal"], said["nominal"]))
+        return _range_of(ends, "range")
+    if isinstance(said, tuple) and len(said) == 2 and key in _RANGES:
+        low, high = map(_number, said)
+        return None if low is None or high is None else (low, high)
+    if isinstance(said, str):
+        value = _number(said)
+        return None if value is None else (value, value)
+    return None
+
+
+def _number(said: Data) -> Quantity | None:
+    """Return a number with its unit, if that is what is said; without one, its unit is 1."""
+    if not isinstance(said, str):
+        return None
+    number, _, unit = said.partition(" ")
+    try:
+        value: Fraction | None = parse_exact(number) if is_number(number) else None
+        return None if value is None else Quantity(said, value, unit.strip() or "1")
+    except SpecError:
+        return None
+
+
+def _without(said: dict[str, Data], keys: set[str]) -> dict[str, Data]:
+    return {key: value for key, value in said.items() if key not in keys}
+
+
+def _name(at: Place) -> str:
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in at)
+    return text.removeprefix(".") or "the spec"
+
+
+def _said(said: Data) -> str:
+    """Return what is said as one short text."""
+    if isinstance(said, str):
+        return quoted(said)
+    if isinstance(said, tuple):
+        return quoted(f"[{', '.join(_plain(item) for item in said)}]")
+    if "nominal" in said and "range" in said:
+        return quoted(f"{_plain(said['nominal'])} in {_plain(said['range'])}")
+    return quoted(f"{{{', '.join(f'{key}: {_plain(value)}' for key, value in said.items())}}}")
+
+
+def _plain(said: Data) -> str:
+    if isinstance(said, str):
+        return said
+    if isinstance(said, tuple):
+        return f"[{', '.join(map(_plain, said))}]"
+    return f"{{{', '.join(f'{key}: {_plain(value)}' for key, value in said.items())}}}"

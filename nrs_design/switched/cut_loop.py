@@ -1,0 +1,403 @@
+"""The loop of one controller in one contact, cut where its law takes the force.
+
+With the share g of the force that reaches the law, the characteristic polynomial of an assembled
+mode is ``D + g N``: the force enters the law at one place, so its determinant is affine in g. D
+is that of the mode with ``g = 0``, ``D + N`` that of the mode which is proved, and ``L = N/D`` the
+open loop, whatever is in it. Exact; in continuous time polynomials in s, sampled in
+``w = (2/T) (z - 1)/(z + 1)``, which is on the imaginary axis where z is on the unit circle: at
+``(2/T) tan(omega T/2)``, near omega while that is small.
+
+The determinant is also affine in the stiffness of the contact and, times Mt in continuous time, in
+Mt, Bt and Kt; sampled in the coefficients a and b of the law. So a few modes give those of all
+gains.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+from nrs_design.controllers.laws import Admittance, CompliantLaw, ProportionalDerivative
+from nrs_design.controllers.sampled import SampledAdmittance, SampledForce, SampledLaw
+from nrs_design.controllers.sensor import LowPass, Sensor
+from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
+from nrs_design.models.plant import Plant
+from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.noun import dataclass
+from nrs_design.proof.taylor import exponential_between
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.switched.coupled import AxesCoupling
+from nrs_design.switched.joint import Joint
+from nrs_design.switched.modes import ForceShare, position_mode, velocity_mode
+from nrs_design.switched.sampled_coupled import slowed_motor
+from nrs_design.switched.sampled_frame import Frame, Turn
+
+Polynomial = tuple[Fraction, ...]
+ZERO, ONE = Fraction(0), Fraction(1)
+# Shares of the force that reach the law and a motor with a load.
+_CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO, ZERO)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a loop is looked at, beside its contact and its gains.
+
+    Parameters
+    ----------
+    motor : Actuator
+        A corner of its ranges, or the nominal one.
+    age : int
+        Of the force sample, always the same; zero in continuous time.
+    texts : tuple of str
+        What is not nominal, and the age where there are several.
+    """
+
+    motor: Actuator
+    age: int = 0
+    texts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class CutLoop:
+    """Characteristic polynomials of one mode, highest power first, of one length.
+
+    Parameters
+    ----------
+    opened : tuple of Fraction
+        Where the law takes no force; a motor with a load carries it all the same.
+    closed : tuple of Fraction
+        Of the mode as it is proved.
+    free : tuple of Fraction
+        Where the force does not act at all.
+    """
+
+    opened: Polynomial
+    closed: Polynomial
+    free: Polynomial
+
+
+@dataclass(frozen=True, slots=True)
+class AbstractAxis(ABC):
+    """One axis, from which the modes of each of its controllers follow."""
+
+    places: tuple[Place, ...]
+
+    @property
+    @abstractmethod
+    def period(self) -> Fraction | None:
+        """Time between two force samples in s; None in continuous time."""
+
+    @abstractmethod
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller.
+
+        Parameters
+        ----------
+        law : CompliantLaw
+            With its gains.
+        contact : AbstractLinearLaw
+            At fixed parameters.
+        place : Place
+            One of the `places`.
+        """
+
+    @abstractmethod
+    def admittances(
+        self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
+    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+        """Return the loops of three admittances, at (2, 2), (3, 2) and (2, 3) in two coordinates.
+
+        They are Mt and Bt, and the polynomials are times Mt; sampled, they are a and b. All
+        polynomials are affine in both.
+
+        Parameters
+        ----------
+        contact, place
+            As for `cut`.
+        spring : Fraction
+            Kt in N m/rad; zero is none.
+        inert : bool
+            Sampled: whether the law has inertia; else there is no a.
+        """
+
+
+# Neither zero nor one, with which a law has fewer operations.
+COORDINATES = ((Fraction(2), Fraction(2)), (Fraction(3), Fraction(2)), (Fraction(2), Fraction(3)))
+
+
+@dataclass(frozen=True, slots=True)
+class ContinuousAxis(AbstractAxis):
+    """An axis whose law is never sampled.
+
+    Parameters
+    ----------
+    places : tuple of Place
+        The nominal one first.
+    realization : Realization
+        Of the motion loop.
+    joint : Joint or None
+        The motor in its physical state, where it has ranges or a load.
+    low_pass : LowPass or None
+        Through which the law gets the force.
+    """
+
+    realization: Realization
+    joint: Joint | None = None
+    low_pass: LowPass | None = None
+
+    @property
+    def period(self) -> None:
+        """There is none."""
+        return
+
+    def motion_at(self, motor: Actuator) -> Realization | JointMotionLoop:
+        """Return the motion loop with a motor."""
+        if self.joint is None:
+            return self.realization
+        return self.joint.at({"Km": motor.gain, "tau": motor.time_constant})
+
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller.
+
+        Parameters
+        ----------
+        law, contact, place
+            As in `AbstractAxis.cut`.
+        """
+        return CutLoop(
+            *(
+                characteristic(self.rows(law, contact, place, cut))
+                for cut in (_OPENED, _CLOSED, _FREE)
+            )
+        )
+
+    def rows(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = _CLOSED
+    ) -> list[LinearForm]:
+        """Return a mode, of the states of this controller and contact alone.
+
+        Parameters
+        ----------
+        law, contact, place
+            As in `AbstractAxis.cut`.
+        cut : ForceShare
+            How much of the force acts.
+        """
+        if law.commands == "position":
+            return position_mode(self.realization, law, contact, cut=cut)
+        return velocity_mode(self.motion_at(place.motor), law, contact, self.low_pass, cut)
+
+    def admittances(
+        self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
+    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+        """Return the loops of three admittances; without inertia is a limit of the same.
+
+        Parameters
+        ----------
+        contact, spring, place, inert
+            As in `AbstractAxis.admittances`.
+        """
+        first, second, third = (
+            _times(Mt, self.cut(Admittance(Mt, Bt, spring), contact, place))
+            for Mt, Bt in COORDINATES
+        )
+        return first, second, third
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessorAxis(AbstractAxis):
+    """An axis whose law a processor computes.
+
+    Parameters
+    ----------
+    places : tuple of Place
+        The nominal motor at the youngest force sample first.
+    motion : ProportionalDerivative
+        The motion controller.
+    sampling : SamplingSpec
+        The processor.
+    low_pass : LowPass or None
+        Through which the law gets the force.
+    """
+
+    motion: ProportionalDerivative
+    sampling: SamplingSpec
+    low_pass: LowPass | None = None
+
+    @property
+    def period(self) -> Fraction:
+        """Time between two force samples in s."""
+        return self.sampling.outer
+
+    def cut(self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Return the loop of a controller.
+
+        Parameters
+        ----------
+        law, contact, place
+            As in `AbstractAxis.cut`.
+        """
+        held = law.sampled(self.sampling.outer, self.sampling.admittance)
+        assert held is not None, "a spec with sampling has laws that are sampled"
+        return self._cut(held, contact, place)
+
+    def admittances(
+        self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
+    ) -> tuple[CutLoop, CutLoop, CutLoop]:
+        """Return the loops of three admittances.
+
+        Parameters
+        ----------
+        contact, spring, place, inert
+            As in `AbstractAxis.admittances`.
+        """
+        T = Admittance(ZERO, ONE).sampled(self.sampling.outer, self.sampling.admittance).T
+        first, second, third = (
+            self._cut(SampledAdmittance(a if inert else None, b, T, spring), contact, place)
+            for a, b in COORDINATES
+        )
+        return first, second, third
+
+    def _cut(self, law: SampledLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+        """Close the loop over a period of the force; what is touched does not load the motor."""
+        k, b = contact.exact[0], (*contact.exact, ZERO)[1]
+        frame = self._frame(law, place)
+        opened, closed = (
+            characteristic(self._rows(frame, law, place, *touch))
+            for touch in ((ZERO, ZERO), (k, b))
+        )
+        while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
+            opened, closed = opened[:-1], closed[:-1]
+        opened, closed = (_on_the_axis(p, self.period) for p in (opened, closed))
+        return CutLoop(opened, closed, opened)
+
+    def _rows(
+        self, frame: Frame, law: SampledLaw, place: Place, k: Fraction, b: Fraction
+    ) -> Sequence[LinearForm]:
+        E = sum(exponential_between(-frame.period / place.motor.time_constant), ZERO) / 2
+        values = {"Km": place.motor.gain, "E": E, "k": k, "b": b}
+        n = len(frame.states)
+        rows = [row[:n] for row in frame.rows(law, place.age, values)[:n]]
+        if self.sampling.round > 1:
+            between = [row[:n] for row in frame.rows(law, 0, values, Turn.MOTION)[:n]]
+            for _ in range(self.sampling.round - 1):
+                rows = [*multiply(between, rows)]
+        return rows
+
+    def _frame(self, law: SampledLaw, place: Place) -> Frame:
+        moves = isinstance(law, SampledAdmittance)
+        return Frame(
+            self.sampling.step,
+            self.motion.sampled(self.sampling.period.exact),
+            isinstance(law, SampledAdmittance) and law.a is not None,
+            place.age,
+            place.motor.time_constant,
+            None if self.low_pass is None else self.low_pass.sampled(self.sampling.outer),
+            isinstance(law, SampledAdmittance) and law.Kt != 0,
+            moves,
+            isinstance(law, SampledForce) and law.Kp != 0 and not law.Ki_T,
+            gathers=isinstance(law, SampledForce) and law.Ki_T != 0,
+        )
+
+
+def axis_of(
+    spec: InteractionDesignSpec, plant: Plant, motion: ProportionalDerivative, sensor: Sensor
+) -> AbstractAxis | None:
+    """Return the axis of a spec, at its nominal motor and at every corner of its ranges.
+
+    Of several axes that act on each other it is one by itself.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        With the processor, if there is one.
+    plant : Plant
+        That it describes.
+    motion : ProportionalDerivative
+        The motion controller.
+    sensor : Sensor
+        With the filter of the force.
+
+    Returns
+    -------
+    AbstractAxis or None
+        None where the force is sampled more often than the motion loop: it then enters a round at
+        several samples, and there is no one place to cut.
+    """
+    sampling, low_pass = spec.sampling, sensor.filter
+    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
+    if sampling is None:
+        loop = plant.motion_loop(motion.Kp, motion.Kd)
+        joint = Joint.of(plant, motion)
+        return ContinuousAxis(tuple(_places(ranges, (0, 0))), realize(loop), joint, low_pass)
+    if sampling.outer < sampling.period.exact:
+        return None
+    if spec.coupling is not None and plant.load_inertia is not None:
+        ranges = slowed_motor(ranges, AxesCoupling.of(spec.coupling, plant.load_inertia))
+    return ProcessorAxis(tuple(_places(ranges, sampling.delay)), motion, sampling, low_pass)
+
+
+def _places(ranges: ActuatorRanges, ages: tuple[int, int]) -> Iterator[Place]:
+    nominal = ranges.nominal
+    motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
+    ends = (interval.ends for interval in (ranges.gain, ranges.time_constant))
+    for (_, gain), (_, tau) in product(*ends):
+        texts: tuple[str, ...] = (
+            f"Km = {float(gain):.6g} rad/s/{ranges.command}",
+            f"tau = {float(tau):.6g} s",
+        )
+        motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
+    for (motor, texts), age in product(motors.items(), range(ages[0], ages[1] + 1)):
+        late = () if ages[0] == ages[1] else (f"delay {age}",)
+        yield Place(motor, age, (*texts, *late))
+
+
+def characteristic(rows: Sequence[LinearForm]) -> Polynomial:
+    """Return ``det(s I - A)`` exactly, highest power first.
+
+    Parameters
+    ----------
+    rows : sequence of LinearForm
+        Square.
+    """
+    from flint import fmpz_mat
+
+    A = RationalMatrix.from_rows(rows)
+    found = fmpz_mat([[*row] for row in A.numerators]).charpoly().coeffs()
+    n = len(found) - 1
+    return tuple(
+        Fraction(int(c), A.denominator ** (n - i)) for i, c in reversed([*enumerate(found)])
+    )
+
+
+def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
+    opened, closed, free = (
+        tuple(factor * c for c in p) for p in (loop.opened, loop.closed, loop.free)
+    )
+    return CutLoop(opened, closed, free)
+
+
+def _on_the_axis(polynomial: Polynomial, period: Fraction) -> Polynomial:
+    """Put ``z = (1 + w T/2)/(1 - w T/2)`` in, times ``(1 - w T/2)^n``."""
+    half = period / 2
+    total, power = [polynomial[0]], [ONE]
+    for c in polynomial[1:]:
+        power = _product(power, [-half, ONE])
+        risen = _product(total, [half, ONE])
+        total = [a + c * b for a, b in zip(risen, power, strict=True)]
+    return tuple(total)
+
+
+def _product(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    found = [ZERO] * (len(a) + len(b) - 1)
+    for i, x in enumerate(a):
+        for j, y in enumerate(b):
+            found[i + j] += x * y
+    return found

@@ -1,0 +1,91 @@
+"""Growth for which the environment would have to pull, wherever a verdict is told."""
+
+import json
+
+import pytest
+
+import nrs_design as nrs
+from nrs_design.pipeline import run_certification
+from nrs_design.spec import read_spec
+from tests.support import run
+
+# In kept contact it grows; with contact that may be lost, all 300 of these runs decay.
+PULLING = """\
+kind: interaction-design
+name: pulling
+actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
+motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s, derivative_gain: 2060 rpm*s/rad,
+  zero: 56.9706 1/s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  tissue: {model: elastic, stiffness: 58 N*m/rad}
+controllers:
+  withdrawal: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt: 1.04 N*m*s/rad}
+switching: arbitrary
+contact: losable
+sampling: {period: 2 ms, delay: 2}
+"""
+KEPT = "in kept contact"
+
+
+@pytest.fixture
+def spec(tmp_path):
+    path = tmp_path / "pulling.nrs.yaml"
+    path.write_text(PULLING, encoding="utf-8")
+    return path
+
+
+def test_the_verdict_is_open_and_the_growth_is_told(spec, tmp_path):
+    told = run("certify-switching", spec, cwd=tmp_path)
+    assert told.returncode == 3, told.stderr
+    assert told.stdout.startswith(f"pulling: INCONCLUSIVE (refuted {KEPT}; ")
+    assert "is not Schur (eigenvalue about 1.00054" in told.stdout
+    assert f"Refuted {KEPT}; where contact may be lost, neither" in told.stdout
+    # The claim says that contact is kept; so how it is lost is not taken for granted beside it.
+    assert "the environment pulling as it pushes" in told.stdout
+    assert "Contact is lost where" not in told.stdout
+    checked = run("verify", "reports/pulling.cert.json", spec, cwd=tmp_path)
+    assert checked.returncode == 3
+    assert checked.stdout.startswith(f"INCONCLUSIVE (refuted {KEPT}): the certificate holds")
+
+
+def test_a_gate_fails_closed(spec, tmp_path):
+    gated = run("gate", spec, "--format", "json", cwd=tmp_path)
+    assert gated.returncode == 3, gated.stderr
+    (found,) = json.loads(gated.stdout)["specs"]
+    assert (found["verdict"], found["refuted_in"]) == ("inconclusive", KEPT)
+    status = {item["subject"]: item for item in found["obligations"] if item["rule"] < "NRS103"}
+    assert {item["status"] for item in status.values()} == {"inconclusive"}
+    assert status["system"]["message"].startswith(f"refuted {KEPT}, which decides nothing")
+    assert "would have to pull" in status["withdrawal/tissue/E-min"]["message"]
+
+
+def test_the_library_the_words_and_the_page_say_it(spec):
+    decision = nrs.load(spec).certify()
+    assert (decision.verdict, decision.refuted_in) == ("inconclusive", KEPT)
+    assert not decision
+    assert decision.claim.startswith(f"Refuted {KEPT}")
+    assert decision.result.certificate.refuted_in == KEPT
+    page = decision.report()
+    assert f"Refuted {KEPT}, where the environment would have to pull" in page
+    explained = run("explain", "inconclusive", cwd=spec.parent).stdout
+    assert "refuted in kept contact" in " ".join(explained.split())
+
+
+@pytest.mark.slow
+def test_margins_say_on_what_they_rest(spec, tmp_path):
+    found = run("certify-switching", spec, "--margin", "--json", cwd=tmp_path)
+    summary = json.loads(found.stdout)
+    assert summary["refuted_in"] == KEPT
+    delay, period = (summary["loop_margins"][name] for name in ("delay", "period"))
+    assert (delay["refuted"], delay["refuted_in"], period["refuted_in"]) == (2, KEPT, KEPT)
+
+
+def test_what_asks_for_kept_contact_is_refuted(spec):
+    for contact, verdict in (("contact: kept", "refuted"), ("", "refuted")):
+        spec.write_text(PULLING.replace("contact: losable", contact), encoding="utf-8")
+        result = run_certification(read_spec(spec))
+        assert (str(result.certification.verdict), result.certification.refuted_in) == (
+            verdict,
+            None,
+        )

@@ -1,0 +1,179 @@
+"""Every field of every side file, forged: rejected, or in a list of what no verdict shows."""
+
+import json
+import shutil
+
+import pytest
+
+from nrs_design.certificates.certificate import content_id as certificate_id
+from nrs_design.errors import NrsDesignError
+from nrs_design.gating.lock import read_lock
+from nrs_design.gating.locked import run_locked
+from nrs_design.spec import read_spec
+from nrs_design.spec.robot_bounds import content_id
+from nrs_design.switched.coupled import AxesCoupling
+from tests.certificates.test_verify import at, changed, leaves
+from tests.spec.test_robot_bounds import COUPLING, LOADED, write
+from tests.support import ROOT, run
+
+# Of the bounds: the words of who computed them. Nothing says or uses them but `robot bounds`.
+UNUSED_OF_BOUNDS = {
+    ("package", "name"),
+    ("package", "version"),
+    *(("found", key, name) for key in ("heaviest", "lightest") for name in ("phi_deg", "boxes")),
+}
+# Of a certificate: which release wrote it, and where its spec was.
+UNUSED_OF_CERTIFICATES = {("package", "version"), ("origin",)}
+# Without a spec, also what only a spec tells, and how states are called; none of it is printed.
+UNTOLD_WITHOUT_SPEC = {"spec", "coordinates", "gains", "assumptions", "package", "origin"} | {
+    "states",
+    "contact",
+}
+MARK = "forged"
+
+
+def spoiled(value):
+    """Return other values of the same kind: what a forger would write."""
+    match value:
+        case bool():
+            return [not value]
+        case int():
+            return [value + 1, -value - 1]
+        case str():
+            doubled = [str(2 * float(value)), str(float(value) / 2)] if _is_number(value) else []
+            return [*doubled, f"{value}{MARK}", ""]
+        case None:
+            return [MARK]
+        case _:
+            return []
+
+
+def _is_number(text):
+    try:
+        return float(text) != 0
+    except ValueError:
+        return False
+
+
+@pytest.fixture
+def axes(tmp_path):
+    robot = tmp_path / "robots/arm.nrs.yaml"
+    robot.parent.mkdir()
+    shutil.copy(ROOT / "specs/robots/neuroboscope.nrs.yaml", robot)
+    (tmp_path / "axes.nrs.yaml").write_text(f"{LOADED}{COUPLING}contact: kept\n")
+    write(robot, {}, package={"name": "nrs-design", "version": "1"})
+    file = robot.with_name("arm.bounds.json")
+    document = json.loads(file.read_text())
+    for key in ("heaviest", "lightest"):
+        document["found"][key] |= {"phi_deg": "1", "boxes": 3}
+    file.write_text(json.dumps(document | {"id": content_id(document)}))
+    return tmp_path
+
+
+def test_every_field_of_bounds(axes):
+    """Signed anew it makes the spec another one; what is accepted is said, or never is."""
+    file = axes / "robots/arm.bounds.json"
+    document = json.loads(file.read_text())
+    before = read_spec(axes / "axes.nrs.yaml")
+    said = AxesCoupling.of(before.spec.coupling, 1)
+    silent = set()
+    for path in leaves(document):
+        for value in spoiled(at(document, path)):
+            forged = changed(document, path, value)
+            if path != ("id",):
+                forged |= {"id": content_id(forged)}
+            file.write_text(json.dumps(forged))
+            try:
+                after = read_spec(axes / "axes.nrs.yaml")
+            except NrsDesignError:
+                continue
+            # No certificate and no lock of before holds: their hash is another.
+            assert after.sha256 != before.sha256, path
+            # The texts differ by the hash of the file, which is in them, and by what it says.
+            now = AxesCoupling.of(after.spec.coupling, 1)
+            assert now.source != said.source, path
+            numbers = (now.lightest, now.heaviest, now.coriolis, now.gravity_gradient, now.poses)
+            if numbers == (
+                said.lightest,
+                said.heaviest,
+                said.coriolis,
+                said.gravity_gradient,
+                said.poses,
+            ):
+                silent.add(path)
+    of_found = {path for path in silent if path[0] == "found" and path[-1] == "value"}
+    assert silent - of_found == UNUSED_OF_BOUNDS
+
+
+@pytest.mark.slow
+def test_every_field_of_a_certificate_without_its_spec_is_rejected_or_not_printed(tmp_path):
+    source = ROOT / "reports/soft-tissue.cert.json"
+    document = json.loads(source.read_text())
+    plain = run("verify", source, cwd=tmp_path)
+    assert plain.returncode == 0
+    told = set()
+    for path in leaves(document):
+        if path[0] in ("modes", "statements", "id") or not isinstance(at(document, path), str):
+            continue
+        forged = changed(document, path, f"7{MARK}")
+        (tmp_path / "c.json").write_text(json.dumps(forged | {"id": certificate_id(forged)}))
+        text = run("verify", "c.json", cwd=tmp_path)
+        if text.returncode == 1:
+            assert text.stdout.startswith("REJECTED")
+            continue
+        told.add(path[0])
+        said = text.stdout + run("verify", "--json", "c.json", cwd=tmp_path).stdout
+        assert MARK not in said, path
+    assert told <= UNTOLD_WITHOUT_SPEC
+    assert {"gains", "assumptions", "spec"} <= told
+
+
+@pytest.mark.slow
+def test_every_field_of_a_certificate_beside_its_spec(tmp_path):
+    """The whole documents are forged in tests/certificates; this is what is left over."""
+    from nrs_design.certificates.verify import verify_document
+
+    document = json.loads((ROOT / "reports/soft-tissue.cert.json").read_text())
+    loaded = read_spec(ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml")
+    accepted = set()
+    for path in leaves(document):
+        # A text of the numbers of a proof may be another proof: tests/certificates decides that.
+        if path[0] in ("modes", "statements", "id") or not isinstance(at(document, path), str):
+            continue
+        for value in spoiled(at(document, path)):
+            forged = changed(document, path, value)
+            forged["id"] = certificate_id(forged)
+            if verify_document(forged, loaded).fault is None:
+                accepted.add(path)
+    # Gains are those of the modes: another one is accepted only with its own modes.
+    assert accepted <= UNUSED_OF_CERTIFICATES
+
+
+def test_every_field_of_a_lock(project):
+    """What --locked does not decide again ends with words that say so."""
+    lock = project / "nrs.lock"
+    document = json.loads(lock.read_text())
+    specs = sorted((project / "specs").iterdir())
+    for path in leaves(document):
+        for value in spoiled(at(document, path)):
+            lock.write_text(json.dumps(changed(document, path, value)))
+            try:
+                outcome = run_locked(specs, read_lock(lock), lock)
+            except NrsDesignError:
+                continue
+            if outcome.severity:
+                continue
+            # Proofs of given matrices are checked again, whichever version has locked them.
+            if path[2:] == ("version",) and not document["specs"][path[1]]["gains"]:
+                continue
+            # Text of a goal that only a design decides, and of nothing else.
+            assert path[:1] + path[2:3] == ("specs", "goals"), path
+            assert path[-1] in ("subject", "message"), path
+            forged = [
+                item
+                for spec in outcome.specs
+                for item in spec.obligations
+                if value in (item.subject, item.message.partition(" (as locked")[0])
+            ]
+            assert forged, path
+            assert all("(as locked; not computed again)" in item.message for item in forged)

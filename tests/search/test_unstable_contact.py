@@ -1,0 +1,131 @@
+"""The search for growth with loss of contact, and what it finds against the definition."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.certificates.certificate import Verdict
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.evidence import UnstableContact, UnstableMode
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.certify import certify, first_accepted, refuted_at_once
+from nrs_design.search.family import Family
+from nrs_design.search.method import Method
+from nrs_design.search.unstable_contact import NOTHING_GROWS, search_contact
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    drifting,
+    juggling,
+    juggling_among_modes,
+    juggling_in_turns,
+    matrix,
+    sucking_in,
+)
+from tests.search.test_losable_brute_force import rounded
+
+
+def found_in(system):
+    return first_accepted(search_contact(Family.of(system)), system)
+
+
+def drawn(seed: int) -> SwitchedSystem:
+    """Draw a loop of two states and a deflection that may leave what it touches."""
+    rng = np.random.default_rng(seed)
+    free = np.zeros((3, 3))
+    free[:2, :2] = rng.uniform(-1, 1, (2, 2))
+    free[:2, :2] *= 0.9 / np.abs(np.linalg.eigvals(free[:2, :2])).max()
+    free[2] = [1, rng.uniform(-1, 1), 1]
+    push = np.outer([*rng.uniform(-2, 2, 2), 0], [0, 0, 1])
+    contact = Contact((Mode("free", rounded(free)),), required=True)
+    mode = Mode("touch", rounded(free - push))
+    return SwitchedSystem(
+        f"drawn-{seed}", Time.DISCRETE, ("v", "w", "delta"), (mode,), (), contact=contact
+    )
+
+
+def grown(system: SwitchedSystem, evidence: UnstableContact, times: int) -> float:
+    """Follow the witness by the words: the deflection alone says whether there is contact.
+
+    Return how many times larger motion and penetration are after some periods.
+    """
+    modes = (*system.modes, *system.contact.free)
+    matrices = {mode.name: np.array(mode.A.floats(), dtype=float) for mode in modes}
+    names = [name for name, count in evidence.steps for _ in range(count)]
+    M = np.eye(3)
+    for name in names:
+        M = matrices[name] @ M
+    values, vectors = np.linalg.eig(M)
+    v = vectors[:, np.abs(values - float(evidence.factor[0])).argmin()].real
+    x = v if (v[2] > 0) == (names[0] == "touch") else -v
+    begin = np.linalg.norm([x[0], x[1], max(x[2], 0)])
+    for _ in range(times * len(names)):
+        x = matrices["touch" if x[2] > 0 else "free"] @ x
+    return float(np.linalg.norm([x[0], x[1], max(x[2], 0)]) / begin)
+
+
+def test_what_refutes_random_losable_loops_grows_by_the_definition():
+    refuted = []
+    for seed in range(40):
+        system = drawn(seed)
+        evidence, _ = found_in(system)
+        if evidence is not None:
+            refuted.append(evidence)
+            factor = float(evidence.factor[0])
+            assert grown(system, evidence, 3) == pytest.approx(factor**3, rel=1e-6)
+    assert len(refuted) > 4
+
+
+@pytest.mark.parametrize("system", [juggling, juggling_among_modes, juggling_in_turns])
+def test_a_sequence_of_contact_and_flight_is_found(system):
+    evidence, _ = found_in(system())
+    assert [count for _, count in evidence.steps] == [1, 1]
+    assert certify(system()).verdict is Verdict.REFUTED
+
+
+def test_a_mode_that_draws_in_is_found_in_continuous_time():
+    evidence, _ = found_in(sucking_in())
+    assert evidence.steps == (("m0", 1),)
+    assert certify(sucking_in()).verdict is Verdict.REFUTED
+    losable = replace(bouncing(), contact=replace(bouncing().contact, required=True))
+    assert "no mode has a real eigenvalue" in found_in(losable)[1]
+
+
+def test_what_decays_has_no_witness():
+    system = bouncing_in_steps()
+    losable = replace(system, contact=replace(system.contact, required=True))
+    assert found_in(losable) == (None, NOTHING_GROWS)
+
+
+def test_free_motion_is_examined():
+    result = certify(drifting())
+    assert isinstance(result.evidence, UnstableMode)
+    assert result.evidence.mode == "free"
+    assert result.verdict is Verdict.REFUTED
+
+
+def turning(kept: str) -> SwitchedSystem:
+    """A spring that is too stiff for its steps: it grows in kept contact, and flies away."""
+    free = Mode("free", matrix([[kept, 0], [1, 1]]))
+    mode = Mode("touch", matrix([[kept, "-6/5"], [1, 1]]))
+    contact = Contact((free,), required=True)
+    states = ("v", "delta")
+    return SwitchedSystem("turning", Time.DISCRETE, states, (mode,), (), contact=contact)
+
+
+def test_growth_in_kept_contact_leaves_the_verdict_open():
+    system = turning("9/10")
+    for method in (Method.AUTO, Method.PERIOD):
+        result = certify(system, method)
+        assert (result.verdict, result.refuted_in) == (Verdict.INCONCLUSIVE, "in kept contact")
+        assert result.evidence is None
+        assert [item.kind for item in result.statements] == ["unstable-mode"]
+        # What speaks of kept contact is not searched any further.
+        assert result.attempts[-1].step == "growth with loss of contact"
+    assert refuted_at_once(system) == "in kept contact"
+    assert not refuted_at_once(replace(system, contact=None))
+    assert certify(replace(system, contact=None)).verdict is Verdict.REFUTED
+    slower = turning("-1/2")
+    assert refuted_at_once(slower) is None

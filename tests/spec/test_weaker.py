@@ -1,0 +1,167 @@
+"""What counts as weaker: a table of edits of one spec, and properties of the comparison."""
+
+import pytest
+
+from nrs_design.spec.document import parse_document, to_data
+from nrs_design.spec.weaker import find_changes
+from tests.support import ROOT
+
+TEXT = """\
+kind: interaction-design
+name: a
+title: words
+actuator:
+  gain: {nominal: 4.8e-4 rad/s/rpm, range: [4.7e-4 rad/s/rpm, 4.9e-4 rad/s/rpm]}
+  time_constant: 0.0351 s
+limits: {velocity: 8 deg/s, torque: 0.3 N*m}
+environments:
+  soft:
+    stiffness: {nominal: 747 N/m, range: [720 N/m, 768 N/m]}
+    doubts: [too short, too slow]
+  hard:
+    stiffness: 900 N/m
+controllers:
+  insertion: {contacts: [soft, hard], Bt: 2 N*m*s/rad, goals: {min_phase_margin: 30 deg}}
+  withdrawal: {contacts: [soft]}
+goals: {max_sensitivity_peak: 2, min_gain_margin: 1.5, peak_torque: 0.5 N*m, delay: 2 ms}
+disturbances: {command: 8 deg/s}
+sampling: {period: 2 ms, delay: [0, 1]}
+scenarios:
+  hit: {limits: {torque: 0.5 N*m}}
+switching: arbitrary
+contact: losable
+certification: {budget: 10 s}
+"""
+SWITCHED = """\
+kind: switched-system
+name: b
+modes:
+  - {name: fast, A: [[-1, 1], [-1, -1]]}
+  - {name: slow, A: [[-2, 0], [0, -2]]}
+parameters: {k: {nominal: 1, range: [0.5, 2], varies: true}}
+switching:
+  dwell_time: 0.2 s
+  longest_dwell_time: {fast: 2 s}
+  transitions: [[fast, slow], [slow, fast]]
+"""
+WEAKER = {
+    "range": ("[720 N/m, 768 N/m]", "[730 N/m, 768 N/m]"),
+    "range in another unit": ("[720 N/m, 768 N/m]", "[0.73 N/mm, 0.8 N/mm]"),
+    "range that is elsewhere": ("[720 N/m, 768 N/m]", "[7 N/mm, 8 N/mm]"),
+    "no range": ("{nominal: 747 N/m, range: [720 N/m, 768 N/m]}", "747 N/m"),
+    "nominal only": (", range: [4.7e-4 rad/s/rpm, 4.9e-4 rad/s/rpm]", ""),
+    "contact": ("contact: losable", "contact: kept"),
+    "contact unsaid": ("contact: losable\n", ""),
+    "switching": ("switching: arbitrary", "switching: {dwell_time: 1 s}"),
+    "largest goal": ("max_sensitivity_peak: 2", "max_sensitivity_peak: 2.5"),
+    "least goal": ("min_gain_margin: 1.5", "min_gain_margin: 1.4"),
+    "goal in another unit": ("delay: 2 ms", "delay: 0.001 s"),
+    "own goal": ("min_phase_margin: 30 deg", "min_phase_margin: 29 deg"),
+    "a goal": (", min_gain_margin: 1.5", ""),
+    "bound on the torque": ("peak_torque: 0.5 N*m", "peak_torque: 600 N*mm"),
+    "disturbance": ("{command: 8 deg/s}", "{command: 7 deg/s}"),
+    "limit of a scenario": ("{limits: {torque: 0.5 N*m}}", "{limits: {torque: 0.6 N*m}}"),
+    "limit of the torque": ("torque: 0.3 N*m", "torque: 0.4 N*m"),
+    "a controller": ("  withdrawal: {contacts: [soft]}\n", ""),
+    "a contact": ("[soft, hard]", "[soft]"),
+    "an environment": ("  hard:\n    stiffness: 900 N/m\n", ""),
+    "ages": ("delay: [0, 1]}", "delay: [0, 0]}"),
+    "sampling": ("sampling: {period: 2 ms, delay: [0, 1]}\n", ""),
+    "a doubt accepted": ("too slow]", "too slow]\n    accept_doubt: because"),
+    "a doubt removed": ("[too short, too slow]", "[too short]"),
+}
+NEITHER = {"[0.73 N/mm, 0.8 N/mm]", "[7 N/mm, 8 N/mm]"}
+OTHER = {
+    "words": ("title: words", "title: other words"),
+    "motor": ("0.0351 s", "0.0352 s"),
+    "wider": ("[720 N/m, 768 N/m]", "[700 N/m, 768 N/m]"),
+    "nominal": ("nominal: 747 N/m", "nominal: 748 N/m"),
+    "a range more": ("stiffness: 900 N/m", "stiffness: {nominal: 900 N/m, range: [1 N/m, 1 N/mm]}"),
+    "stricter": ("max_sensitivity_peak: 2", "max_sensitivity_peak: 1.9"),
+    "another gain": ("Bt: 2 N*m*s/rad", "Bt: 3 N*m*s/rad"),
+    "search": ("budget: 10 s", "budget: 1 s"),
+    "no search": ("certification: {budget: 10 s}\n", ""),
+    "a goal more": ("delay: 2 ms}", "delay: 2 ms, decay_rate: 1 1/s}"),
+}
+SWITCHED_WEAKER = {
+    "dwell time": ("dwell_time: 0.2 s", "dwell_time: 0.3 s"),
+    "longest dwell time": ("{fast: 2 s}", "{fast: 1 s}"),
+    "transition": ("[[fast, slow], [slow, fast]]", "[[fast, slow]]"),
+    "mode": ("  - {name: fast, A: [[-1, 1], [-1, -1]]}\n", ""),
+    "parameter": ("[0.5, 2]", "[0.6, 2]"),
+    "constant": ("varies: true", "varies: false"),
+}
+SWITCHED_OTHER = {
+    "shorter": ("dwell_time: 0.2 s", "dwell_time: 0.1 s"),
+    "all": (
+        "  dwell_time: 0.2 s\n  longest_dwell_time: {fast: 2 s}\n"
+        "  transitions: [[fast, slow], [slow, fast]]\n",
+        "",
+    ),
+    "entry": ("[[-2, 0]", "[[-3, 0]"),
+}
+
+
+def edited(text, old, new):
+    assert text.count(old) == 1, old
+    after = text.replace(old, new)
+    return after.replace("switching:\n", "switching: arbitrary\n") if after[-2:] == ":\n" else after
+
+
+def changes(before, after):
+    return list(find_changes(*(to_data(parse_document(text)) for text in (before, after))))
+
+
+@pytest.mark.parametrize(
+    ("text", "edit"),
+    [
+        *(pytest.param(TEXT, edit, id=name) for name, edit in WEAKER.items()),
+        *(pytest.param(SWITCHED, edit, id=name) for name, edit in SWITCHED_WEAKER.items()),
+    ],
+)
+def test_weaker(text, edit):
+    """And the way back is not, unless both cover what the other does not."""
+    after = edited(text, *edit)
+    found = changes(text, after)
+    assert any(change.weaker for change in found), found
+    back = any(change.weaker for change in changes(after, text))
+    assert back is (edit[1] in NEITHER)
+
+
+@pytest.mark.parametrize(
+    ("text", "edit"),
+    [
+        *(pytest.param(TEXT, edit, id=name) for name, edit in OTHER.items()),
+        *(pytest.param(SWITCHED, edit, id=name) for name, edit in SWITCHED_OTHER.items()),
+    ],
+)
+def test_other_changes_are_listed_and_are_not_weaker(text, edit):
+    found = changes(text, edited(text, *edit))
+    assert found
+    assert not any(change.weaker for change in found), found
+
+
+def test_the_same_meaning_in_other_words_is_no_change():
+    same = edited(TEXT, "title: words", "title: 'words' # a comment")
+    assert changes(TEXT, same) == []
+
+
+def test_what_is_said_has_its_place_and_both_values():
+    (change,) = changes(TEXT, edited(TEXT, *WEAKER["range"]))
+    assert change.at == ("environments", "soft", "stiffness")
+    assert "[720 N/m, 768 N/m]" in change.message
+    assert "[730 N/m, 768 N/m]" in change.message
+
+
+def test_every_part_that_a_shipped_spec_loses_is_weaker_or_beside_the_proof():
+    """Whatever is not said any more is weaker, unless it was an assumption or words."""
+    allowed = {
+        *("title", "certification", "design", "provenance", "description", "mode_logic"),
+        *("dwell_time", "longest_dwell_time", "transitions", "accept_doubt"),
+    }
+    for path in sorted((ROOT / "specs").glob("*/*.nrs.yaml")):
+        before = to_data(parse_document(path.read_text(encoding="utf-8")))
+        for key in before:
+            after = {name: said for name, said in before.items() if name != key}
+            (change,) = find_changes(before, after)
+            assert change.weaker or key in allowed, (path, key)

@@ -76,7 +76,9 @@ def types(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def tests(session: nox.Session) -> None:
-    run_there(session, "pytest", *TWO_PROCESSES, "-m", "not slow", *session.posargs)
+    """Run all but the dear tests; CI leaves those of the proofs to `coverage`."""
+    left_out = ["--ignore=tests/proof"] if os.environ.get("CI") == "true" else []
+    run_there(session, "pytest", *TWO_PROCESSES, "-m", "not slow", *left_out, *session.posargs)
 
 
 @nox.session(**IN_ENVIRONMENT)
@@ -91,8 +93,8 @@ def accessibility(session: nox.Session) -> None:
 @nox.session(**IN_ENVIRONMENT)
 def coverage(session: nox.Session) -> None:
     """Every line and every branch of what decides is run by its own tests."""
-    run_there(session, "coverage", "run", "-m", "pytest", "-m", "not slow", "tests/proof")
-    run_there(session, "coverage", "report")
+    measured = ("--cov", "--cov-report=term:skip-covered")
+    run_there(session, "pytest", *TWO_PROCESSES, "-m", "not nightly", *measured, "tests/proof")
 
 
 @nox.session(**IN_ENVIRONMENT)
@@ -103,8 +105,15 @@ def mutation(session: nox.Session) -> None:
 
 @nox.session(**IN_ENVIRONMENT)
 def slow(session: nox.Session) -> None:
-    """Run the exhaustive tests that the default session leaves out, and many more examples."""
-    chosen = ("-m", "slow or hypothesis", "--hypothesis-profile", "many")
+    """Run the dear tests that CI runs; those of the proofs run in `coverage`."""
+    chosen = ("-m", "slow and not nightly", "--ignore=tests/proof")
+    run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
+
+
+@nox.session(**IN_ENVIRONMENT)
+def nightly(session: nox.Session) -> None:
+    """Run the studies, and many more examples of every property: an hour."""
+    chosen = ("-m", "nightly or hypothesis", "--hypothesis-profile", "many")
     run_there(session, "pytest", *TWO_PROCESSES, *chosen, *session.posargs)
 
 
@@ -112,7 +121,7 @@ def slow(session: nox.Session) -> None:
 def frama(session: nox.Session) -> None:
     """Analyze exported C for all inputs at once; for machines with Frama-C, which is large."""
     session.run("frama-c", "-version", external=True)
-    run_there(session, "pytest", "-m", "slow", "tests/exporters/test_eva.py")
+    run_there(session, "pytest", "-m", "slow or nightly", "tests/exporters/test_eva.py")
 
 
 @nox.session

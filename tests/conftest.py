@@ -2,13 +2,13 @@
 
 One thread for small matrices, as the commands of the program set it: tests run side by side. And no
 deadline for examples of hypothesis: how fast a machine is decides nothing. By default they are few
-and the same each time; the slow session draws many, and others each time.
+and the same each time; the nightly session draws many, and others each time.
 
 Where no bytecode may be kept beside the sources, commands that run in processes of their own keep
 it in the cache of pytest: to compile all modules takes as long as to run them.
 
-A test that takes minutes says how many seconds, `slow(seconds=...)`, and begins before the others:
-who began it last would end alone.
+Tests are marked `slow` and `nightly` by what they were measured to take (`tests/costs.py`), and the
+dearest begin first: who began one last would end alone.
 
 Every process imports all tests. The second one begins with the last folder, so that each finds half
 of them compiled by the other; both have to list them in one order.
@@ -26,6 +26,7 @@ import pytest
 from hypothesis import settings
 
 from nrs_design.cli import COLLECT_AFTER
+from tests.costs import mark_by_cost, seconds_of
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 settings.register_profile("few", deadline=None, max_examples=15, derandomize=True)
@@ -50,15 +51,12 @@ def _backwards(argument: str) -> list[str]:
     return [str(path) for path in inside if path.is_dir() or path.name.startswith("test_")]
 
 
-def _seconds(item: pytest.Item) -> float:
-    return max((mark.kwargs.get("seconds", 0.0) for mark in item.iter_markers("slow")), default=0.0)
-
-
 @pytest.hookimpl(wrapper=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> Iterator[None]:
     items.sort(key=lambda item: item.nodeid.partition("::")[0])
+    mark_by_cost(items)
     yield
-    items.sort(key=_seconds, reverse=True)
+    items.sort(key=seconds_of, reverse=True)
 
 
 def pytest_collection_finish() -> None:

@@ -69,7 +69,7 @@ def test_numbers_of_margins_lead_to_their_lines():
     assert [loaded.text.splitlines()[n - 1].split(":")[0].strip() for n in lines] == ["torque"]
 
 
-@pytest.mark.slow(seconds=60)
+@pytest.mark.nightly
 def test_what_keeps_the_limit_in_json(tmp_path):
     text = f"{TEXT}\ndisturbances: {{command: 8 deg/s}}\n"
     (tmp_path / "commanded.nrs.yaml").write_text(text)

@@ -118,7 +118,7 @@ def test_pooled_over_three_records(spread):
     assert 0.92 <= np.mean(hits) <= 0.98, np.mean(hits)
 
 
-@pytest.mark.slow(seconds=300)
+@pytest.mark.nightly
 def test_actuator():
     truth = (synthetic.GAIN, synthetic.TIME_CONSTANT, synthetic.FRICTION)
     hits = []

@@ -16,7 +16,7 @@ LEAST = {("closed loop", False): 0.91}
 TRUTH = (motors.GAIN, motors.TIME_CONSTANT, motors.FRICTION, motors.DELAY)
 
 
-@pytest.mark.slow(seconds=40)
+@pytest.mark.nightly
 @pytest.mark.parametrize("is_angle", [True, False])
 @pytest.mark.parametrize("kind", ["stair", "chirp", "PRBS", "multisine", "closed loop"])
 def test_any_command(kind, is_angle):

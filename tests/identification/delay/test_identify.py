@@ -201,7 +201,7 @@ def test_peak_of_the_correlation():
     assert correlation > 0.99
 
 
-@pytest.mark.slow(seconds=100)
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", ["copy", "lag", "integrator"])
 def test_coverage(kind):
     hits = []

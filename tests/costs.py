@@ -1,0 +1,82 @@
+"""What each test takes of a processor, measured: it says in which session a test runs.
+
+``python -m tests.costs`` runs all tests but the nightly ones in one process and writes `COSTS`, a
+line for each test that takes longer than `SLOW`. A test that is not there is in the default
+session; one of more than `NIGHTLY` seconds is in the nightly session only, beside those that mark
+themselves, unless it is of what CI holds whatever that takes. Nothing is measured while tests run
+otherwise: how fast a machine is decides nothing.
+"""
+
+import os
+import resource
+from collections.abc import Iterator, Sequence
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+COSTS = Path(__file__).with_name("costs.tsv")
+# Processor seconds. The default session has thousands of tests; CI has all but studies.
+SLOW, NIGHTLY = 0.15, 4.0
+# What is published: every page prints what it shows, and every example of the literature.
+IN_CI = ("tests/docs/", "tests/literature/")
+
+
+@cache
+def known_costs() -> dict[str, float]:
+    """Return the measured seconds of each dear test by its name in pytest."""
+    lines = (line.split("\t") for line in COSTS.read_text(encoding="utf-8").splitlines())
+    return {name: float(seconds) for seconds, name in lines}
+
+
+def name_of(item: pytest.Item) -> str:
+    """Return the name of a test in pytest, on any machine."""
+    return item.nodeid.replace(f"{item.config.rootpath}/", "")
+
+
+def seconds_of(item: pytest.Item) -> float:
+    """Return the measured seconds of a test, 0 where it is cheap or new."""
+    return known_costs().get(name_of(item), 0.0)
+
+
+def mark_by_cost(items: Sequence[pytest.Item]) -> None:
+    """Mark the tests that were measured as dear."""
+    for item in items:
+        if seconds_of(item) > NIGHTLY and not item.nodeid.startswith(IN_CI):
+            item.add_marker(pytest.mark.nightly)
+        if seconds_of(item) > SLOW or item.get_closest_marker("nightly"):
+            item.add_marker(pytest.mark.slow)
+
+
+def processor_seconds() -> float:
+    """Return the time of this process and of those that it waited for."""
+    uses = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(use.ru_utime + use.ru_stime for use in uses)
+
+
+class Measurement:
+    """A plugin that measures every test from its first fixture to its last."""
+
+    def __init__(self) -> None:
+        self.costs: dict[str, float] = {}
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
+        start = processor_seconds()
+        yield
+        self.costs[name_of(item)] = processor_seconds() - start
+
+
+def main() -> int:
+    measurement = Measurement()
+    os.environ["CI"] = "true"
+    code = pytest.main(["-q", "-m", "not nightly"], plugins=[measurement])
+    kept = {name: cost for name, cost in known_costs().items() if cost > NIGHTLY}
+    dear = {name: cost for name, cost in measurement.costs.items() if cost > SLOW}
+    lines = [f"{cost:.2f}\t{name}" for name, cost in sorted({**kept, **dear}.items())]
+    COSTS.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    return int(code)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -22,11 +22,11 @@ from nrs_design.exporters.build import build_unproved
 from nrs_design.exporters.c import header_text, source_text
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.program import Program
-from nrs_design.exporters.robot_tree import RobotExport
 from nrs_design.exporters.vectors import make_vectors
-from nrs_design.models.robot import build_robot
 from nrs_design.pipeline import run_design
-from nrs_design.pipeline.robots import run_robot_laws
+from nrs_design.robot.exporters.robot_tree import RobotExport
+from nrs_design.robot.models import build_robot
+from nrs_design.robot.pipeline import run_robot_laws
 from nrs_design.spec import RobotSpec, read_spec
 
 HERE = Path(__file__).parent

@@ -26,7 +26,7 @@ STAGES = {"models", "design", "switched", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
 DOORS = {
     "nrs_design.models.contact",
-    "nrs_design.models.robot",
+    "nrs_design.robot.models",
     "nrs_design.search.certification",
     "nrs_design.search.gradient_settings",
     "nrs_design.search.method",
@@ -233,7 +233,7 @@ def test_only_the_pipeline_calls_the_stages():
     assert {name for name, _ in callers} == {
         "nrs_design.pipeline",
         "nrs_design.switched.assemble",
-        "nrs_design.reproduction.switching",
+        "nrs_design.thesis.switching",
         "nrs_design.ros2.check",
         "nrs_design.ros2.export",
     }

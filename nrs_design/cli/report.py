@@ -241,8 +241,8 @@ def _report_robot(
     """Report a robot; return the exit code, that of `robot check`."""
     from nrs_design.ownership import check_page
     from nrs_design.pipeline import placed
-    from nrs_design.pipeline.robots import run_robot
-    from nrs_design.reporting.robot import robot_report
+    from nrs_design.robot.pipeline import run_robot
+    from nrs_design.robot.reporting.robot import robot_report
 
     spec = loaded.path
     check_page(spec, out or REPORTS / f"{loaded.spec.name}.html")

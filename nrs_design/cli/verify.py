@@ -189,7 +189,7 @@ def _file_of(robot: Path) -> Path:
 
 
 def _bounds_faults(robot: Path, *, again: bool, quiet: bool) -> list[str]:
-    from nrs_design.pipeline.robots import check_robot_bounds, contradict_robot_bounds
+    from nrs_design.robot.pipeline import check_robot_bounds, contradict_robot_bounds
 
     with progress(f"bounds of {robot.name}", quiet=quiet, lines=again) as step:
         if again:

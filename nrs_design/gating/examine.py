@@ -285,7 +285,7 @@ class Examiner:
             What the lock file says of its bounds.
         """
         # Poses are tried with NumPy, which nothing else of `--locked` needs.
-        from nrs_design.pipeline.robots import contradict_robot_bounds
+        from nrs_design.robot.pipeline import contradict_robot_bounds
 
         file, faults = contradict_robot_bounds(robot)
         place = self.places.at("coupling", "robot")

@@ -34,9 +34,9 @@ from nrs_design.pipeline import (
     run_verification,
     search_limits,
 )
-from nrs_design.pipeline.robots import check_robot_bounds
 from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.progress import Progress, silent
+from nrs_design.robot.pipeline import check_robot_bounds
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
-    from nrs_design.simulation.robot_body import Arm
+    from nrs_design.robot.simulation.robot_body import Arm
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec
@@ -169,8 +169,8 @@ def _arm(designed: Designed, name: str) -> Arm:
     """Return the robot of a spec in the pose in which a scenario of three axes begins."""
     import numpy as np
 
-    from nrs_design.pipeline.robots import run_robot
-    from nrs_design.simulation.robot_body import Arm
+    from nrs_design.robot.pipeline import run_robot
+    from nrs_design.robot.simulation.robot_body import Arm
 
     spec = designed.spec
     assert spec.coupling is not None

@@ -8,9 +8,9 @@ from dataclasses import replace
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
-from nrs_design.simulation.mujoco_body import MujocoBody
+from nrs_design.robot.simulation.mujoco_body import MujocoBody
+from nrs_design.robot.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.processor import AbstractBody, Motors, run_axes
-from nrs_design.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, MAX_STEPS, Deviation, Run
 from nrs_design.simulation.sampled import sampled_axis
 from nrs_design.simulation.sampled_axis import SampledAxis

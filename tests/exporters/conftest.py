@@ -3,10 +3,10 @@
 import pytest
 
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.models.robot import build_robot
-from nrs_design.pipeline.robots import run_robot_laws
+from nrs_design.robot.models import build_robot
+from nrs_design.robot.pipeline import run_robot_laws
 from nrs_design.spec import read_spec
-from tests.models.robot.crooked import crooked
+from tests.robot.models.crooked import crooked
 from tests.support import ROOT
 
 CONTINUOUS = ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"

@@ -13,6 +13,7 @@ from nrs_design.spec import LoadedSpec, read_spec
 if TYPE_CHECKING:
     from nrs_design.controllers.operations import StepLaw
     from nrs_design.robot.models import Robot
+    from nrs_design.robot.simulation.robot_body import Arm
     from nrs_design.spec import RobotSpec
 
 
@@ -37,6 +38,26 @@ def run_robot(path: Path) -> tuple[LoadedSpec, RobotSpec, Robot]:
         )
     with placed(loaded):
         return loaded, loaded.spec, build_robot(loaded.spec)
+
+
+def build_arm(path: Path, rest: tuple[float, float, float] | None, holds: bool) -> Arm:
+    """Return a robot that stands in a pose.
+
+    Parameters
+    ----------
+    path : Path
+        The spec of the robot.
+    rest : tuple of float or None
+        The pose (phi, psi, d) in rad and m; None for its home.
+    holds : bool
+        Whether gravity is compensated in that pose alone.
+    """
+    import numpy as np
+
+    from nrs_design.robot.simulation.robot_body import Arm
+
+    _, _, robot = run_robot(path)
+    return Arm(robot, robot.home if rest is None else np.array(rest), holds)
 
 
 def run_robot_laws(spec: RobotSpec, robot: Robot) -> dict[str, StepLaw]:

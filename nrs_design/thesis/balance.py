@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from nrs_design.robot.models import design_balance
 from nrs_design.robot.models.balance import LegBalance
+from nrs_design.robot.models.neuroboscope import robot, robot_spec
 from nrs_design.thesis.comparison import (
     ReproducedValue,
     Tolerance,
@@ -14,7 +15,6 @@ from nrs_design.thesis.comparison import (
     omitted,
     reproduced,
 )
-from nrs_design.thesis.neuroboscope import robot, robot_spec
 
 # Thesis 4.4: M_c, M_b, M_a in g, B_a in mm, k in N/mm.
 LEFT = ("843.5", "1301.1", "2887.9", "113.5", "1.8041")

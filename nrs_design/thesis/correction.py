@@ -6,6 +6,7 @@ import numpy as np
 
 from nrs_design.robot.models import Correction, correction_coefficients
 from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, WHOLE_WORKSPACE, Sine
+from nrs_design.robot.models.neuroboscope import robot
 from nrs_design.thesis.comparison import (
     ReproducedValue,
     Tolerance,
@@ -14,7 +15,6 @@ from nrs_design.thesis.comparison import (
     near,
     omitted,
 )
-from nrs_design.thesis.neuroboscope import robot
 
 # Thesis table 3.5: the rows with plain sines, in its order.
 SINES = (

@@ -17,6 +17,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.robot.models import inverse_kinematics
 from nrs_design.robot.models.dynamics import gravity_torque, potential_energy
 from nrs_design.robot.models.geometry import direction
+from nrs_design.robot.models.neuroboscope import robot, robot_spec
 from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norm
 from nrs_design.switched.modes import Rows
@@ -24,7 +25,6 @@ from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue, claim
 from nrs_design.thesis.errata import Erratum, errata
 from nrs_design.thesis.matrices import family, impedance_rows, printed_rows
-from nrs_design.thesis.neuroboscope import robot, robot_spec
 
 # A pose in rad and m, and rates of it in 1/s and m/s; any would do.
 _POSE, _RATE = np.array((0.1, -0.2, 0.2)), np.array((0.3, -0.2, 0.05))

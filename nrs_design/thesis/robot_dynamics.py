@@ -16,6 +16,7 @@ from nrs_design.robot.models import (
 )
 from nrs_design.robot.models.body import slender_rod
 from nrs_design.robot.models.correction import TABLE_3_5
+from nrs_design.robot.models.neuroboscope import robot
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import (
     ReproducedValue,
@@ -25,7 +26,6 @@ from nrs_design.thesis.comparison import (
     reproduced,
 )
 from nrs_design.thesis.correction import AXIAL
-from nrs_design.thesis.neuroboscope import robot
 
 
 def rows() -> tuple[ReproducedValue, ...]:

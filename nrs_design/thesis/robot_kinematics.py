@@ -15,6 +15,7 @@ from nrs_design.robot.models import (
     thesis_grid,
 )
 from nrs_design.robot.models.geometry import direction
+from nrs_design.robot.models.neuroboscope import robot
 from nrs_design.robot.models.vectors import Array
 from nrs_design.thesis.comparison import (
     PrintVerdict,
@@ -26,7 +27,6 @@ from nrs_design.thesis.comparison import (
     near,
     reproduced,
 )
-from nrs_design.thesis.neuroboscope import robot
 
 POSE = (0.1, -0.2, 0.2)
 _ROUNDING = 1e-12

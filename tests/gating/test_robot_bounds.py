@@ -66,7 +66,7 @@ def answer(monkeypatch, name, told):
 
 
 def computed(monkeypatch, told):
-    return answer(monkeypatch, "nrs_design.gating.run.check_robot_bounds", told)
+    return answer(monkeypatch, "nrs_design.robot.pipeline.check_robot_bounds", told)
 
 
 def tried(monkeypatch, told):

@@ -5,9 +5,10 @@ import pytest
 
 from nrs_design.robot.models import build_robot
 from nrs_design.robot.simulation.tracking import thesis_experiments
+from nrs_design.robot.simulation.tracking.measured import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
-from nrs_design.thesis.tracking import measured_rmse, rows
+from nrs_design.thesis.tracking import rows
 
 TEXT = TEMPLATES["robot"]
 # Tables 4.2 to 4.10: phi and psi in deg, d in mm, where d, phi and psi moves.

@@ -8,18 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Date, Json, Quiet
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.options import Date, Json, Quiet, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import CertificateError
-from nrs_design.identification.cli.identify.common import (
-    SYNTHETIC,
-    ColumnMap,
-    Destinations,
-    ReportTo,
-    read_all,
-    sources,
-)
+from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all, sources
 
 if TYPE_CHECKING:
     from nrs_design.identification.running import Check, RunJudgement

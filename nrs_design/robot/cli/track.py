@@ -147,7 +147,7 @@ def _ablation(
 
 
 def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
-    from nrs_design.thesis.tracking import measured_rmse
+    from nrs_design.robot.simulation.tracking.measured import measured_rmse
 
     measured = measured_rmse(spec, robot, record.controller, record.experiment)
     return record.summary() | {"measured_on_robot": measured}

@@ -32,7 +32,7 @@ from nrs_design.robot.models import (
     tilt_table,
 )
 from nrs_design.spec import read_spec
-from tests.exporters.conftest import crooked
+from tests.robot.models.crooked import crooked
 from tests.support import ROOT
 
 SPEC = read_spec(ROOT / "specs/robots/neuroboscope.nrs.yaml").spec

@@ -8,8 +8,8 @@ from nrs_design.robot.controllers.traced_dynamics import is_flat
 from nrs_design.robot.models import inverse_dynamics, inverse_kinematics
 from nrs_design.robot.models.body import Body
 from nrs_design.robot.models.lumped import in_lengths, lumped
-from tests.exporters.conftest import crooked
 from tests.robot.controllers.test_step_laws import RNG, THESIS, check_torques, poses
+from tests.robot.models.crooked import crooked
 
 
 def uneven(robot):

@@ -10,8 +10,8 @@ from nrs_design.controllers.trace import Trace
 from nrs_design.robot.controllers.step_laws import Joints
 from nrs_design.robot.controllers.traced_robot import LARGEST_ANGLES, RESTING, TracedRobot
 from nrs_design.robot.models import gravity_torque, inverse_dynamics, inverse_kinematics
-from tests.exporters.conftest import crooked
 from tests.robot.controllers.test_step_laws import RNG, THESIS, outputs, poses, run
+from tests.robot.models.crooked import crooked
 
 LIMIT = Fraction(1000)
 

@@ -11,7 +11,6 @@ from nrs_design.controllers.trace import Trace
 from nrs_design.robot.controllers.step_laws import Joints
 from nrs_design.robot.controllers.traced_weight import weight
 from nrs_design.robot.models import gravity_torque, inverse_kinematics
-from tests.exporters.conftest import crooked
 from tests.robot.controllers.test_step_laws import (
     RATIO,
     THESIS,
@@ -21,6 +20,7 @@ from tests.robot.controllers.test_step_laws import (
     poses,
     run,
 )
+from tests.robot.models.crooked import crooked
 
 GRAVITY = tuple(
     Value(f"gravity_{axis}", "", "m/s^2", Fraction(1000), "in the base frame") for axis in "xz"

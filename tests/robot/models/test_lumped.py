@@ -4,7 +4,7 @@ import numpy as np
 
 from nrs_design.robot.models import inverse_dynamics, is_reachable
 from nrs_design.robot.models.lumped import lumped
-from tests.exporters.conftest import crooked
+from tests.robot.models.crooked import crooked
 
 RNG = np.random.default_rng(12)
 

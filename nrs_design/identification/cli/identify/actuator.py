@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.options import Date, Json, Quiet
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.options import Date, Json, Quiet, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
@@ -14,8 +15,6 @@ from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
     DataFiles,
-    Destinations,
-    ReportTo,
     WriteTo,
     estimate_numbers,
     read_all,

@@ -4,13 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.cli.destinations import Destinations
 from nrs_design.errors import NrsDesignError, OutputError, SpecError
-from nrs_design.identification.cli.identify.common import (
-    Destinations,
-    estimate_numbers,
-    read_all,
-    sources,
-)
+from nrs_design.identification.cli.identify.common import estimate_numbers, read_all, sources
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.statistics import Estimate
 from tests.support import SOFT_TISSUE

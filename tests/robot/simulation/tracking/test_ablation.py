@@ -1,9 +1,9 @@
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from nrs_design.robot.simulation.tracking import ablation_tracks, simulate
+from tests.support import ROOT
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def test_one_thing_at_a_time(changed, drive):
 
 @pytest.mark.slow
 def test_the_page_states_what_the_changes_do(changed):
-    page = (Path(__file__).parents[3] / "docs/robot/motion-control.md").read_text()
+    page = (ROOT / "docs/robot/motion-control.md").read_text()
     names = ("as designed", "rotor inertia in the law")
     chosen = [(name, track.only("phi")) for name, track in changed if name in names]
     for (name, track), record in zip(chosen, simulate(t for _, t in chosen), strict=True):

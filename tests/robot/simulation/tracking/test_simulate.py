@@ -1,6 +1,5 @@
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +7,7 @@ import pytest
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.errors import DesignError
 from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, simulate
+from tests.support import ROOT
 
 # Fast, after a short hold, so that little simulated time shows everything.
 PERIOD, HOLD = 2.0, 0.5
@@ -127,7 +127,7 @@ def test_too_many_ticks(tracks):
 @pytest.mark.slow
 def test_the_page_states_what_is_simulated(spec, robot):
     found = simulate([build_track(spec, robot, name) for name in CONTROLLERS])
-    page = (Path(__file__).parents[3] / "docs/robot/motion-control.md").read_text()
+    page = (ROOT / "docs/robot/motion-control.md").read_text()
     first = page.index("| computed-torque | d | 10 |")
     rows = [line.strip("| ").split(" | ") for line in page[first:].splitlines()[:9]]
     for record, row in zip(found, rows, strict=True):

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from nrs_design.robot.models import neuroboscope
 from nrs_design.thesis import (
     hands_on,
     impedance,
     modes,
-    neuroboscope,
     robot_dynamics,
     robot_kinematics,
     table,

@@ -13,8 +13,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from nrs_design.models.robot import Leg, Robot, posture
-from nrs_design.models.robot.body import Body
+from nrs_design.robot.models import Leg, Robot, posture
+from nrs_design.robot.models.body import Body
 
 Array = NDArray[np.float64]
 X, Y, Z = np.eye(3)

@@ -9,8 +9,8 @@ import pinocchio as pin
 
 from benchmarks.measure import Comparison, Size, time_side_by_side
 from benchmarks.pinocchio_tree import Array, Tree
-from nrs_design.models.robot import build_robot, inverse_dynamics, posture
-from nrs_design.models.robot.motion import joint_driven
+from nrs_design.robot.models import build_robot, inverse_dynamics, posture
+from nrs_design.robot.models.motion import joint_driven
 from nrs_design.spec import RobotSpec, load_spec
 
 SPEC = Path(__file__).parents[1] / "specs" / "robots" / "neuroboscope.nrs.yaml"

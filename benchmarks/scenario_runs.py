@@ -21,11 +21,11 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.plant import Plant
 from nrs_design.pipeline import Designed, run_design
-from nrs_design.pipeline.robots import run_robot
+from nrs_design.robot.pipeline import run_robot
+from nrs_design.robot.simulation.robot_body import Arm
 from nrs_design.simulation.bodies import simulate_on_body
 from nrs_design.simulation.build_scenario import default_scenario
 from nrs_design.simulation.exact import simulate_exactly
-from nrs_design.simulation.robot_body import Arm
 from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Array, Control, Profile, Scenario
 from nrs_design.spec import InteractionDesignSpec, read_spec

@@ -65,7 +65,7 @@ def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
         path.relative_to(PACKAGE).as_posix()
         for path in FILES.values()
         if {law, f"{file.capitalize()}ControllerSpec"} & names_in(path)
-        and path.parent.name != "reproduction"
+        and "thesis" not in path.parts
     }
     assert known <= also | {
         f"controllers/laws/{file}.py",
@@ -82,13 +82,13 @@ HELD = {"type", "model", "linear_model", "kind", "law", "command"}
 # with nothing.
 ALLOWED = {
     ("nrs_design.reporting.sections.places", "get"),
-    ("nrs_design.identification.datasets.arrays", "get"),
+    ("nrs_design.tables.arrays", "get"),
 }
 # Kinds of specs have nothing in common that could be asked for instead. A command refuses those
 # that it is not about, or does nothing for them.
 KINDS_OF_SPECS = {
     ("nrs_design.certificates.goals", "interaction-design"),
-    ("nrs_design.cli.audit", "interaction-design"),
+    ("nrs_design.identification.cli.audit", "interaction-design"),
     ("nrs_design.cli.check", "interaction-design"),
     ("nrs_design.cli.mode_logic", "interaction-design"),
     ("nrs_design.cli.report", "robot"),
@@ -99,7 +99,7 @@ KINDS_OF_SPECS = {
     ("nrs_design.pipeline.design", "interaction-design"),
     ("nrs_design.pipeline.design", "robot"),
     ("nrs_design.pipeline.margins", "robot"),
-    ("nrs_design.pipeline.robots", "robot"),
+    ("nrs_design.robot.pipeline", "robot"),
     ("nrs_design.spec.doubts", "interaction-design"),
     ("nrs_design.spec.load", "interaction-design"),
     ("nrs_design.switched.assemble", "robot"),
@@ -241,7 +241,7 @@ def test_a_linear_law_of_contact_is_known_to_the_files_of_the_table(law, file):
     known = {
         path.relative_to(PACKAGE).as_posix()
         for path in FILES.values()
-        if {law, f"{law}Spec"} & names_in(path) and path.parent.name != "reproduction"
+        if {law, f"{law}Spec"} & names_in(path) and "thesis" not in path.parts
     }
     assert known <= {
         f"models/contact/{file}.py",

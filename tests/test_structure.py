@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from nrs_design.cli.app import COMMANDS
+from nrs_design.wings import WINGS
 from tests.package import FILES, nodes_of
 from tests.support import ROOT
 
@@ -22,11 +24,28 @@ KNOWN_CYCLES = {
     # The root names for type checkers what it loads when it is asked, and holds the version.
     ("nrs_design.api", "nrs_design"),
 }
+# What the dissertation says of its robot is computed by the robot.
+BETWEEN_WINGS = {("thesis", "robot")}
+# Where the core hands over to a wing, and to which module.
+REACHED = {
+    # Commands: any of the table.
+    ("nrs_design.cli.app", None, None),
+    # A spec of kind robot has a page of its own.
+    ("nrs_design.cli.report", "robot", "pipeline"),
+    ("nrs_design.cli.report", "robot", "reporting.robot"),
+    # Bounds on what the links of a robot do are computed by its model.
+    ("nrs_design.cli.verify", "robot", "pipeline"),
+    ("nrs_design.gating.examine", "robot", "pipeline"),
+    ("nrs_design.gating.run", "robot", "pipeline"),
+    # What a scenario moves may be all links, or MuJoCo.
+    ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
+    ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
+}
 STAGES = {"models", "design", "switched", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
 DOORS = {
     "nrs_design.models.contact",
-    "nrs_design.models.robot",
+    "nrs_design.robot.models",
     "nrs_design.search.certification",
     "nrs_design.search.gradient_settings",
     "nrs_design.search.method",
@@ -89,6 +108,18 @@ def floor(module: str) -> str:
     return [*module.split("."), "__init__"][1]
 
 
+def wing(module: str) -> str | None:
+    """The wing in which a module lies; None for the core."""
+    return floor(module) if floor(module) in WINGS else None
+
+
+def role(module: str) -> str:
+    """The floor of a module; in a wing, which has floors of the same names, that within it."""
+    inner = [*module.split("."), "", ""][2]
+    home = FILES.get(f"nrs_design.{inner}")
+    return inner if wing(module) and home and home.name == "__init__.py" else floor(module)
+
+
 def floors() -> list[str]:
     """The floors of docs/architecture.md, ground floor first."""
     text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
@@ -112,6 +143,48 @@ def test_imports_point_downward():
     ]
     assert not up
     assert {item.target for item in ours() if item.source == "nrs_design"} == {"nrs_design.api"}
+
+
+def test_the_core_imports_no_wing():
+    assert [item for item in ours() if wing(item.target) and not wing(item.source)] == []
+
+
+def test_a_wing_imports_no_other_wing():
+    """Not for annotations, either."""
+    pairs = {(wing(item.source), wing(item.target)) for item in ours()}
+    assert {(a, b) for a, b in pairs if a and b and a != b} == BETWEEN_WINGS
+
+
+def test_a_wing_has_floors_too():
+    """Those of the core, on top of what is the wing's own."""
+    rank = {name: height for height, name in enumerate(floors())}
+    rank |= dict.fromkeys(WINGS, -1)
+    up = [
+        item
+        for item in ours()
+        if wing(item.source)
+        and wing(item.source) == wing(item.target)
+        and rank[role(item.target)] > rank[role(item.source)]
+    ]
+    assert not up
+
+
+def test_the_core_reaches_wings_in_these_places_only():
+    found = {
+        (name, *(getattr(argument, "value", None) for argument in node.args))
+        for name, path in FILES.items()
+        for node in nodes_of(path)
+        if isinstance(node, ast.Call) and getattr(node.func, "id", None) == "load_wing"
+    }
+    places = {(name, at if at in WINGS else None, inner) for name, at, inner in found}
+    assert {(n, at, inner if at else None) for n, at, inner in places} == REACHED
+    assert {f"nrs_design.{at}.{inner}" for _, at, inner in REACHED if at} <= FILES.keys()
+
+
+def test_every_command_of_a_wing_is_in_the_module_of_its_name():
+    modules = {f"nrs_design.{name}.cli.{c}" for name, commands in WINGS.items() for c in commands}
+    assert modules <= FILES.keys()
+    assert {c for commands in WINGS.values() for c in commands} <= set(COMMANDS)
 
 
 def test_no_module_imports_itself_by_way_of_others():
@@ -182,8 +255,8 @@ def test_stages_are_known_to_the_pipeline_only(above):
     inside = [
         item
         for item in ours()
-        if floor(item.source) == above
-        and floor(item.target) in STAGES
+        if role(item.source) == above
+        and role(item.target) in STAGES
         and item.target not in DOORS
         and not (item.typing_only and item.target in PRINTED)
     ]
@@ -192,7 +265,7 @@ def test_stages_are_known_to_the_pipeline_only(above):
 
 def test_a_report_assembles_and_searches_nothing():
     """It shows what the pipeline gives it, and draws the curves of a design."""
-    read = {item.target for item in ours() if floor(item.source) == "reporting"}
+    read = {item.target for item in ours() if role(item.source) == "reporting"}
     assert {name for name in read if floor(name) in ("switched", "search")} == {
         "nrs_design.search.certification",
         "nrs_design.search.gradient_settings",
@@ -235,7 +308,7 @@ def test_only_the_pipeline_calls_the_stages():
     assert {name for name, _ in callers} == {
         "nrs_design.pipeline",
         "nrs_design.switched.assemble",
-        "nrs_design.reproduction.switching",
+        "nrs_design.thesis.switching",
         "nrs_design.ros2.check",
         "nrs_design.ros2.export",
     }
@@ -274,7 +347,7 @@ def test_a_class_name_means_one_thing():
 
 def test_a_function_name_means_one_thing():
     found = homes(ast.FunctionDef)
-    below = {name: [m for m in where if floor(m) != "cli"] for name, where in found.items()}
+    below = {name: [m for m in where if role(m) != "cli"] for name, where in found.items()}
     assert {name for name, where in below.items() if len(where) > 1} == SHARED
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from making.tables import cell
-from nrs_design.reproduction.table import printed_errors, reproduce
+from nrs_design.thesis.table import printed_errors, reproduce
 
 
 def misprints_table() -> str:

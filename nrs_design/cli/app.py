@@ -19,8 +19,9 @@ from nrs_design.cli.printing import note, print_json
 from nrs_design.cli.streams import lasting
 from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
+from nrs_design.wings import load_wing, wing_of
 
-# Each is in the module of its name; the help lists them in this order.
+# Each is in the module of its name, here or in its wing; the help lists them in this order.
 COMMANDS = (
     "init",
     "check",
@@ -77,13 +78,30 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
     )
     app.callback()(_root)
     for name in names:
-        attribute = name.replace("-", "_")
-        command = getattr(import_module(f"nrs_design.cli.{attribute}"), attribute)
+        attribute, wing = name.replace("-", "_"), wing_of(name)
+        if wing is None:
+            module = import_module(f"nrs_design.cli.{attribute}")
+        else:
+            try:
+                module = load_wing(wing, f"cli.{attribute}")
+            except NrsDesignError as error:
+                _refuse(app, name, error)
+                continue
+        command = getattr(module, attribute)
         if isinstance(command, typer.Typer):
             app.add_typer(command, name=name)
         else:
             app.command(name)(command)
     return app
+
+
+def _refuse(app: typer.Typer, name: str, error: NrsDesignError) -> None:
+    """Add a command that, whatever its arguments, says that its wing is missing."""
+    anything = {"ignore_unknown_options": True, "allow_extra_args": True, "help_option_names": []}
+
+    @app.command(name, help=f"({error.message})", context_settings=anything)
+    def refuse() -> None:
+        raise error
 
 
 def _show_version(requested: bool) -> None:

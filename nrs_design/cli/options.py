@@ -63,6 +63,11 @@ Date = Annotated[
     ),
 ]
 
+ReportTo = Annotated[
+    Path | None,
+    typer.Option("--report", metavar="FILE", help="Write a page with figures (.html or .pdf)."),
+]
+
 
 class CoordinatesOption(StrEnum):
     """State coordinates of an interaction design."""

@@ -241,15 +241,15 @@ def _report_robot(
     """Report a robot; return the exit code, that of `robot check`."""
     from nrs_design.ownership import check_page
     from nrs_design.pipeline import placed
-    from nrs_design.pipeline.robots import run_robot
-    from nrs_design.reporting.robot import robot_report
+    from nrs_design.wings import load_wing
 
     spec = loaded.path
     check_page(spec, out or REPORTS / f"{loaded.spec.name}.html")
     with progress(f"reporting {loaded.spec.name}", quiet=quiet):
-        _, robot_spec, robot = run_robot(spec)
+        _, robot_spec, robot = load_wing("robot", "pipeline").run_robot(spec)
+        pages = load_wing("robot", "reporting.robot")
         with placed(loaded):
-            page = robot_report(loaded, robot_spec, robot, date)
+            page: Report = pages.robot_report(loaded, robot_spec, robot, date)
         files = _write(page, file_format, out, spec)
     if as_json:
         _print_json(loaded, page.verdict, None, files)

@@ -189,12 +189,13 @@ def _file_of(robot: Path) -> Path:
 
 
 def _bounds_faults(robot: Path, *, again: bool, quiet: bool) -> list[str]:
-    from nrs_design.pipeline.robots import check_robot_bounds, contradict_robot_bounds
+    from nrs_design.wings import load_wing
 
+    robots = load_wing("robot", "pipeline")
     with progress(f"bounds of {robot.name}", quiet=quiet, lines=again) as step:
         if again:
-            return list(check_robot_bounds(robot, BUDGET, step)[1])
-        return list(contradict_robot_bounds(robot, step)[1])
+            return list(robots.check_robot_bounds(robot, BUDGET, step)[1])
+        return list(robots.contradict_robot_bounds(robot, step)[1])
 
 
 _NEXT = {

@@ -9,7 +9,6 @@ from math import ceil, floor
 from nrs_design.controllers.float32 import float32_not_above, to_float32
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.identification.running import bounds_of_spec, switching_rules
 from nrs_design.spec import InteractionDesignSpec
 
 # Longer than any processor runs.
@@ -63,7 +62,7 @@ def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
     record, spec = export.shipped(), export.spec
     assert spec is not None
     assert record.sample_time is not None
-    period, allowed = Fraction(record.sample_time.exact), bounds_of_spec(spec).transitions
+    period, allowed = Fraction(record.sample_time.exact), spec.switching.of_a_run.transitions
     command = spec.limits.command
     speed = None if spec.coupling is None else spec.coupling.speed
     return MonitorLimits(
@@ -81,7 +80,7 @@ def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
 
 
 def _stay(spec: InteractionDesignSpec, name: str, period: Fraction) -> tuple[int, int]:
-    shortest, longest = switching_rules(spec).stay(name)
+    shortest, longest = spec.switching.of_a_run.stay(name)
     return (
         0 if shortest is None else ceil(shortest.value / period),
         FOREVER if longest is None else floor(longest.value / period),

@@ -47,6 +47,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peaks import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
+from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -296,10 +297,7 @@ class Examiner:
         locked : LockedGoal, optional
             What the lock file says of its bounds.
         """
-        # Poses are tried with NumPy, which nothing else of `--locked` needs.
-        from nrs_design.pipeline.robots import contradict_robot_bounds
-
-        file, faults = contradict_robot_bounds(robot)
+        file, faults = load_wing("robot", "pipeline").contradict_robot_bounds(robot)
         place = self.places.at("coupling", "robot")
         caution = Caution(
             self.loaded.path,

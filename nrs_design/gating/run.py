@@ -34,10 +34,10 @@ from nrs_design.pipeline import (
     run_verification,
     search_limits,
 )
-from nrs_design.pipeline.robots import check_robot_bounds
 from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
+from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
@@ -121,7 +121,9 @@ class Robots:
         key = Path(os.path.realpath(robot))
         if key not in self.checked:
             try:
-                self.checked[key] = check_robot_bounds(robot, BUDGET, progress)
+                self.checked[key] = load_wing("robot", "pipeline").check_robot_bounds(
+                    robot, BUDGET, progress
+                )
             except DesignError as error:
                 self.checked[key] = error
         found = self.checked[key]

@@ -25,7 +25,6 @@ from nrs_design.models.contact import (
     HuntCrossley,
 )
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
-from nrs_design.spec.describe import describe
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
@@ -398,17 +397,6 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
 def check_tool(loaded: LoadedSpec) -> InteractionDesignSpec:
     """Refuse, before a fit, a spec that no tool can go into: one that is no interaction design."""
     return _interaction(loaded)
-
-
-def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return what a new text of a spec changes, and what it has no longer, a line each."""
-    old, new = (
-        {row.name: row.written for row in describe(spec)}
-        for spec in (loaded.spec, parse_spec(text))
-    )
-    changed = (f"{n}: {w} -> {new[n]}" for n, w in old.items() if n in new and new[n] != w)
-    lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
-    return tuple(changed), tuple(lost)
 
 
 def _left(bias: Sequence[Estimate], unit: str) -> str:

@@ -12,9 +12,9 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.noun import dataclass
+from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
-    from nrs_design.simulation.robot_body import Arm
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec
@@ -165,21 +165,18 @@ def _usual(spec: InteractionDesignSpec, group: Sequence[Scenario]) -> str:
     return "sampled" if sampled else "exact"
 
 
-def _arm(designed: Designed, name: str) -> Arm:
+def _arm(designed: Designed, name: str) -> object:
     """Return the robot of a spec in the pose in which a scenario of three axes begins."""
-    import numpy as np
-
-    from nrs_design.pipeline.robots import run_robot
-    from nrs_design.simulation.robot_body import Arm
-
     spec = designed.spec
     assert spec.coupling is not None
     assert spec.coupling.robot is not None
-    _, _, robot = run_robot(folder_of(designed) / spec.coupling.robot)
     axes = spec.scenarios[name].axes if name in spec.scenarios else None
     pose = None if axes is None else axes.pose
-    rest = robot.home if pose is None else np.array([pose.phi.si, pose.psi.si, pose.d.si])
-    return Arm(robot, rest, spec.coupling.gravity_compensated == "at-rest")
+    rest = None if pose is None else (pose.phi.si, pose.psi.si, pose.d.si)
+    holds = spec.coupling.gravity_compensated == "at-rest"
+    path = folder_of(designed) / spec.coupling.robot
+    arm: object = load_wing("robot", "pipeline").build_arm(path, rest, holds)
+    return arm
 
 
 def _sampling(spec: InteractionDesignSpec, wanted: Runs) -> SamplingSpec:

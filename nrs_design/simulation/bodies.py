@@ -8,14 +8,13 @@ from dataclasses import replace
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
-from nrs_design.simulation.mujoco_body import MujocoBody
 from nrs_design.simulation.processor import AbstractBody, Motors, run_axes
-from nrs_design.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.run import LEFT_OUT_ON_LINKS, MAX_STEPS, Deviation, Run
 from nrs_design.simulation.sampled import sampled_axis
 from nrs_design.simulation.sampled_axis import SampledAxis
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.wings import load_wing
 
 SAMPLED, MUJOCO = "sampled", "mujoco"
 
@@ -26,7 +25,7 @@ def simulate_on_body(
     design: ControllerDesign,
     scenarios: Sequence[Scenario],
     engine: str,
-    arm: Arm | None = None,
+    arm: object | None = None,
     *,
     max_steps: int = MAX_STEPS,
     tell: Progress = silent,
@@ -43,7 +42,7 @@ def simulate_on_body(
         What moves. With MuJoCo the sampled engine runs as well, and the runs say how far they are
         from it.
     arm : Arm, optional
-        The robot of three axes.
+        The robot of three axes, as the wing of robots builds it.
     max_steps, tell
         As there.
 
@@ -94,7 +93,8 @@ def deviation(run: Run, other: Run) -> Deviation:
     )
 
 
-def _body(name: str, axes: Sequence[SampledAxis], plant: Plant, arm: Arm | None) -> AbstractBody:
-    if name == MUJOCO:
-        return MujocoBody(axes, plant, arm)
-    return Motors() if arm is None else RobotBody(arm, plant, axes)
+def _body(name: str, axes: Sequence[SampledAxis], plant: Plant, arm: object | None) -> AbstractBody:
+    if name == SAMPLED and arm is None:
+        return Motors()
+    body: AbstractBody = load_wing("robot", "simulation.bodies").body_of(axes, plant, arm, name)
+    return body

@@ -205,7 +205,7 @@ def _check_inside(path: Path, folder: Path) -> None:
 
 
 def _recorded(path: Path, largest: float) -> tuple[Profile, float]:
-    from nrs_design.identification.datasets.table import read_table
+    from nrs_design.tables.table import read_table
 
     table = read_table(path, (("time", "velocity"),), {}, lambda done: None, ())
     columns = table.groups[""]

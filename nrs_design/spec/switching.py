@@ -186,6 +186,14 @@ class SwitchingSpec(SpecModel):
         ends = (name for transition in self.transitions or () for name in transition)
         return any("/" in name for name in (*named, *ends))
 
+    @property
+    def of_a_run(self) -> SwitchingSpec:
+        """The rules that a run can be held against.
+
+        It says which controller is active, not what is touched.
+        """
+        return SwitchingSpec() if self.names_contacts else self
+
     def __str__(self) -> str:
         """Say the rules in a few words."""
         rules = [

@@ -9,7 +9,7 @@ from making.misprints import misprints_table
 from making.offline import loaded_from_elsewhere
 
 from nrs_design.design.impedance_optimum import impedance_cost, optimize_impedance
-from nrs_design.reproduction.table import printed_errors, reproduce
+from nrs_design.thesis.table import printed_errors, reproduce
 from tests.support import ROOT, SOFT_TISSUE
 
 ARCHITECTURE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")

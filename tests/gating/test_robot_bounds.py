@@ -11,8 +11,8 @@ from nrs_design.gating.lock import read_lock, read_lock_if_any
 from nrs_design.gating.locked import run_locked
 from nrs_design.gating.renew import bounds_of, write_lock
 from nrs_design.gating.run import Files, run_gate
-from nrs_design.models.robot import Space, bounds_document, compute_bounds
-from nrs_design.pipeline.robots import run_robot
+from nrs_design.robot.models import Space, bounds_document, compute_bounds
+from nrs_design.robot.pipeline import run_robot
 from nrs_design.spec.robot_bounds import bounds_file, content_id
 from tests.spec.test_robot_bounds import COUPLING, LOADED, write
 from tests.support import ROOT
@@ -66,11 +66,11 @@ def answer(monkeypatch, name, told):
 
 
 def computed(monkeypatch, told):
-    return answer(monkeypatch, "nrs_design.gating.run.check_robot_bounds", told)
+    return answer(monkeypatch, "nrs_design.robot.pipeline.check_robot_bounds", told)
 
 
 def tried(monkeypatch, told):
-    return answer(monkeypatch, "nrs_design.pipeline.robots.contradict_robot_bounds", told)
+    return answer(monkeypatch, "nrs_design.robot.pipeline.contradict_robot_bounds", told)
 
 
 def test_what_was_computed_again_is_met_and_on_trust_when_locked(root, monkeypatch):

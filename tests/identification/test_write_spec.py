@@ -16,10 +16,10 @@ from nrs_design.identification.write_spec import (
     merge_actuator,
     merge_delay,
     merge_tissue,
-    spec_changes,
 )
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
 from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.changes import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow

@@ -120,7 +120,7 @@ def test_functions_are_counted_wherever_they_are_used():
             for path in package.rglob("*.py")
             if f"{name}(" in path.read_text(encoding="utf-8")
         }
-        assert {item for item in using if not item.startswith("reproduction/")} == places
+        assert {item for item in using if not item.startswith("thesis/")} == places
 
 
 def test_the_design_keeps_the_optimum_it_found():

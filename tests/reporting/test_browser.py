@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
-from nrs_design.reproduction.gallery.figures import draw_counterparts
-from nrs_design.reproduction.gallery.page import gallery_page
-from nrs_design.reproduction.page import render_page
-from nrs_design.reproduction.table import reproduce
+from nrs_design.thesis.gallery.figures import draw_counterparts
+from nrs_design.thesis.gallery.page import gallery_page
+from nrs_design.thesis.page import render_page
+from nrs_design.thesis.table import reproduce
 from tests.reporting.conftest import KINDS
 from tests.support import program_named
 

@@ -8,8 +8,6 @@ import pytest
 
 from nrs_design.errors import DesignError
 from nrs_design.proof.mode import Time
-from nrs_design.reproduction import thesis
-from nrs_design.reproduction.matrices import impedance_rows
 from nrs_design.search.balance import own_norm
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
@@ -23,6 +21,8 @@ from nrs_design.search.gradient import (
 )
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
+from nrs_design.thesis import thesis
+from nrs_design.thesis.matrices import impedance_rows
 from nrs_design.work import Allowance, NotAffordableError
 from tests.support import dayawansa_martin, family, holds
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.models.robot import build_robot
+from nrs_design.robot.models import build_robot
 from nrs_design.spec import RobotSpec, parse_spec
 from nrs_design.spec.describe import describe, si_unit
 from nrs_design.spec.templates import TEMPLATES

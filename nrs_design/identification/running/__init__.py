@@ -4,7 +4,6 @@ from nrs_design.identification.running.bounds import (
     RunBounds,
     bounds_of_spec,
     read_run_bounds,
-    switching_rules,
 )
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.judge import RunJudgement, judge_run
@@ -21,5 +20,4 @@ __all__ = [
     "judge_run",
     "read_run",
     "read_run_bounds",
-    "switching_rules",
 ]

@@ -155,18 +155,10 @@ def parse_command_limit(text: str, command: str) -> float:
     return limit
 
 
-def switching_rules(spec: InteractionDesignSpec) -> SwitchingSpec:
-    """Return the rules of switching that a run can be held against.
-
-    A log says which controller is active, not what is touched.
-    """
-    return SwitchingSpec() if spec.switching.names_contacts else spec.switching
-
-
 def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
     """Return the bounds of a design; see `read_run_bounds`."""
     arms = {e.lever_arm.si for e in spec.environments.values() if e.lever_arm is not None}
-    rules = switching_rules(spec)
+    rules = spec.switching.of_a_run
     transitions = rules.transitions
     margin = spec.goals.min_delay_margin if spec.goals else None
     return RunBounds(

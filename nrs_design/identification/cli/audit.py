@@ -1,0 +1,231 @@
+"""``nrs-design audit``: hold a log of the running robot against its spec, proved or not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.printing import progress, say
+from nrs_design.cli.tables import print_table
+from nrs_design.errors import CertificateError
+from nrs_design.identification.cli.identify.common import SYNTHETIC, ColumnMap, read_all, sources
+
+if TYPE_CHECKING:
+    from nrs_design.identification.running import Check, RunJudgement
+    from nrs_design.reporting import Report
+    from nrs_design.spec import LoadedSpec
+
+_EXIT = {
+    "inside": exit_codes.PROVED,
+    "outside": exit_codes.REFUTED,
+    "inconclusive": exit_codes.INCONCLUSIVE,
+}
+UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
+
+
+# Letters of what a cell says, in a pipe, too.
+_WIDEST, _BELOW = 60, "see below"
+
+
+def audit(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="Log of the running robot.")],
+    spec: Annotated[Path, typer.Argument(metavar="SPEC", help="The spec that it runs by.")],
+    certificate: Annotated[
+        Path | None,
+        typer.Option(metavar="CERT", help="Certificate of that spec; without it, none is proved."),
+    ] = None,
+    window: Annotated[
+        float, typer.Option(metavar="SECONDS", min=1e-3, help="Window of the stiffness.")
+    ] = 0.5,
+    command_limit: Annotated[
+        str | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Where the driver saturates, such as '24 V', or a number as logged; default: "
+            "`limits: command` of the spec.",
+        ),
+    ] = None,
+    columns: ColumnMap = None,
+    report: ReportTo = None,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Tell whether a run stayed inside what was proved: times, delay, command, force.
+
+    Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
+    force_N); velocity_rad_s; the command in the unit of the motor of the spec (command_rpm, _V, _A,
+    _counts); mode, the name of the controller in force. Stiffness and contact are estimated only:
+    no run is called outside for them, and none inside where they matter. What cannot be judged is
+    said.
+
+    Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
+
+    Example: nrs-design audit run.csv soft-tissue.nrs.yaml --certificate soft-tissue.cert.json
+    """
+    from nrs_design.identification.running import judge_run, read_run, read_run_bounds
+    from nrs_design.identification.running.bounds import parse_command_limit
+    from nrs_design.spec import read_spec
+
+    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
+    loaded = read_spec(spec)
+    bounds = read_run_bounds(loaded)
+    limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
+    reason, losable = _proof_of(certificate, loaded)
+    (run,) = read_all([log], read_run, columns or [], quiet=quiet)
+    with progress("judging", quiet=quiet):
+        found = judge_run(
+            run,
+            bounds,
+            proved=not reason,
+            losable=losable,
+            window=window,
+            command_limit=limit,
+        )
+    outputs.deliver(
+        "audit",
+        summary=lambda: _summary(found, loaded, certificate, reason),
+        show=lambda: _print(found, loaded.spec.name, reason),
+        page=lambda: _page(found, loaded.spec.name, reason),
+    )
+    raise typer.Exit(_EXIT[found.verdict])
+
+
+def _page(found: RunJudgement, name: str, reason: str) -> Report:
+    from nrs_design.identification.reporting.running import run_report
+
+    return run_report(found, name, reason)
+
+
+def _proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
+    """Say why the spec is not proved, and whether a proof holds while contact is lost.
+
+    The reason is empty if a certificate proves it.
+
+    Raises
+    ------
+    CertificateError
+        If the certificate is rejected.
+    """
+    from nrs_design.certificates.verify import verify
+    from nrs_design.proof.evidence import Shows
+
+    if certificate is None:
+        return "no certificate is named", False
+    outcome = verify(certificate, loaded)
+    if outcome.certificate is None or outcome.fault is not None:
+        raise CertificateError(
+            f"the certificate is rejected: {outcome.fault}",
+            path=certificate,
+            remedy="make it anew with certify-switching --out, or name the spec that it is for",
+        )
+    verdict, statements = outcome.certificate.verdict, outcome.certificate.statements
+    if verdict != "proved":
+        return f"its certificate says {verdict}", False
+    # A proof of a spec that asks for it holds while contact is lost, whatever its evidence.
+    asked = loaded.spec.kind == "interaction-design" and loaded.spec.contact == "losable"
+    covered = any(s.shows is Shows.STABILITY and s.covers_lost_contact for s in statements)
+    return "", asked or covered
+
+
+# What a check that is not modelled takes for granted.
+_GRANTED = {
+    "delay": "the motion follows its command without dead time",
+    "jitter": "the steps of time are even",
+}
+
+
+def _print(found: RunJudgement, name: str, reason: str) -> None:
+    if found.log.source.synthetic:
+        say(SYNTHETIC)
+    if reason:
+        say(UNPROVED.format(reason=reason))
+    word = found.verdict.upper()
+    claim = "the run stayed inside what was proved"
+    if found.verdict == "outside":
+        claim = "the run left its bounds"
+    elif found.verdict == "inconclusive":
+        claim = "no bound was left as far as could be judged"
+    say(f"{name}: {word}: {claim}")
+    first = found.first
+    if first is not None and first.first is not None:
+        say(f"first at t = {first.first.time:.6g} s: {first.name}: {first.first.words}")
+    rows = [[c.name, c.status, _measured(c), _cell(c.allowed), _when(c)] for c in found.checks]
+    print_table("", ["check", "outcome", "measured", "allowed", "first at s"], rows)
+    for basis in dict.fromkeys(c.basis for c in found.checks if c.basis):
+        of = ", ".join(c.name for c in found.checks if c.basis == basis)
+        say(f"bound of {of}: {basis}")
+    for check in found.checks:
+        if check.status != "not judged" and _measured(check) != check.measured:
+            say(f"{check.name}: {check.measured}")
+        if _cell(check.allowed) != check.allowed:
+            say(f"{check.name}, allowed: {check.allowed}")
+        if check.status == "not modelled":
+            who = found.bounds.source
+            comma = "," if "," in who else ""
+            say(f"not covered: {who}{comma} takes for granted that {_GRANTED[check.name]}")
+        if check.status == "not judged":
+            say(f"not judged: {check.name}: {check.measured}")
+    say(found.estimates)
+
+
+def _measured(check: Check) -> str:
+    return _BELOW if check.status == "not judged" else _cell(check.measured)
+
+
+def _cell(text: str) -> str:
+    """Return what fits into a cell; what is longer stands below the table."""
+    return text if len(text) <= _WIDEST else _BELOW
+
+
+def _when(check: Check) -> str:
+    return "" if check.first is None else f"{check.first.time:.6g}"
+
+
+def _summary(
+    found: RunJudgement, loaded: LoadedSpec, certificate: Path | None, reason: str
+) -> dict[str, Any]:
+    first = found.first
+    return {
+        "verdict": found.verdict,
+        "proved": found.bounds.proved,
+        "unproved_because": reason or None,
+        "synthetic": found.log.source.synthetic,
+        "log": sources([found.log.source]),
+        "spec": {"name": loaded.spec.name, "sha256": loaded.sha256},
+        "certificate": None if certificate is None else str(certificate),
+        "first_violation": _violation(first) if first is not None else None,
+        "checks": [
+            {
+                "name": c.name,
+                "status": str(c.status),
+                "measured": c.measured,
+                "allowed": c.allowed or None,
+                "basis": c.basis or None,
+                "first_violation": _violation(c),
+            }
+            for c in found.checks
+        ],
+        "estimated_share_of_time": found.share,
+        "stiffness": [
+            {
+                "from_s": found.log.begin + float(found.log.time[w.first]),
+                "to_s": found.log.begin + float(found.log.time[w.last - 1]),
+                "value_Nm_rad": w.value,
+                "low_Nm_rad": w.low,
+                "high_Nm_rad": w.high,
+            }
+            for w in found.windows
+        ],
+    }
+
+
+def _violation(check: Check) -> dict[str, Any] | None:
+    if check.first is None:
+        return None
+    return {"check": check.name, "time_s": check.first.time, "what": check.first.words}

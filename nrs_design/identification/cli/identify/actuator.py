@@ -1,0 +1,167 @@
+"""``nrs-design identify actuator``: the motor from records of commands, or a response."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.printing import progress, say
+from nrs_design.cli.tables import print_table
+from nrs_design.identification.cli.identify.common import (
+    SYNTHETIC,
+    ColumnMap,
+    CoversOption,
+    DataFiles,
+    WriteTo,
+    estimate_numbers,
+    read_all,
+    sources,
+)
+
+if TYPE_CHECKING:
+    from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
+    from nrs_design.reporting import Report
+
+
+def actuator(
+    data: DataFiles,
+    columns: ColumnMap = None,
+    torque_constant: Annotated[float, typer.Option(min=1e-9, help="K_T in N m/A.")] = 0.0115,
+    back_emf_constant: Annotated[float, typer.Option(min=1e-9, help="K_B in V s/rad.")] = 0.0115,
+    inertia: Annotated[
+        float, typer.Option(min=1e-15, help="At the motor shaft, in kg m^2.")
+    ] = 14.81e-7,
+    reduction: Annotated[float, typer.Option(min=1e-9, help="Gearhead ratio N.")] = 181.0,
+    covers: Annotated[
+        CoversOption,
+        typer.Option(help="What the range holds: this motor, 95 % of records, or the next one."),
+    ] = CoversOption.CONFIDENCE,
+    write: WriteTo = None,
+    report: ReportTo = None,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Fit gain, time constant, Coulomb friction and dead time of a motor that follows a velocity.
+
+    Columns: time_s, command_rpm (or _V, _A, _counts), and angle_rad or velocity_rad_s; any command
+    that moves the motor: sinusoids, steps, stairs, chirps, random ones, in open or closed loop.
+    One file is one record; groups of columns have suffixes _1, _2, ... Or a frequency response:
+    frequency_hz, magnitude_db, phase_deg. The data sheet is that of thesis table 4.1 unless given.
+
+    Example: nrs-design identify actuator specs/data/actuator-*hz.csv --report reports/actuator.html
+    """
+    from nrs_design.identification.actuator import MotorConstants, identify_actuator
+    from nrs_design.identification.datasets import FrequencyResponse, read_actuator
+    from nrs_design.identification.write_spec import check_actuator, merge_actuator
+
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
+    items = read_all(data, read_actuator, columns or [], quiet=quiet)
+    series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
+    items_of_all = [item for group in series for item in group]
+    if outputs.spec is not None:
+        for item in items_of_all:
+            check_actuator(outputs.spec, item.unit)
+    with progress("fitting", quiet=quiet) as step:
+        found = identify_actuator(items_of_all, motor, covers.value, step)
+    outputs.deliver(
+        "identify-actuator",
+        summary=lambda: _summary(found),
+        show=lambda: _print(found),
+        page=lambda: _page(found),
+        merge=lambda spec: merge_actuator(spec, found),
+        caveats=found.caveats,
+        slips=found.slips,
+    )
+
+
+def _page(found: ActuatorIdentification) -> Report:
+    from nrs_design.identification.reporting.actuator import actuator_report
+
+    return actuator_report(found)
+
+
+def _print(found: ActuatorIdentification) -> None:
+    if found.synthetic:
+        say(SYNTHETIC)
+    unit = found.unit
+    rows = [
+        [
+            fit.method,
+            str(fit.gain),
+            str(fit.time_constant),
+            str(fit.friction) if fit.friction else "",
+            str(fit.dead_time) if fit.dead_time else "",
+        ]
+        for fit in found.fits
+    ]
+    columns = ["fit [95 %]", f"gain (rad/s)/{unit}", "time constant s", f"friction {unit}"]
+    print_table("", [*columns, "dead time s"], rows)
+    say(f"chosen: {found.chosen.method}. {found.reason}")
+    if found.chosen.dead_time and found.step:
+        samples = found.chosen.dead_time.scaled(1 / found.step)
+        say(f"dead time = {samples} samples of {found.step:.4g} s")
+    motor = found.chosen.motor
+    if motor is not None and motor.damping is not None:
+        say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")
+    if found.chosen.order == 1:
+        gain, time_constant = found.ranges
+        say(f"range: gain {gain} (rad/s)/{unit}, time constant {time_constant} s")
+        say(f"the range holds {found.covers}")
+    if found.figures is not None:
+        say(f"R = {found.figures.resistance} ohm")
+        say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
+        say(f"both for a motor with {found.figures.sheet}; options give another data sheet")
+    for remark in found.remarks:
+        say(remark)
+    for doubt in found.doubts:
+        say(f"doubt: {doubt}")
+
+
+def _summary(found: ActuatorIdentification) -> dict[str, Any]:
+    figures = found.figures
+    return {
+        "synthetic": found.synthetic,
+        "records": sources(found.sources),
+        "command_unit": found.unit,
+        "sampling_step_s": found.step,
+        "chosen": found.chosen.method,
+        "reason": found.reason,
+        "remarks": list(found.remarks),
+        "doubts": list(found.doubts),
+        "slips": list(found.slips),
+        "fits": [_fit(fit, found) for fit in found.fits],
+        "range": {
+            f"gain_rad_s_{found.unit}": estimate_numbers(found.ranges[0]),
+            "time_constant_s": estimate_numbers(found.ranges[1]),
+        },
+        "range_covers": found.coverage,
+        "range_covers_words": found.covers,
+        "resistance_ohm": estimate_numbers(figures.resistance) if figures else None,
+        "speed_torque_gradient_rpm_per_Nm": estimate_numbers(figures.gradient) if figures else None,
+        "response": [
+            {"frequency_rad_s": w, "real": value.real, "imaginary": value.imag}
+            for w, value in zip(found.frequency.tolist(), found.response.tolist(), strict=True)
+        ],
+    }
+
+
+def _fit(fit: ActuatorFit, found: ActuatorIdentification) -> dict[str, Any]:
+    late = fit.dead_time
+    return {
+        "method": fit.method,
+        "order": fit.order,
+        f"gain_rad_s_{found.unit}": estimate_numbers(fit.gain),
+        "time_constant_s": estimate_numbers(fit.time_constant),
+        "damping_ratio": fit.motor.damping if fit.motor else None,
+        f"friction_{found.unit}": estimate_numbers(fit.friction) if fit.friction else None,
+        "dead_time_s": estimate_numbers(late) if late else None,
+        "dead_time_samples": estimate_numbers(late.scaled(1 / found.step))
+        if late and found.step
+        else None,
+        "whiteness_p": fit.uncertainty.whiteness,
+    }

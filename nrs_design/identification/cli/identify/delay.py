@@ -1,0 +1,146 @@
+"""``nrs-design identify delay``: how late a signal of a running loop comes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.printing import progress, say
+from nrs_design.cli.tables import print_table
+from nrs_design.identification.cli.identify.common import (
+    SYNTHETIC,
+    ColumnMap,
+    WriteTo,
+    estimate_numbers,
+    read_all,
+    sources,
+)
+
+if TYPE_CHECKING:
+    from nrs_design.identification.delay import DelayIdentification
+    from nrs_design.reporting import Report
+
+INPUT, OUTPUT = "input_any", "output_any"
+
+
+def delay(
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="Record of a running loop.")],
+    command: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="What was sent; default: command_UNIT.")
+    ] = None,
+    measured: Annotated[
+        str | None,
+        typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
+    ] = None,
+    columns: ColumnMap = None,
+    write: WriteTo = None,
+    report: ReportTo = None,
+    date: Date = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Find how late a measured signal follows a command, in seconds and in samples.
+
+    Cross-correlation first, then a fit of the delay beside what it must not be mistaken for: a
+    copy, a lag of first or second order, a lag with an integrator; the simplest decides that no
+    other beats by 10 in BIC. The interval is at 95 %; parts of the record show whether the delay
+    varies. --write is for two forces, the one that the sensor measured and the one that the law
+    used: its age is the delay of sampling.
+
+    Example: nrs-design identify delay run.csv --command force_raw --measured force_used
+    """
+    from nrs_design.identification.datasets import read_signals
+    from nrs_design.identification.delay import identify_delay
+    from nrs_design.identification.write_spec import check_delay_place, merge_delay
+
+    if (command is None) != (measured is None):
+        raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
+    if command is not None and command == measured:
+        raise typer.BadParameter("name two columns", param_hint="--command, --measured")
+    if write is not None and command is None:
+        raise typer.BadParameter(
+            "name the force as measured by --command, and as the law used it by --measured",
+            param_hint="--write",
+        )
+    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    if outputs.spec is not None:
+        check_delay_place(outputs.spec)
+    entries = list(columns or [])
+    if command is not None:
+        entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
+    (record,) = read_all([log], read_signals, entries, quiet=quiet)
+    with progress("fitting", quiet=quiet):
+        found = identify_delay(record)
+    outputs.deliver(
+        "identify-delay",
+        summary=lambda: _summary(found),
+        show=lambda: _print(found),
+        page=lambda: _page(found),
+        merge=lambda spec: merge_delay(spec, found),
+        caveats=found.caveats,
+        slips=found.slips,
+    )
+
+
+def _page(found: DelayIdentification) -> Report:
+    from nrs_design.identification.reporting.delay import delay_report
+
+    return delay_report(found)
+
+
+def _print(found: DelayIdentification) -> None:
+    record = found.record
+    if record.source.synthetic:
+        say(SYNTHETIC)
+    lag, correlation = found.peak
+    sent, seen = record.names
+    say(f"{seen} is most like {sent} {lag:.4g} s later (correlation {correlation:.3f})")
+    least = min(fit.bic for fit in found.fits)
+    rows = [
+        [fit.follower.name, f"{fit.delay / record.step:.4g}", f"{fit.bic - least:.4g}"]
+        for fit in found.fits
+    ]
+    print_table("", ["beside", "delay in samples", "BIC - least"], rows)
+    say(f"delay = {found.samples} samples of {record.step:.4g} s [95 %]")
+    say(f"delay = {found.delay} s, beside {found.chosen.follower.name}")
+    low, high = found.whole_samples
+    say(f"whole samples that hold it, and every part of the record: {low} to {high}")
+    for remark in found.remarks:
+        say(remark)
+    for doubt in found.doubts:
+        say(f"doubt: {doubt}")
+
+
+def _summary(found: DelayIdentification) -> dict[str, Any]:
+    record = found.record
+    return {
+        "synthetic": record.source.synthetic,
+        "records": sources([record.source]),
+        "columns": {"command": record.names[0], "measured": record.names[1]},
+        "sampling_step_s": record.step,
+        "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
+        "chosen": found.chosen.follower.name,
+        "delay_s": estimate_numbers(found.delay),
+        "delay_samples": estimate_numbers(found.samples),
+        "parts": [
+            {"time_s": time, "samples": estimate_numbers(part)} for time, part in found.parts
+        ],
+        "whole_samples": list(found.whole_samples),
+        "fits": [
+            {
+                "beside": fit.follower.name,
+                "delay_s": fit.delay,
+                "bic": fit.bic,
+                "whiteness_p": fit.uncertainty.whiteness,
+            }
+            for fit in found.fits
+        ],
+        "smooth_between_samples": found.smooth,
+        "remarks": list(found.remarks),
+        "doubts": list(found.doubts),
+        "slips": list(found.slips),
+    }

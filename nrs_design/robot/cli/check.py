@@ -1,0 +1,88 @@
+"""``nrs-design robot check``: validate a robot spec and see whether the robot can exist."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.tables import print_table
+
+if TYPE_CHECKING:
+    from nrs_design.robot.models import Robot, WorkspaceSurvey
+
+
+def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
+    """Validate a robot spec: reach over its workspace, mass, and a sound mass matrix.
+
+    Exit code 1: a part of the workspace that the spec declares cannot be reached.
+
+    Example: nrs-design robot check specs/robots/neuroboscope.nrs.yaml
+    """
+    from nrs_design.pipeline import placed
+    from nrs_design.robot.models import examine_inertia, survey_workspace
+    from nrs_design.robot.pipeline import run_robot
+
+    loaded, _, robot = run_robot(spec)
+    with placed(loaded):
+        survey = survey_workspace(robot)
+        inertia = examine_inertia(robot).tolist()
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256, "valid": True}
+        print_json("robot-check", head | _summary(robot, survey, inertia))
+    elif not quiet:
+        say(f"{spec}: valid robot {loaded.spec.name!r}")
+        _print(robot, survey, inertia)
+    if survey.obstacle is not None:
+        place = loaded.place("workspace")
+        note(
+            f"{spec}:{place.line}: {_share(1 - survey.reachable)} of the declared workspace cannot "
+            f"be reached; {survey.obstacle.message}"
+        )
+    raise typer.Exit(exit_codes.PROVED if survey.obstacle is None else exit_codes.REFUTED)
+
+
+def _share(fraction: float) -> str:
+    """Write a share of unreachable poses in percent, rounded up."""
+    return f"{math.ceil(1e4 * fraction) / 100:g} %"
+
+
+def _corners(survey: WorkspaceSurvey) -> list[dict[str, Any]]:
+    return [
+        {"phi_deg": math.degrees(phi), "psi_deg": math.degrees(psi), "deepest_m": depth}
+        for phi, psi, depth in survey.deepest
+    ]
+
+
+def _summary(robot: Robot, survey: WorkspaceSurvey, inertia: list[float]) -> dict[str, Any]:
+    return {
+        "moving_mass_kg": robot.moving_mass,
+        "home": robot.home.tolist(),
+        "reachable_share": survey.reachable,
+        "obstacle": survey.obstacle.message if survey.obstacle else None,
+        "corners": _corners(survey),
+        "mass_matrix_eigenvalues_at_home": inertia,
+    }
+
+
+def _print(robot: Robot, survey: WorkspaceSurvey, inertia: list[float]) -> None:
+    eigenvalues = ", ".join(f"{value:.4g}" for value in inertia)
+    say(f"moving mass {robot.moving_mass:.4f} kg; eigenvalues of M at home {eigenvalues} kg m^2")
+    if survey.obstacle is None:
+        say("every pose of a grid over the workspace is reachable by all legs")
+    print_table(
+        "",
+        ["phi", "psi", "deepest reachable"],
+        [
+            [
+                f"{corner['phi_deg']:.4g} deg",
+                f"{corner['psi_deg']:.4g} deg",
+                "no depth" if (depth := corner["deepest_m"]) is None else f"{1e3 * depth:.1f} mm",
+            ]
+            for corner in _corners(survey)
+        ],
+    )

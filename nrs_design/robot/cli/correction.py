@@ -1,0 +1,159 @@
+"""``nrs-design robot correction``: from the simplified to the full torque."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.tables import print_table
+from nrs_design.robot.cli.options import Figures, write_figures
+
+if TYPE_CHECKING:
+    from nrs_design.robot.models import Correction, SeparateCorrection, Sine, TiltTable
+
+
+def correction(
+    spec: SpecFile,
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            "--table", metavar="FILE", help="Write the coefficients by tilt, for the controller."
+        ),
+    ] = None,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compute correction coefficients over trajectories and over the tilt of the base.
+
+    Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
+    """
+    from nrs_design.output import TABLE, check_place, write_output
+    from nrs_design.robot.models import (
+        DEPTH_SINES,
+        TABLE_3_5,
+        correct_separately,
+        correction_coefficients,
+        reachable_poses,
+        thesis_grid,
+        thesis_tilts,
+        tilt_tables,
+        to_csv,
+    )
+    from nrs_design.robot.pipeline import run_robot
+
+    if table is not None:
+        check_place(table, TABLE)
+    loaded, _, robot = run_robot(spec)
+    rows = [(sine, correction_coefficients(robot, sine)) for sine in TABLE_3_5]
+    groups = (DEPTH_SINES,) if figures is None else (DEPTH_SINES, TABLE_3_5)
+    tilts, *with_angles = tilt_tables(robot, thesis_tilts(), *groups)
+    apart = correct_separately(robot, reachable_poses(robot, thesis_grid()))
+    files: list[str] = []
+    if figures is not None:
+        from nrs_design.robot.reporting.figures.robot import draw_correction, draw_inertia_errors
+
+        drawn = draw_correction(tilts, *with_angles)
+        named = {"correction": drawn, "inertia-errors": draw_inertia_errors(apart)}
+        files += write_figures(figures, named, quiet=quiet)
+    if table is not None:
+        write_output(table, to_csv(tilts), replaces=TABLE)
+        files.insert(0, str(table))
+        note(f"table written to {table}", quiet=quiet)
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-correction", head | _document(rows, tilts, apart) | {"files": files})
+    elif not quiet:
+        _print(rows, tilts)
+        _print_apart(apart)
+
+
+def _document(
+    rows: list[tuple[Sine, Correction]], tilts: TiltTable, apart: SeparateCorrection
+) -> dict[str, Any]:
+    import numpy as np
+
+    return {
+        "trajectories": [
+            {
+                "phi": sine.phi,
+                "psi": sine.psi,
+                "d": list(sine.d),
+                "mean_ratio": found.mean_ratio.tolist(),
+                "least_squares": found.least_squares.tolist(),
+                "mean_ratio_error": found.mean_ratio_error.tolist(),
+                "least_squares_error": found.least_squares_error.tolist(),
+            }
+            for sine, found in rows
+        ],
+        "tilts": [
+            {"theta4_deg": float(tilt), "mean_ratio": ratio, "least_squares": squares}
+            for tilt, ratio, squares in zip(
+                np.degrees(tilts.tilt),
+                tilts.mean_ratio.tolist(),
+                tilts.least_squares.tolist(),
+                strict=True,
+            )
+        ],
+        "apart": {
+            "gravity": apart.gravity.tolist(),
+            "inertia_rows": apart.inertia_rows.tolist(),
+            "inertia_entries": apart.inertia_entries.tolist(),
+            "gravity_error": apart.gravity_error,
+            "inertia_error": {
+                "single": apart.single_error,
+                "rows": apart.rows_error,
+                "entries": apart.entries_error,
+            },
+        },
+        "units": {"angles": "rad", "d": "m", "error": "N*m"},
+    }
+
+
+def _print(rows: list[tuple[Sine, Correction]], tilts: TiltTable) -> None:
+    import numpy as np
+
+    print_table(
+        "along slow sines, phi and psi in rad",
+        ["phi", "psi", "d [mm]", "K1", "K2", "K3", "K1 ls", "K2 ls", "K3 ls"],
+        [
+            [
+                f"{sine.phi:g}",
+                f"{sine.psi:g}",
+                f"{1e3 * sine.d[0]:.0f} - {1e3 * sine.d[1]:.0f}",
+                *(f"{k:.4f}" for k in (*found.mean_ratio, *found.least_squares)),
+            ]
+            for sine, found in rows
+        ],
+    )
+    print_table(
+        "over the tilt of the base, every 5 deg",
+        ["theta4 [deg]", "K1", "K2", "K3", "K1 ls", "K2 ls", "K3 ls"],
+        [
+            [f"{np.degrees(tilt):.1f}", *(f"{k:.4f}" for k in (*ratio, *squares))]
+            for tilt, ratio, squares in zip(
+                tilts.tilt[::5], tilts.mean_ratio[::5], tilts.least_squares[::5], strict=True
+            )
+        ],
+    )
+
+
+def _print_apart(apart: SeparateCorrection) -> None:
+    def text(row: Any) -> str:
+        return ", ".join(f"{k:.4f}" for k in row)
+
+    entries = "; ".join(text(row) for row in apart.inertia_entries)
+    print_table(
+        "inertia and gravity apart, least squares over the poses of thesis 3.3",
+        ["coefficients", "values", "error [%]"],
+        [
+            ["gravity", text(apart.gravity), f"{100 * apart.gravity_error:.1f}"],
+            ["inertia, those of gravity", text(apart.gravity), f"{100 * apart.single_error:.1f}"],
+            ["inertia, by rows", text(apart.inertia_rows), f"{100 * apart.rows_error:.1f}"],
+            ["inertia, by entries", entries, f"{100 * apart.entries_error:.1f}"],
+        ],
+    )

@@ -1,0 +1,127 @@
+"""``nrs-design robot dynamics``: matrices and torques at a pose, or the shares of the torque."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import print_json
+from nrs_design.robot.cli.options import (
+    Acceleration,
+    Figures,
+    Pose,
+    Tilt,
+    Velocity,
+    read_pose,
+    three_numbers,
+    write_figures,
+)
+from nrs_design.robot.cli.printing import JOINTS, ONE, POSE, Tables, print_quantities
+
+if TYPE_CHECKING:
+    from nrs_design.robot.models import Robot
+
+TABLES: Tables = {
+    POSE: {"pose": "pose [rad, rad, m]"},
+    JOINTS: {
+        "velocity": "velocity [rad/s]",
+        "acceleration": "acceleration [rad/s^2]",
+        "M": ("M [kg m^2]", JOINTS),
+        "C": ("C [N m s/rad]", JOINTS),
+        "G": "G [N m]",
+        "Ms": ("Ms [kg m^2]", JOINTS),
+        "Gs": "Gs [N m]",
+        "torque": "torque [N m]",
+        "shares_by_joint": "share of the torque [1]",
+    },
+    ONE: {"base_tilt": "tilt of the base [rad]", "mean_shares": "mean share of the torque [1]"},
+}
+
+
+def dynamics(
+    spec: SpecFile,
+    pose: Pose = None,
+    velocity: Velocity = None,
+    acceleration: Acceleration = None,
+    tilt: Tilt = None,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Print M, G, Ms and Gs at a pose, and the torques of a motion; or the torque's shares.
+
+    Example: nrs-design robot dynamics specs/robots/neuroboscope.nrs.yaml --pose 0,0,0.2 --json
+    """
+    import math
+
+    from nrs_design.robot.pipeline import run_robot
+
+    loaded, _, robot = run_robot(spec)
+    if tilt is not None:
+        robot = robot.tilted(math.radians(tilt))
+    if pose is None and (velocity or acceleration):
+        raise typer.BadParameter("a motion needs its --pose")
+    content: dict[str, Any] = {"base_tilt": robot.base_tilt}
+    if pose is None:
+        content |= _shares(robot)
+    else:
+        content |= _at_pose(
+            robot,
+            read_pose(pose, robot),
+            three_numbers(velocity or "0,0,0", "--velocity"),
+            three_numbers(acceleration or "0,0,0", "--acceleration"),
+        )
+    if figures is not None:
+        from nrs_design.robot.reporting.figures.robot import draw_torque_shares
+
+        content["files"] = write_figures(
+            figures, {"torque-shares": draw_torque_shares(robot)}, quiet=quiet
+        )
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-dynamics", head | content)
+    elif not quiet:
+        print_quantities(content, TABLES)
+
+
+def _at_pose(
+    robot: Robot,
+    pose: tuple[float, float, float],
+    velocity: tuple[float, float, float],
+    acceleration: tuple[float, float, float],
+) -> dict[str, Any]:
+    from nrs_design.robot.models import (
+        coriolis_matrix,
+        gravity_torque,
+        inverse_dynamics,
+        mass_matrix,
+        simplified_dynamics,
+    )
+
+    simplified = simplified_dynamics(robot, pose)
+    return {
+        "pose": list(pose),
+        "velocity": list(velocity),
+        "acceleration": list(acceleration),
+        "M": mass_matrix(robot, pose).tolist(),
+        "C": coriolis_matrix(robot, pose, velocity).tolist(),
+        "G": gravity_torque(robot, pose).tolist(),
+        "Ms": simplified.Ms.tolist(),
+        "Gs": simplified.Gs.tolist(),
+        "torque": inverse_dynamics(robot, pose, velocity, acceleration).tolist(),
+        "units": {"M": "kg*m^2", "C": "N*m*s/rad", "G": "N*m", "torque": "N*m", "pose": "rad, m"},
+    }
+
+
+def _shares(robot: Robot) -> dict[str, Any]:
+    from nrs_design.robot.models import reachable_poses, thesis_grid, torque_shares
+
+    shares = torque_shares(robot, reachable_poses(robot, thesis_grid()))
+    parts = {"gravity": shares.gravity, "coriolis": shares.coriolis, "inertia": shares.inertia}
+    names = ("gravity", "coriolis", "inertia")
+    return {
+        "mean_shares": dict(zip(names, shares.means, strict=True)),
+        "shares_by_joint": {name: part.mean(axis=0).tolist() for name, part in parts.items()},
+    }

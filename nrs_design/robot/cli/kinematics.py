@@ -1,0 +1,114 @@
+"""``nrs-design robot kinematics``: joints of a pose, Jacobians, or the whole workspace."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import print_json
+from nrs_design.robot.cli.options import Figures, Pose, read_pose, three_numbers, write_figures
+from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, print_quantities
+
+if TYPE_CHECKING:
+    from nrs_design.robot.models import Robot
+
+TABLES: Tables = {
+    POSE: {
+        "pose": "pose [rad, rad, m]",
+        "inverse_jacobian": ("inverse Jacobian", JOINTS),
+    },
+    ("theta_x", "theta_y", "d"): {"theta_xy_d": "orientation [rad, rad, m]"},
+    JOINTS: {
+        "joints": "joint angles [rad]",
+        "jacobian": ("Jacobian", POSE),
+        "joint_low": "lowest angle [rad]",
+        "joint_high": "highest angle [rad]",
+        "largest_joint_velocity": "largest velocity [rad/s]",
+        "largest_joint_acceleration": "largest acceleration [rad/s^2]",
+    },
+    LEGS: {
+        "reach_margin": "reach margin [m]",
+        "coupler_margin": "coupler margin [1]",
+    },
+    ONE: {"reachable_share": "reachable share of the workspace [1]"},
+}
+
+
+def kinematics(
+    spec: SpecFile,
+    pose: Pose = None,
+    joints: Annotated[
+        str | None,
+        typer.Option("--joints", metavar="T1,T2,T3", help="Joint angles in rad, for their pose."),
+    ] = None,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Solve the kinematics at a pose or joint angles, or survey the workspace.
+
+    Example: nrs-design robot kinematics specs/robots/neuroboscope.nrs.yaml --pose 0.1,-0.2,0.2
+    """
+    from nrs_design.robot.models import direct_kinematics
+    from nrs_design.robot.pipeline import run_robot
+
+    loaded, _, robot = run_robot(spec)
+    if pose is not None and joints is not None:
+        raise typer.BadParameter("give --pose or --joints, not both")
+    if joints is not None:
+        found = direct_kinematics(robot, three_numbers(joints, "--joints"))
+        content = _at_pose(robot, tuple(map(float, found)))
+    elif pose is not None:
+        content = _at_pose(robot, read_pose(pose, robot))
+    else:
+        content = _workspace(robot)
+    if figures is not None:
+        from nrs_design.robot.reporting.figures.robot import draw_workspace
+
+        content["files"] = write_figures(figures, {"workspace": draw_workspace(robot)}, quiet=quiet)
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-kinematics", head | content)
+    elif not quiet:
+        print_quantities(content, TABLES)
+
+
+def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:
+    from nrs_design.robot.models import (
+        inverse_jacobian,
+        inverse_kinematics,
+        jacobian,
+        orientation,
+        singularity_margins,
+    )
+
+    margins = singularity_margins(robot, pose)
+    return {
+        "pose": list(pose),
+        "joints": inverse_kinematics(robot, pose).tolist(),
+        "theta_xy_d": orientation(pose).tolist(),
+        "jacobian": jacobian(robot, pose).tolist(),
+        "inverse_jacobian": inverse_jacobian(robot, pose).tolist(),
+        "reach_margin": margins.reach.tolist(),
+        "coupler_margin": margins.coupler.tolist(),
+        "units": {"angles": "rad", "lengths": "m", "coupler_margin": "1"},
+    }
+
+
+def _workspace(robot: Robot) -> dict[str, Any]:
+    from nrs_design.robot.models import joint_peaks, survey_workspace, workspace_grid
+
+    survey = survey_workspace(robot)
+    peaks = joint_peaks(robot, workspace_grid(robot))
+    return {
+        "reachable_share": survey.reachable,
+        "joint_low": survey.joint_low.tolist(),
+        "joint_high": survey.joint_high.tolist(),
+        "reach_margin": survey.reach_margin.tolist(),
+        "coupler_margin": survey.coupler_margin.tolist(),
+        "largest_joint_velocity": peaks.velocity.tolist(),
+        "largest_joint_acceleration": peaks.acceleration.tolist(),
+        "units": {"angles": "rad", "lengths": "m", "velocity": "rad/s", "acceleration": "rad/s^2"},
+    }

@@ -1,0 +1,113 @@
+"""Options that several robot commands share, and what they do with them."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nrs_design.cli.printing import note
+from nrs_design.errors import PoseError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
+
+    from nrs_design.robot.models import Robot
+
+Figures = Annotated[
+    Path | None,
+    typer.Option("--figures", metavar="DIR", help="Draw into this folder, as SVG and PNG."),
+]
+Pose = Annotated[
+    str | None,
+    typer.Option("--pose", metavar="PHI,PSI,D", help="Pose in rad, rad and m, as in 0,0,0.2."),
+]
+Velocity = Annotated[
+    str | None,
+    typer.Option("--velocity", metavar="W1,W2,W3", help="Joint velocities in rad/s."),
+]
+Acceleration = Annotated[
+    str | None,
+    typer.Option("--acceleration", metavar="A1,A2,A3", help="Joint accelerations in rad/s^2."),
+]
+Tilt = Annotated[
+    float | None,
+    typer.Option("--tilt", metavar="DEG", help="Tilt of the base in degrees, not the spec's."),
+]
+
+# So many times the depth of the workspace, and another unit is meant.
+DOUBTFUL = 10
+
+
+def three_numbers(text: str, option: str) -> tuple[float, float, float]:
+    """Read ``1,2,3``.
+
+    Raises
+    ------
+    typer.BadParameter
+        If the text is not three finite numbers.
+    """
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise typer.BadParameter(
+            f"{text!r} is not three numbers with commas between them, such as 0,0,0.2",
+            param_hint=option,
+        )
+    return numbers[0], numbers[1], numbers[2]
+
+
+def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
+    """Read a pose, and doubt one that is in other units than rad and m.
+
+    Raises
+    ------
+    PoseError
+        If an angle is beyond a right angle, or the depth ten times that of the workspace.
+    """
+    phi, psi, d = three_numbers(text, "--pose")
+    for name, angle in (("phi", phi), ("psi", psi)):
+        if abs(angle) > math.pi / 2:
+            raise PoseError(
+                f"--pose: {name} = {angle:g} rad is beyond a right angle",
+                remedy=f"angles are in rad: {angle:g} deg are {math.radians(angle):.6g}",
+            )
+    deepest = robot.workspace.d[1]
+    if abs(d) > DOUBTFUL * deepest:
+        raise PoseError(
+            f"--pose: d = {d:g} m is far beyond the workspace, which ends at {deepest:g} m",
+            remedy=f"depths are in m: {d:g} mm are {d / 1e3:g}",
+        )
+    return phi, psi, d
+
+
+def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -> list[str]:
+    """Write every figure as SVG and PNG; return the files.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they go.
+    figures : mapping
+        By the name of the file.
+    quiet : bool
+        Do not say where.
+    """
+    from nrs_design.output import PNG, SVG, Output, write_outputs
+    from nrs_design.reporting.images import to_png, to_svg_file
+
+    outputs: list[Output] = []
+    for name, figure in figures.items():
+        outputs += [
+            (folder / f"{name}.svg", to_svg_file(figure), SVG),
+            (folder / f"{name}.png", to_png(figure), PNG),
+        ]
+    write_outputs(outputs)
+    note(f"figures written to {folder}", quiet=quiet)
+    return [str(path) for path, _, _ in outputs]

@@ -1,0 +1,34 @@
+"""``nrs-design robot``: kinematics, dynamics, balance and motion control of a robot."""
+
+from __future__ import annotations
+
+import typer
+
+from nrs_design.cli.groups import CommandGroup
+from nrs_design.robot.cli.balance import balance
+from nrs_design.robot.cli.bounds import bounds
+from nrs_design.robot.cli.check import check
+from nrs_design.robot.cli.correction import correction
+from nrs_design.robot.cli.dynamics import dynamics
+from nrs_design.robot.cli.export import export
+from nrs_design.robot.cli.kinematics import kinematics
+from nrs_design.robot.cli.track import track
+
+robot = typer.Typer(
+    name="robot",
+    cls=CommandGroup,
+    no_args_is_help=True,
+    help="Kinematics, dynamics, balance and motion control of a robot (specs of kind robot).",
+    epilog="The page of a robot: nrs-design report SPEC.",
+)
+# A new capability of the robot adds its command here.
+robot.command("check")(check)
+robot.command("kinematics")(kinematics)
+robot.command("dynamics")(dynamics)
+robot.command("correction")(correction)
+robot.command("balance")(balance)
+robot.command("bounds")(bounds)
+robot.command("track")(track)
+robot.command("export")(export)
+
+__all__ = ["robot"]

@@ -1,0 +1,212 @@
+"""``nrs-design robot track``: motion control, simulated against the full dynamics."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.printing import print_json, progress, say
+from nrs_design.cli.tables import print_table
+from nrs_design.progress import Progress
+from nrs_design.robot.cli.options import Figures, Tilt, write_figures
+
+if TYPE_CHECKING:
+    from nrs_design.robot.models import Robot
+    from nrs_design.robot.simulation.tracking import TrackingRecord
+    from nrs_design.spec import RobotSpec
+
+ALL = "all"
+
+
+class ControllerOption(StrEnum):
+    """Which of the three controllers."""
+
+    COMPUTED_TORQUE = "computed-torque"
+    INDEPENDENT_JOINT = "independent-joint"
+    BALANCED = "balanced"
+    ALL = ALL
+
+
+class ExperimentOption(StrEnum):
+    """Which coordinate moves."""
+
+    D = "d"
+    PHI = "phi"
+    PSI = "psi"
+    ALL = ALL
+
+
+def track(
+    spec: SpecFile,
+    controller: Annotated[
+        ControllerOption, typer.Option("--controller", help="One controller, or all three.")
+    ] = ControllerOption.ALL,
+    experiment: Annotated[
+        ExperimentOption, typer.Option("--experiment", help="What moves, or all three in turn.")
+    ] = ExperimentOption.ALL,
+    period: Annotated[
+        float | None,
+        typer.Option(
+            "--period",
+            metavar="S",
+            min=0.5,
+            max=1000.0,
+            help="Period of every sine, not the thesis's 10 s or 110 s.",
+        ),
+    ] = None,
+    tilt: Tilt = None,
+    ablation: Annotated[
+        bool,
+        typer.Option(
+            "--ablation",
+            help="Also compare computed torque and independent joints on the same motions (10 s, "
+            "or --period), with one thing changed at a time.",
+        ),
+    ] = False,
+    figures: Figures = None,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Simulate the motion controllers of thesis 4.2 to 4.4 and compare their tracking errors.
+
+    Links and steps are those of `nrs-design simulate` with three axes. The loop is not: these laws
+    follow a pose, in double precision and without tissue.
+
+    Example: nrs-design robot track specs/robots/neuroboscope.nrs.yaml --figures figures
+    """
+    from nrs_design.robot.pipeline import run_robot
+
+    loaded, robot_spec, robot = run_robot(spec)
+    robot = _on_base(robot_spec, robot, tilt)
+    moved = None if experiment is ExperimentOption.ALL else experiment.value
+    with progress("simulating", quiet=quiet) as tell:
+        records = _records(robot_spec, robot, controller, moved, period, tell)
+        changes = _ablation(robot_spec, robot, moved, period, tell) if ablation else []
+    runs = [_run(robot_spec, robot, record) for record in records]
+    files: list[str] = []
+    if figures is not None:
+        from nrs_design.robot.reporting.figures.tracking import draw_tracking
+
+        drawn = draw_tracking(records, [run["measured_on_robot"] for run in runs])
+        files = write_figures(figures, {"tracking": drawn}, quiet=quiet)
+    if as_json:
+        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
+        print_json("robot-track", head | _document(robot, runs, changes) | {"files": files})
+    if as_json or quiet:
+        return
+    _print_runs(runs)
+    if ablation:
+        _print_ablation(changes)
+    _print_left_out()
+
+
+def _on_base(spec: RobotSpec, robot: Robot, tilt: float | None) -> Robot:
+    import math
+
+    from nrs_design.robot.simulation.tracking import experiment_tilt
+
+    return robot.tilted(experiment_tilt(spec) if tilt is None else math.radians(tilt))
+
+
+def _records(
+    spec: RobotSpec,
+    robot: Robot,
+    controller: ControllerOption,
+    moved: str | None,
+    period: float | None,
+    tell: Progress,
+) -> list[TrackingRecord]:
+    from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, simulate
+
+    names: tuple[str, ...] = (controller.value,)
+    if controller is ControllerOption.ALL:
+        names = tuple(name for name in CONTROLLERS if spec.balance or name != "balanced")
+    tracks = [build_track(spec, robot, name, period).only(moved) for name in names]
+    return simulate(tracks, tell=tell)
+
+
+def _ablation(
+    spec: RobotSpec,
+    robot: Robot,
+    moved: str | None,
+    period: float | None,
+    tell: Progress,
+) -> list[dict[str, Any]]:
+    from nrs_design.robot.simulation.tracking import ablation_tracks, simulate
+
+    rows = []
+    changed = [(name, one.only(moved)) for name, one in ablation_tracks(spec, robot, period)]
+    records = iter(simulate([one for _, one in changed], tell=tell))
+    for name, one in changed:
+        rmse = {each.moved: next(records).summary()["rmse"] for each in one.experiments}
+        rows.append({"controller": one.controller, "change": name, "rmse": rmse})
+    return rows
+
+
+def _run(spec: RobotSpec, robot: Robot, record: TrackingRecord) -> dict[str, Any]:
+    from nrs_design.robot.simulation.tracking.measured import measured_rmse
+
+    measured = measured_rmse(spec, robot, record.controller, record.experiment)
+    return record.summary() | {"measured_on_robot": measured}
+
+
+def _document(
+    robot: Robot, runs: list[dict[str, Any]], changes: list[dict[str, Any]]
+) -> dict[str, Any]:
+    from nrs_design.robot.simulation.tracking import LEFT_OUT
+
+    return {
+        "base_tilt": robot.base_tilt,
+        "runs": runs,
+        "ablation": changes,
+        "not_modelled": list(LEFT_OUT),
+        "units": {"rmse": "deg, deg, mm", "command": "rpm", "time": "s", "base_tilt": "rad"},
+    }
+
+
+def _print_runs(runs: list[dict[str, Any]]) -> None:
+    measured = any(run["measured_on_robot"] for run in runs)
+    columns = ["controller", "moves", "period [s]", "phi [deg]", "psi [deg]", "d [mm]"]
+    columns += ["largest command [rpm]"]
+    if measured:
+        columns += ["on the robot: phi [deg]", "psi [deg]", "d [mm]"]
+    rows = [
+        [
+            run["controller"],
+            run["moved"],
+            f"{run['period']:.4g}",
+            *(f"{error:.4f}" for error in run["rmse"]),
+            f"{max(run['largest_command']):.0f}",
+            *(f"{error:.4f}" for error in run["measured_on_robot"] or ()),
+        ]
+        for run in runs
+    ]
+    print_table("root mean square of wanted less measured, simulated", columns, rows)
+
+
+def _print_ablation(changes: list[dict[str, Any]]) -> None:
+    """Print the errors of what moves, d in mm and angles in deg."""
+    from nrs_design.robot.simulation.tracking import COORDINATE
+
+    moved = list(changes[0]["rmse"])
+    units = ["mm" if name == "d" else "deg" for name in moved]
+    print_table(
+        "root mean square error of what moves, one thing changed at a time",
+        ["controller", "change", *(f"{m} [{u}]" for m, u in zip(moved, units, strict=True))],
+        [
+            [row["controller"], row["change"]]
+            + [f"{row['rmse'][name][COORDINATE[name]]:.4f}" for name in moved]
+            for row in changes
+        ],
+    )
+
+
+def _print_left_out() -> None:
+    from nrs_design.robot.simulation.tracking import LEFT_OUT
+
+    say("not modelled:")
+    for line in LEFT_OUT:
+        say(f"  - {line}")

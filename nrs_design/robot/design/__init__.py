@@ -1,0 +1,1 @@
+"""Choosing the gains of the motion control of a robot."""

@@ -1,0 +1,1 @@
+"""Robots for other programs: one module for each format."""

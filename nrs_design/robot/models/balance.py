@@ -1,0 +1,229 @@
+"""Passive balance of the side legs by counter-masses and a spring (thesis 4.4).
+
+Each side leg carries its share of the platform at the end of its arm. One counter-mass brings the
+common center of mass of share and arm to the coupler's end, a second one that of all beyond the
+elbow to the elbow. The whole leg then weighs as a single mass on the crank, and a spring without
+free length between crank and base, anchored vertically above the base joint, holds that mass in
+every position.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nrs_design.errors import DesignError
+from nrs_design.robot.models.body import point_mass
+from nrs_design.robot.models.dynamics import gravity_torque
+from nrs_design.robot.models.geometry import Posture, posture
+from nrs_design.robot.models.motion import joint_driven
+from nrs_design.robot.models.robot import Leg, Robot
+from nrs_design.robot.models.vectors import Array, Scalar, dot
+from nrs_design.robot.models.workspace import reachable_poses, workspace_grid
+from nrs_design.spec import BalancedLegSpec, RobotSpec
+
+
+@dataclass(frozen=True, slots=True)
+class LegBalance:
+    """Counter-masses and spring of one side leg.
+
+    Parameters
+    ----------
+    arm_mass, coupler_mass : float
+        Counter-masses M_c and M_b in kg.
+    arm_distance, coupler_distance : float
+        Where they are, B_c from the coupler's end and B_b from the elbow, in m.
+    total_mass : float
+        M_a, everything that the spring holds, in kg. It is no counter-mass.
+    total_distance : float
+        B_a, its center of mass on the crank from the base joint, in m.
+    stiffness : float
+        Of the spring, in N/m.
+    spring_on_crank, spring_on_base : float
+        Its ends from the base joint, A0C_A and A0D0, in m.
+    """
+
+    arm_mass: float
+    coupler_mass: float
+    arm_distance: float
+    coupler_distance: float
+    total_mass: float
+    total_distance: float
+    stiffness: float
+    spring_on_crank: float
+    spring_on_base: float
+
+
+@dataclass(frozen=True, slots=True)
+class Balance:
+    """The balance of both side legs, and the tilt of the base that it is made for, in rad."""
+
+    left: LegBalance
+    right: LegBalance
+    tilt: float
+
+
+def design_balance(spec: RobotSpec, robot: Robot) -> Balance:
+    """Compute counter-masses and springs.
+
+    Parameters
+    ----------
+    spec : RobotSpec
+        With a `balance`.
+    robot : Robot
+        As built from it.
+
+    Returns
+    -------
+    Balance
+        For both side legs.
+
+    Raises
+    ------
+    DesignError
+        If the spec has no `balance`.
+    """
+    wanted = spec.balance
+    if wanted is None:
+        raise DesignError("this robot spec has no `balance`", remedy="add it, as `init robot` does")
+    left, right = (
+        _leg_balance(leg, choice, wanted.payload.si, robot.gravity)
+        for leg, choice in ((robot.legs[0], wanted.left), (robot.legs[1], wanted.right))
+    )
+    return Balance(left, right, wanted.tilt.si)
+
+
+def _leg_balance(leg: Leg, spec: BalancedLegSpec, payload: float, gravity: float) -> LegBalance:
+    m_a, m_b, m_c = leg.crank.mass, leg.coupler.mass, leg.arm.mass
+    arm_distance, coupler_distance = spec.arm_counter_arm.si, spec.coupler_counter_arm.si
+    M_c = (payload * leg.l3 + m_c * spec.arm_center_of_mass.si) / arm_distance
+    beyond = payload + m_c + M_c
+    M_b = (beyond * leg.l2 + leg.coupler.first[0]) / coupler_distance
+    M_a = beyond + m_b + M_b + m_a
+    B_a = ((M_a - m_a) * leg.l1 + leg.crank.first[0]) / M_a
+    on_crank, on_base = spec.spring_on_crank.si, spec.spring_on_base.si
+    return LegBalance(
+        arm_mass=M_c,
+        coupler_mass=M_b,
+        arm_distance=arm_distance,
+        coupler_distance=coupler_distance,
+        total_mass=M_a,
+        total_distance=B_a,
+        stiffness=M_a * gravity * B_a / (on_crank * on_base),
+        spring_on_crank=on_crank,
+        spring_on_base=on_base,
+    )
+
+
+def balanced_robot(robot: Robot, balance: Balance) -> Robot:
+    """Return the robot with its counter-masses, for its full dynamics; without the springs."""
+    left, right, middle = robot.legs
+    return replace(
+        robot, legs=(_weighted(left, balance.left), _weighted(right, balance.right), middle)
+    )
+
+
+def _weighted(leg: Leg, balance: LegBalance) -> Leg:
+    on_coupler = point_mass(balance.coupler_mass, (-balance.coupler_distance, 0.0, 0.0))
+    on_arm = point_mass(balance.arm_mass, (-balance.arm_distance, 0.0, 0.0))
+    return replace(leg, coupler=leg.coupler.plus(on_coupler), arm=leg.arm.plus(on_arm))
+
+
+def spring_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
+    """Return the joint torques that it takes to hold the springs, without any weight.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    balance : Balance
+        Its springs, fixed to the base where the vertical passed at the tilt they are made for.
+    pose : array_like
+        (phi, psi, d), shape (..., 3), in rad and m.
+
+    Returns
+    -------
+    ndarray
+        Shape (..., 3), in N m; negative to what the springs contribute.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot reach one of the poses.
+    """
+    closed = posture(robot, pose)
+    units = np.eye(3).reshape(3, *(1 for _ in np.shape(closed.d)), 3)
+    motion = joint_driven(closed, units, np.zeros(3))
+    up = (-sin(balance.tilt), 0.0, cos(balance.tilt))
+    torque: Scalar = 0.0
+    for index, spring in enumerate((balance.left, balance.right)):
+        lift = _lift_of_crank(
+            closed, index, motion.legs[index].alpha_1, motion.legs[index].beta_1, up
+        )
+        pull = spring.stiffness * spring.spring_on_crank * spring.spring_on_base
+        torque = torque - pull * lift
+    return np.moveaxis(np.asarray(torque, dtype=np.float64), 0, -1)
+
+
+def _lift_of_crank(
+    closed: Posture, index: int, alpha_1: Scalar, beta_1: Scalar, up: tuple[float, float, float]
+) -> Scalar:
+    """Rate of the crank's direction along a fixed direction of the base."""
+    leg = closed.legs[index]
+    along = dot(up, leg.leg.axis)
+    across = (dot(up, closed.W) - leg.cos_gamma * along) / leg.sin_gamma
+    turned = alpha_1 * leg.sin_beta * dot(up, leg.normal)
+    return turned + beta_1 * (leg.cos_beta * across - leg.sin_beta * along)
+
+
+def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
+    """Return what the motors still have to hold in a balanced robot.
+
+    Weights that the balance does not know of remain: the middle leg, the lateral and axial offset
+    of the platform, and the difference between its mass and the two payloads.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot without counter-masses, on its base.
+    balance : Balance
+        Counter-masses and springs.
+    pose : array_like
+        (phi, psi, d), shape (..., 3), in rad and m.
+
+    Returns
+    -------
+    ndarray
+        Shape (..., 3), in N m.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot reach one of the poses.
+    """
+    weights = gravity_torque(balanced_robot(robot, balance), pose)
+    return weights + spring_torque(robot, balance, pose)
+
+
+@dataclass(frozen=True, slots=True)
+class BalanceTorques:
+    """Static torques over the workspace without and with balance, shape (n, 3), in N m."""
+
+    gravity: Array
+    residual: Array
+
+    @staticmethod
+    def summary(torque: Array) -> dict[str, list[float]]:
+        """Return root mean square and largest magnitude for each joint."""
+        rms = np.sqrt(np.mean(torque**2, axis=0))
+        return {"rms": rms.tolist(), "largest": np.abs(torque).max(axis=0).tolist()}
+
+
+def examine_balance(robot: Robot, balance: Balance) -> BalanceTorques:
+    """Compute the torques over the reachable workspace, on the base that the balance is for."""
+    on_base = robot.tilted(balance.tilt)
+    poses = reachable_poses(robot, workspace_grid(robot, 21, 11))
+    return BalanceTorques(gravity_torque(on_base, poses), residual_torque(on_base, balance, poses))

@@ -1,0 +1,236 @@
+"""Correction coefficients: from the simplified to the full torque (thesis 3.4 and 3.5)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import inf, pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nrs_design.robot.models.dynamics import inverse_dynamics
+from nrs_design.robot.models.kinematics import joint_motion
+from nrs_design.robot.models.robot import Robot
+from nrs_design.robot.models.simplified import simplified_torque
+from nrs_design.robot.models.vectors import Array
+
+SAMPLES = 720
+
+
+@dataclass(frozen=True, slots=True)
+class Sine:
+    """Sines of phi, psi and d in phase (thesis table 3.5).
+
+    Parameters
+    ----------
+    phi, psi : float
+        Amplitudes in rad.
+    d : tuple of float
+        Smallest and largest depth in m.
+    period : float
+        In s; infinite for a motion so slow that only gravity counts.
+    """
+
+    phi: float
+    psi: float
+    d: tuple[float, float]
+    period: float = inf
+
+
+DEPTHS = ((0.150, 0.160), (0.195, 0.205), (0.240, 0.250))
+# The twelve rows of thesis table 3.5 that are plain sines, in its order.
+TABLE_3_5 = tuple(
+    Sine(phi, psi, d) for d in DEPTHS for phi in (0.0, 0.1205) for psi in (0.0, 0.2043)
+)
+# Its last row: the whole workspace.
+WHOLE_WORKSPACE = Sine(0.2618, 0.3491, (0.150, 0.250))
+# What the tilts are compared on: the depth moves, the angles are zero.
+DEPTH_SINES = tuple(Sine(0.0, 0.0, d) for d in DEPTHS)
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """Coefficients of the three joints, and what torque error they leave.
+
+    Parameters
+    ----------
+    mean_ratio : ndarray
+        ``mean(T*/T)`` (thesis 3.38), shape (3,).
+    least_squares : ndarray
+        ``sum(T* T)/sum(T^2)``, shape (3,): it stays defined where a simplified torque passes zero.
+    mean_ratio_error, least_squares_error : ndarray
+        Root mean square of ``T* - K T`` with either, in N m, shape (3,).
+    spread : ndarray
+        Standard deviation of the ratio, shape (3,); large where the mean ratio means little.
+    """
+
+    mean_ratio: Array
+    least_squares: Array
+    mean_ratio_error: Array
+    least_squares_error: Array
+    spread: Array
+
+
+def correct(full: ArrayLike, simplified: ArrayLike) -> Correction:
+    """Return the coefficients that take simplified torques to full ones.
+
+    Parameters
+    ----------
+    full, simplified : array_like
+        Torques along a trajectory, shape (n, 3), in N m.
+
+    Returns
+    -------
+    Correction
+        For each joint.
+    """
+    T, t = np.asarray(full, dtype=np.float64), np.asarray(simplified, dtype=np.float64)
+    ratios = T / t
+    mean_ratio, least_squares = ratios.mean(axis=0), (T * t).sum(axis=0) / (t * t).sum(axis=0)
+    return Correction(
+        mean_ratio,
+        least_squares,
+        _root_mean_square(T - mean_ratio * t),
+        _root_mean_square(T - least_squares * t),
+        ratios.std(axis=0),
+    )
+
+
+def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
+    """Return the coefficients over one or several trajectories.
+
+    Over several, the coefficients are the means of those of each, as in the thesis; the errors
+    are those that these means leave over all of them.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, on its base.
+    sines : Sine or sequence of Sine
+        The trajectories.
+
+    Returns
+    -------
+    Correction
+        For each joint.
+
+    Raises
+    ------
+    PoseError
+        If a trajectory leaves what the legs can reach.
+    """
+    chosen = (sines,) if isinstance(sines, Sine) else tuple(sines)
+    torques = [_torques(robot, sine) for sine in chosen]
+    each = [correct(full, simplified) for full, simplified in torques]
+    mean_ratio = np.mean([item.mean_ratio for item in each], axis=0)
+    least_squares = np.mean([item.least_squares for item in each], axis=0)
+    T, t = (np.concatenate(parts) for parts in zip(*torques, strict=True))
+    return Correction(
+        mean_ratio,
+        least_squares,
+        _root_mean_square(T - mean_ratio * t),
+        _root_mean_square(T - least_squares * t),
+        (T / t).std(axis=0),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class TiltTable:
+    """Coefficients against the tilt of the base (thesis fig. 3.12).
+
+    Parameters
+    ----------
+    tilt : ndarray
+        theta4 in rad, shape (n,).
+    mean_ratio, least_squares : ndarray
+        Shape (n, 3).
+    """
+
+    tilt: Array
+    mean_ratio: Array
+    least_squares: Array
+
+
+def tilt_table(
+    robot: Robot, tilts: Iterable[float], sines: Sequence[Sine] = DEPTH_SINES
+) -> TiltTable:
+    """Return the coefficients for every tilt of the base, in rad.
+
+    Parameters
+    ----------
+    robot : Robot
+        The mechanism.
+    tilts : iterable of float
+        In rad.
+    sines : sequence of Sine
+        Motions for which the coefficients are fitted; by default three in depth alone.
+    """
+    return tilt_tables(robot, tilts, sines)[0]
+
+
+def tilt_tables(
+    robot: Robot, tilts: Iterable[float], *groups: Sequence[Sine]
+) -> tuple[TiltTable, ...]:
+    """Return a table for each of several groups of motions; those that they share count once.
+
+    Parameters
+    ----------
+    robot : Robot
+        The mechanism.
+    tilts : iterable of float
+        In rad.
+    *groups : sequence of Sine
+        Motions for which the coefficients of a table are fitted.
+    """
+    chosen = np.array(list(tilts), dtype=np.float64)
+    tilted = [robot.tilted(float(tilt)) for tilt in chosen]
+    fits = {
+        sine: [correction_coefficients(each, sine) for each in tilted]
+        for sine in dict.fromkeys(sine for group in groups for sine in group)
+    }
+    return tuple(
+        TiltTable(
+            chosen,
+            np.mean([[fit.mean_ratio for fit in fits[sine]] for sine in group], axis=0),
+            np.mean([[fit.least_squares for fit in fits[sine]] for sine in group], axis=0),
+        )
+        for group in groups
+    )
+
+
+def to_csv(table: TiltTable) -> str:
+    """Write a table for the controller: one line for each tilt, coefficients by mean ratio."""
+    lines = ["theta4_deg,K1,K2,K3,K1_least_squares,K2_least_squares,K3_least_squares"]
+    for tilt, ratio, squares in zip(
+        np.degrees(table.tilt), table.mean_ratio, table.least_squares, strict=True
+    ):
+        lines.append(",".join([f"{tilt:.6g}", *(f"{k:.6f}" for k in (*ratio, *squares))]))
+    return "\n".join(lines) + "\n"
+
+
+def thesis_tilts() -> Array:
+    """Return the tilts of thesis 3.5, -75 to 0 deg by 1 deg, in rad."""
+    return np.asarray(np.radians(np.arange(-75.0, 1.0)))
+
+
+def _torques(robot: Robot, sine: Sine) -> tuple[Array, Array]:
+    """Full and simplified torques along a trajectory; shapes (SAMPLES, 3)."""
+    phase = 2 * pi * (np.arange(SAMPLES) + 0.5) / SAMPLES
+    rate = 2 * pi / sine.period
+    low, high = sine.d
+    swing = np.array([sine.phi, sine.psi, (high - low) / 2])
+    pose = np.array([0.0, 0.0, (high + low) / 2]) + np.sin(phase)[:, None] * swing
+    motion = joint_motion(
+        robot,
+        pose,
+        rate * np.cos(phase)[:, None] * swing,
+        -(rate**2) * np.sin(phase)[:, None] * swing,
+    )
+    full = inverse_dynamics(robot, pose, motion.velocity, motion.acceleration)
+    simplified = simplified_torque(robot, pose, motion.acceleration)
+    return full, simplified
+
+
+def _root_mean_square(error: Array) -> Array:
+    return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)

@@ -1,0 +1,317 @@
+"""Closing the loops: where every link of the robot is at a pose, and whether it can be there.
+
+Each leg is a slider-crank in a plane that is spanned by its base axis ``a`` and the endoscope
+``W`` (thesis fig. 3.3 and 3.4). In that plane angles count from ``a`` towards ``W``: beta of the
+crank, kappa of the coupler, gamma of the endoscope. The plane turns about ``a`` by alpha. Its frame
+is ``a, b, k`` with ``W = cos(gamma) a + sin(gamma) b`` and ``k = a x b``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from nrs_design.errors import PoseError
+from nrs_design.robot.models.robot import Leg, Robot
+from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, cross, dot, scale
+
+
+@dataclass(frozen=True, slots=True)
+class LegPosture:
+    """Directions within the plane of one leg, and how crank and coupler follow the endoscope.
+
+    Parameters
+    ----------
+    leg : Leg
+        The leg.
+    normal : tuple of array
+        Normal k of the plane.
+    cos_gamma, sin_gamma, cos_beta, sin_beta, cos_kappa, sin_kappa : array
+        Directions of endoscope, crank and coupler.
+    end : tuple of array
+        Coupler's end in the plane, in m.
+    end_gamma : tuple of array
+        Its derivative with respect to gamma; that with respect to d is (cos gamma, sin gamma).
+    sin_elbow, cos_elbow : array
+        Of the angle kappa - beta.
+    beta_gamma, beta_d, kappa_gamma, kappa_d : array
+        Partial derivatives of crank and coupler angle.
+    """
+
+    leg: Leg
+    normal: Vector
+    cos_gamma: Scalar
+    sin_gamma: Scalar
+    cos_beta: Scalar
+    sin_beta: Scalar
+    cos_kappa: Scalar
+    sin_kappa: Scalar
+    end: tuple[Scalar, Scalar]
+    end_gamma: tuple[Scalar, Scalar]
+    sin_elbow: Scalar
+    cos_elbow: Scalar
+    beta_gamma: Scalar
+    beta_d: Scalar
+    kappa_gamma: Scalar
+    kappa_d: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Posture:
+    """The whole robot at a pose, or at each pose of a batch.
+
+    Parameters
+    ----------
+    W : tuple of array
+        Direction of the endoscope in the base frame (thesis 3.3).
+    d : array
+        Depth in m.
+    legs : tuple of LegPosture
+        Left, right, middle.
+    u1, u2 : tuple of array
+        Velocity of W per unit of ``sin(gamma) alpha'`` of the left and the right leg.
+    """
+
+    W: Vector
+    d: Scalar
+    legs: tuple[LegPosture, LegPosture, LegPosture]
+    u1: Vector
+    u2: Vector
+
+
+def direction(pose: ArrayLike) -> Vector:
+    """Return W, the direction of the endoscope (thesis 3.3).
+
+    Parameters
+    ----------
+    pose : array_like
+        (phi, psi, d), shape (..., 3), in rad and m.
+
+    Raises
+    ------
+    PoseError
+        If ``sin(phi)^2 + sin(psi)^2`` is not below 1, so that there is no such direction, or a
+        number is not finite.
+    """
+    phi, psi, _ = components(pose)
+    if not np.all(np.isfinite(pose)):
+        raise PoseError("a pose is not finite", remedy="check phi, psi and d")
+    x, y = np.sin(psi), -np.sin(phi)
+    square = 1.0 - x * x - y * y
+    if not np.all(square > 0):
+        raise _no_direction(pose, square)
+    return x, y, np.sqrt(square)
+
+
+def posture(robot: Robot, pose: ArrayLike) -> Posture:
+    """Close the loops of all legs.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    pose : array_like
+        (phi, psi, d), shape (..., 3), in rad and m.
+
+    Returns
+    -------
+    Posture
+        Arrays of the batch's shape.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot reach one of the poses; it names the leg and what is lacking.
+    """
+    closed = close_loops(robot, direction(pose), components(pose)[2])
+    if not all(np.all(np.abs(item.sin_elbow) > 0) for item in closed.legs):
+        raise unreachable(robot, pose)
+    return closed
+
+
+@dataclass(frozen=True, slots=True)
+class Driven:
+    """What joint angles say of a pose, so that it need not be computed from the pose again.
+
+    Parameters
+    ----------
+    normals : tuple of Vector
+        Of the planes of the side legs.
+    sin_gamma : tuple of array
+        Of the endoscope in these planes.
+    crank : tuple of array
+        Cosine and sine of the middle leg's crank angle.
+    """
+
+    normals: tuple[Vector, Vector]
+    sin_gamma: tuple[Scalar, Scalar]
+    crank: tuple[Scalar, Scalar]
+
+
+def close_loops(robot: Robot, W: Vector, d: Scalar, driven: Driven | None = None) -> Posture:
+    """Close the loops of all legs, whether they reach that far or not.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    W : tuple of array
+        Direction of the endoscope.
+    d : array
+        Depth in m.
+    driven : Driven, optional
+        Where the pose comes from joint angles.
+    """
+    planes: tuple[_Plane | None, ...] = (None, None)
+    if driven is not None:
+        planes = tuple(zip(driven.normals, driven.sin_gamma, strict=True))
+    left, right = (
+        _leg_posture(leg, W, d, plane, None)
+        for leg, plane in zip(robot.legs[:2], planes, strict=True)
+    )
+    crank = None if driven is None else driven.crank
+    middle = _leg_posture(robot.legs[2], W, d, None, crank)
+    inverse = 1.0 / dot(W, cross(left.normal, right.normal))
+    u1 = scale(inverse, cross(right.normal, W))
+    u2 = scale(inverse, cross(W, left.normal))
+    return Posture(W, d, (left, right, middle), u1, u2)
+
+
+# Normal of the plane of a leg, and the sine of gamma in it.
+_Plane = tuple[Vector, Scalar]
+
+
+def _leg_posture(
+    leg: Leg, W: Vector, d: Scalar, plane: _Plane | None, crank: tuple[Scalar, Scalar] | None
+) -> LegPosture:
+    a, l1, l2, l3 = leg.axis, leg.l1, leg.l2, leg.l3
+    cos_gamma = dot(a, W)
+    normal, sin_gamma = plane or _plane_of(a, W, cos_gamma)
+    end = (d * cos_gamma + l3 * sin_gamma, d * sin_gamma - l3 * cos_gamma)
+    end_gamma = (l3 * cos_gamma - d * sin_gamma, l3 * sin_gamma + d * cos_gamma)
+    x, y = end[0] - leg.l0, end[1]
+    cos_beta, sin_beta = crank or _crank(leg, x, y)
+    cos_kappa, sin_kappa = (x - l1 * cos_beta) / l2, (y - l1 * sin_beta) / l2
+    sin_elbow = sin_kappa * cos_beta - cos_kappa * sin_beta
+    with np.errstate(divide="ignore", invalid="ignore"):
+        per_l1 = 1.0 / (l1 * sin_elbow)
+        per_l2 = -(l1 / l2) * per_l1
+        return LegPosture(
+            leg=leg,
+            normal=normal,
+            cos_gamma=cos_gamma,
+            sin_gamma=sin_gamma,
+            cos_beta=cos_beta,
+            sin_beta=sin_beta,
+            cos_kappa=cos_kappa,
+            sin_kappa=sin_kappa,
+            end=end,
+            end_gamma=end_gamma,
+            sin_elbow=sin_elbow,
+            cos_elbow=cos_kappa * cos_beta + sin_kappa * sin_beta,
+            beta_gamma=(cos_kappa * end_gamma[0] + sin_kappa * end_gamma[1]) * per_l1,
+            beta_d=(cos_kappa * cos_gamma + sin_kappa * sin_gamma) * per_l1,
+            kappa_gamma=(cos_beta * end_gamma[0] + sin_beta * end_gamma[1]) * per_l2,
+            kappa_d=(cos_beta * cos_gamma + sin_beta * sin_gamma) * per_l2,
+        )
+
+
+def _plane_of(a: Vector, W: Vector, cos_gamma: Scalar) -> _Plane:
+    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
+    return scale(1.0 / sin_gamma, cross(a, W)), sin_gamma
+
+
+def _crank(leg: Leg, x: Scalar, y: Scalar) -> tuple[Scalar, Scalar]:
+    """Cosine and sine of the crank angle, from the coupler's end seen from the base joint."""
+    square = x * x + y * y
+    # The elbow in components along and across the line between the two.
+    along = (leg.l1 * leg.l1 + square - leg.l2 * leg.l2) / (2 * leg.l1)
+    with np.errstate(invalid="ignore"):
+        across = leg.elbow_sign * np.sqrt(square - along * along)
+    return (x * along - y * across) / square, (y * along + x * across) / square
+
+
+def reach(robot: Robot, pose: ArrayLike) -> Array:
+    """Return the distance of base joint and coupler's end of every leg.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    pose : array_like
+        Shape (..., 3), whether reachable or not.
+
+    Returns
+    -------
+    ndarray
+        Shape (..., 3), one distance in m for each of left, right and middle.
+    """
+    W = direction(pose)
+    d = components(pose)[2]
+    return np.stack([_distance(leg, W, d) for leg in robot.legs], axis=-1)
+
+
+def reach_margin(robot: Robot, pose: ArrayLike) -> Array:
+    """Return by how much every leg is inside its reach.
+
+    Returns
+    -------
+    ndarray
+        Shape (..., 3) in m; the smaller of the distances from stretched and from folded, negative
+        where the leg would have to be overstretched or folded beyond its limit. Zero is singular.
+    """
+    distance = reach(robot, pose)
+    longest = np.array([leg.longest for leg in robot.legs])
+    shortest = np.array([leg.shortest for leg in robot.legs])
+    return np.asarray(np.minimum(longest - distance, distance - shortest))
+
+
+def is_reachable(robot: Robot, pose: ArrayLike) -> NDArray[np.bool_]:
+    """Tell for every pose whether all legs reach it strictly; shape (...)."""
+    return np.asarray(np.all(reach_margin(robot, pose) > 0, axis=-1))
+
+
+def _distance(leg: Leg, W: Vector, d: Scalar) -> Scalar:
+    cos_gamma = dot(leg.axis, W)
+    sin_gamma = np.sqrt(1.0 - cos_gamma * cos_gamma)
+    x = d * cos_gamma + leg.l3 * sin_gamma - leg.l0
+    y = d * sin_gamma - leg.l3 * cos_gamma
+    return np.hypot(x, y)
+
+
+def unreachable(robot: Robot, pose: ArrayLike) -> PoseError:
+    """Describe the worst leg at the worst pose of a batch."""
+    poses = np.asarray(pose, dtype=float).reshape(-1, 3)
+    margins = reach_margin(robot, poses).reshape(-1, 3)
+    # A pose at the very limit has no margin, and no velocities either.
+    row, column = divmod(int(np.argmin(margins)), 3)
+    leg = robot.legs[column]
+    distance = float(reach(robot, poses[row])[column])
+    stretched = distance > (leg.longest + leg.shortest) / 2
+    limit = leg.longest if stretched else leg.shortest
+    excess = abs(distance - limit)
+    what = "overstretched" if stretched else "folded too far"
+    phi, psi, d = poses[row]
+    return PoseError(
+        f"the pose phi {np.degrees(phi):.4g} deg, psi {np.degrees(psi):.4g} deg, d {1e3 * d:.4g} "
+        f"mm is not reachable: the {leg.name} leg is {what} by {1e3 * excess:.4g} mm (base joint "
+        f"to coupler's end {1e3 * distance:.6g} mm, limit {1e3 * limit:.6g} mm)",
+        leg=leg.name,
+        excess=excess,
+        pose=(float(phi), float(psi), float(d)),
+        remedy="choose a depth or an angle within the workspace; see `nrs-design robot kinematics`",
+    )
+
+
+def _no_direction(pose: ArrayLike, square: Array) -> PoseError:
+    poses = np.asarray(pose, dtype=float).reshape(-1, 3)
+    row = int(np.argmin(square))
+    phi, psi, d = map(float, poses[row])
+    return PoseError(
+        f"phi {np.degrees(phi):.4g} deg and psi {np.degrees(psi):.4g} deg give no direction of the "
+        "endoscope: sin(phi)^2 + sin(psi)^2 must be below 1",
+        pose=(phi, psi, d),
+        remedy="choose smaller angles, in rad",
+    )

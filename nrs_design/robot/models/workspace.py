@@ -1,0 +1,208 @@
+"""The workspace: grids of poses, and how fast the joints must be within it (thesis 3.3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from nrs_design.errors import PoseError
+from nrs_design.robot.models.geometry import is_reachable, posture, unreachable
+from nrs_design.robot.models.kinematics import (
+    inverse_jacobian,
+    inverse_kinematics,
+    joint_motion,
+    singularity_margins,
+)
+from nrs_design.robot.models.robot import Robot
+from nrs_design.robot.models.vectors import Array
+
+_DEGREE = np.radians(1.0)
+# Values of phi and of psi, and of d, in a survey.
+_ANGLES, _DEPTHS = 31, 21
+
+
+def pose_grid(phi: ArrayLike, psi: ArrayLike, d: ArrayLike) -> Array:
+    """Return every combination of three lists as poses; shape (len, len, len, 3).
+
+    Parameters
+    ----------
+    phi, psi : array_like
+        In rad.
+    d : array_like
+        In m.
+    """
+    return np.stack(np.meshgrid(phi, psi, d, indexing="ij"), axis=-1)
+
+
+def workspace_grid(robot: Robot, angles: int = 31, depths: int = 11) -> Array:
+    """Return a regular grid over the robot's workspace, of which not every pose is reachable.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+    angles, depths : int
+        Number of values of phi and of psi, and of d.
+
+    Returns
+    -------
+    ndarray
+        Shape (angles, angles, depths, 3), in rad and m.
+    """
+    space = robot.workspace
+    return pose_grid(
+        np.linspace(-space.phi, space.phi, angles),
+        np.linspace(-space.psi, space.psi, angles),
+        np.linspace(*space.d, depths),
+    )
+
+
+def reachable_poses(robot: Robot, pose: ArrayLike) -> Array:
+    """Return the poses of a grid that all legs reach, as a list; shape (n, 3).
+
+    Raises
+    ------
+    PoseError
+        If there is none.
+    """
+    poses = np.asarray(pose, dtype=np.float64).reshape(-1, 3)
+    inside = poses[is_reachable(robot, poses)]
+    if not len(inside):
+        raise unreachable(robot, poses)
+    return inside
+
+
+def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
+    """Return the poses of thesis 3.3, angles within 14 and 19 deg by 1 deg; shape (n, 3)."""
+    phi, psi = np.arange(-14, 15) * _DEGREE, np.arange(-19, 20) * _DEGREE
+    return pose_grid(phi, psi, depths).reshape(-1, 3)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkspaceSurvey:
+    """What the robot can do of the workspace that its spec names.
+
+    Parameters
+    ----------
+    reachable : float
+        Share of the grid's poses that all legs reach, between 0 and 1.
+    joint_low, joint_high : ndarray
+        Range of each joint over the reachable poses in rad, shape (3,).
+    reach_margin : ndarray
+        Least distance of each leg from stretched or folded in m, shape (3,).
+    coupler_margin : ndarray
+        Least |cosine| between each leg's coupler and the endoscope, shape (3,).
+    deepest : tuple of tuple of float
+        (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None
+        where no depth of the range is reachable.
+    obstacle : PoseError or None
+        What keeps the robot from the farthest pose of the grid; None if all are reachable.
+    """
+
+    reachable: float
+    joint_low: Array
+    joint_high: Array
+    reach_margin: Array
+    coupler_margin: Array
+    deepest: tuple[tuple[float, float, float | None], ...]
+    obstacle: PoseError | None
+
+
+def survey_workspace(robot: Robot) -> WorkspaceSurvey:
+    """Examine the workspace of the spec on a regular grid.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot.
+
+    Returns
+    -------
+    WorkspaceSurvey
+        Over the reachable poses of the grid.
+
+    Raises
+    ------
+    PoseError
+        If not even the middle of the workspace is reachable.
+    """
+    posture(robot, robot.home)
+    poses = workspace_grid(robot, _ANGLES, _DEPTHS).reshape(-1, 3)
+    inside = is_reachable(robot, poses)
+    joints = inverse_kinematics(robot, poses[inside])
+    margins = singularity_margins(robot, poses[inside])
+    space = robot.workspace
+    corners = product((-space.phi, space.phi), (-space.psi, space.psi))
+    return WorkspaceSurvey(
+        reachable=float(np.mean(inside)),
+        joint_low=joints.min(axis=0),
+        joint_high=joints.max(axis=0),
+        reach_margin=margins.reach.min(axis=0),
+        coupler_margin=margins.coupler.min(axis=0),
+        deepest=tuple((phi, psi, _deepest(robot, phi, psi)) for phi, psi in corners),
+        obstacle=None if np.all(inside) else unreachable(robot, poses[~inside]),
+    )
+
+
+def _deepest(robot: Robot, phi: float, psi: float) -> float | None:
+    """Largest reachable depth to a thousandth of the range, or the end of the range."""
+    depths = np.linspace(*robot.workspace.d, 1001)
+    poses = np.stack([np.full_like(depths, phi), np.full_like(depths, psi), depths], axis=-1)
+    inside = depths[is_reachable(robot, poses)]
+    return float(inside[-1]) if len(inside) else None
+
+
+@dataclass(frozen=True, slots=True)
+class JointPeaks:
+    """Largest joint velocities in rad/s and accelerations in rad/s^2, and the poses they need.
+
+    Parameters
+    ----------
+    velocity, acceleration : ndarray
+        One number for each joint, shape (3,).
+    velocity_pose, acceleration_pose : ndarray
+        Where they occur, one row for each joint, shape (3, 3).
+    """
+
+    velocity: Array
+    acceleration: Array
+    velocity_pose: Array
+    acceleration_pose: Array
+
+
+def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
+    """Return what the task limits ask of the joints over many poses.
+
+    phi, psi and d move with their limits, each with the sign that asks most of the joint. The
+    accelerations include those that come from velocities alone, at the corners of the limits.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot; poses that it cannot reach are left out.
+    pose : array_like
+        Shape (..., 3), in rad and m.
+
+    Returns
+    -------
+    JointPeaks
+        Of the reachable poses.
+    """
+    poses = reachable_poses(robot, pose)
+    limits = robot.task_limits
+    v = np.array([limits.angular_velocity] * 2 + [limits.linear_velocity])
+    a = np.array([limits.angular_acceleration] * 2 + [limits.linear_acceleration])
+    gain = np.abs(inverse_jacobian(robot, poses))
+    corners = [
+        np.abs(joint_motion(robot, poses, v * signs, np.zeros(3)).acceleration)
+        # The bias is quadratic: opposite velocities have the same.
+        for signs in product((1.0,), (1.0, -1.0), (1.0, -1.0))
+    ]
+    velocity, acceleration = gain @ v, gain @ a + np.max(corners, axis=0)
+    fastest, hardest = np.argmax(velocity, axis=0), np.argmax(acceleration, axis=0)
+    return JointPeaks(
+        velocity.max(axis=0), acceleration.max(axis=0), poses[fastest], poses[hardest]
+    )

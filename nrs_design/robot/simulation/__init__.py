@@ -1,0 +1,1 @@
+"""What the links of a robot do in a run."""

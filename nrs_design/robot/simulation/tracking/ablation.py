@@ -1,0 +1,73 @@
+"""Why one controller tracks better: one thing changed at a time.
+
+Both controllers without balance do the same three experiments, so that they can be compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from nrs_design.robot.controllers import ComputedTorque, IndependentJoint
+from nrs_design.robot.models import Robot
+from nrs_design.robot.simulation.tracking.track import Track, build_track
+from nrs_design.spec import RobotSpec
+
+# Period of thesis 4.20 to 4.22 in s.
+PERIOD = 10.0
+
+
+def ablation_tracks(
+    spec: RobotSpec, robot: Robot, period: float | None = None
+) -> list[tuple[str, Track]]:
+    """Return what is changed, and the track with that change.
+
+    Parameters
+    ----------
+    spec : RobotSpec
+        With `control`.
+    robot : Robot
+        Built from it, on the base of the experiments.
+    period : float, optional
+        Of all sines in s; 10 s, as in thesis 4.20 to 4.22, by default.
+
+    Returns
+    -------
+    list of tuple
+        Names of changes, ``as designed`` first for each controller, and tracks.
+
+    Raises
+    ------
+    DesignError
+        If the spec lacks something, or its numbers contradict each other.
+    """
+    period = PERIOD if period is None else period
+    torque = build_track(spec, robot, "computed-torque", period)
+    joint = build_track(spec, robot, "independent-joint", period)
+    return [*_plant(torque), *_torque_laws(torque), *_plant(joint), *_joint_laws(joint)]
+
+
+def _plant(track: Track) -> Iterator[tuple[str, Track]]:
+    yield "as designed", track
+    yield "no Coulomb friction", replace(track, drive=replace(track.drive, coulomb_friction=0.0))
+    yield "encoder without counts", replace(track, encoder=replace(track.encoder, counts=None))
+
+
+def _torque_laws(track: Track) -> Iterator[tuple[str, Track]]:
+    law, drive = track.law, track.drive
+    assert isinstance(law, ComputedTorque)
+    full = replace(law, load=replace(law.load, correction=None))
+    yield "full dynamics in the law", replace(track, law=full)
+    rotor = replace(law, rotor_inertia=drive.inertia)
+    yield "rotor inertia in the law", replace(track, law=rotor)
+    both = replace(rotor, motor_damping=drive.damping)
+    yield "rotor inertia and motor damping in the law", replace(track, law=both)
+
+
+def _joint_laws(track: Track) -> Iterator[tuple[str, Track]]:
+    law = track.law
+    assert isinstance(law, IndependentJoint)
+    assert law.load is not None
+    exact = replace(law, load=replace(law.load, correction=None))
+    yield "exact weight in the law", replace(track, law=exact)
+    yield "no weight in the law", replace(track, law=replace(law, load=None))

@@ -1,0 +1,81 @@
+"""Dry friction that really sticks: velocities at the end of a step (Moreau's time stepping).
+
+No smoothing and no threshold on the velocity: a joint sticks if some friction within its limit
+stops it within the step, and then has the velocity zero. By hand, as SciPy integrates no equation
+with such a jump in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nrs_design.robot.models.vectors import Array
+
+# Change of the velocities at which the iteration ends, in rad/s.
+ACCURACY = 1e-10
+LIMIT = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class DryFriction:
+    """The problem ``inertia v + p = impulse`` with dry friction p, for one inertia.
+
+    Each ``|p_i| <= limit_i``, and ``p_i = limit_i sign(v_i)`` where v_i is not zero. There is
+    exactly one solution, the minimum of ``v' inertia v/2 - v' impulse + sum limit_i |v_i|``. It
+    is found by proximal steps in a diagonal metric that dominates the inertia, so that every step
+    comes nearer; where the rotors outweigh what couples the joints, a few steps are enough.
+
+    Parameters
+    ----------
+    inertia : ndarray
+        Symmetric and positive definite, shape (n, 3, 3), in kg m^2.
+    metric : ndarray
+        Diagonal of the metric, shape (n, 3).
+    slack : ndarray
+        The metric less the inertia, shape (n, 3, 3).
+    """
+
+    inertia: Array
+    metric: Array
+    slack: Array
+
+    @staticmethod
+    def of(inertia: Array) -> DryFriction:
+        """Prepare the problem for matrices of shape (n, 3, 3)."""
+        metric = np.abs(inertia).sum(axis=-1)
+        return DryFriction(inertia, metric, np.eye(3) * metric[:, :, None] - inertia)
+
+    def slide_or_stick(self, impulse: Array, limit: Array, start: Array) -> Array:
+        """Return the velocities.
+
+        Parameters
+        ----------
+        impulse : ndarray
+            Inertia times the velocity that there would be without friction, shape (n, 3), in
+            N m s.
+        limit : ndarray
+            Largest impulse of the friction, shape (n, 3) or (n, 1), in N m s.
+        start : ndarray
+            Guess of the velocities, shape (n, 3), in rad/s.
+
+        Returns
+        -------
+        ndarray
+            Shape (n, 3), in rad/s.
+
+        Raises
+        ------
+        ArithmeticError
+            If the iteration does not converge: the matrix is not positive definite or not finite.
+        """
+        v = start
+        for _ in range(LIMIT):
+            push = impulse + (self.slack @ v[..., None])[..., 0]
+            new: Array = (push - np.minimum(np.maximum(push, -limit), limit)) / self.metric
+            change = np.abs(new - v).max()
+            v = new
+            if change <= ACCURACY:
+                return v
+        raise ArithmeticError("the velocities under dry friction do not converge")

@@ -1,0 +1,174 @@
+"""The robot with its drives as a differential equation, and one step of it.
+
+``(M + N^2 I_r) q'' + damping q' + C q' + G + springs = torque_per_command delta - friction``: the
+full dynamics of all links, with counter-masses and springs where the robot is balanced, and the
+rotors behind their gears.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nrs_design.robot.models import (
+    Balance,
+    Robot,
+    balanced_robot,
+    direct_kinematics,
+    mass_and_bias,
+    spring_torque,
+)
+from nrs_design.robot.models.drive import JointDrive
+from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.simulation.tracking.friction import DryFriction
+
+
+@dataclass(frozen=True, slots=True)
+class JointState:
+    """Where the joints are, shape (n, 3), in rad and rad/s, and their dry friction in N m."""
+
+    position: Array
+    velocity: Array
+    friction: Array
+
+    def is_like(self, other: JointState) -> bool:
+        """Tell whether nothing has moved between two states."""
+        return bool(
+            np.array_equal(self.position, other.position)
+            and np.array_equal(self.velocity, other.velocity)
+        )
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """What the drives move: all links and the platform, and perhaps a balance.
+
+    Parameters
+    ----------
+    robot : Robot
+        On its base, with its counter-masses if it has any.
+    balance : Balance or None
+        The balance whose springs act on it.
+    """
+
+    robot: Robot
+    balance: Balance | None = None
+
+    @staticmethod
+    def balanced(robot: Robot, balance: Balance) -> Mechanism:
+        """Return the robot with counter-masses and springs."""
+        return Mechanism(balanced_robot(robot, balance), balance)
+
+    @property
+    def parts(self) -> tuple[Robot, Balance | None]:
+        """What two mechanisms must have in common to be computed together."""
+        return self.robot, self.balance
+
+    def mass_and_bias(self, position: Array, velocity: Array) -> tuple[Array, Array]:
+        """Return the mass matrices and all torques that no acceleration makes.
+
+        Parameters
+        ----------
+        position, velocity : ndarray
+            Of the joints, shape (n, 3), in rad and rad/s.
+
+        Returns
+        -------
+        tuple of ndarray
+            Shapes (n, 3, 3) in kg m^2 and (n, 3) in N m.
+
+        Raises
+        ------
+        PoseError
+            If no pose has these joint angles.
+        """
+        pose = direct_kinematics(self.robot, position)
+        mass, bias = mass_and_bias(self.robot, pose, velocity)
+        if self.balance is None:
+            return mass, bias
+        return mass, bias + spring_torque(self.robot, self.balance, pose)
+
+
+@dataclass(frozen=True, slots=True)
+class DriveArrays:
+    """Drives of a batch: inertia, damping, torque per command, friction; shapes (n, 1)."""
+
+    inertia: Array
+    damping: Array
+    torque_per_command: Array
+    friction: Array
+
+    @staticmethod
+    def of(drives: list[JointDrive]) -> DriveArrays:
+        """Collect one drive for each robot of the batch."""
+        rows = [(d.inertia, d.damping, d.torque_per_command, d.friction_torque) for d in drives]
+        return DriveArrays(*(column[:, None] for column in np.array(rows).T))
+
+
+@dataclass(frozen=True, slots=True)
+class Stepper:
+    """Steps of a fixed length, with mass matrices and bias that hold for some of them.
+
+    Velocity and damping are those of the middle of the step (the implicit midpoint rule), so that
+    kinetic energy, work and losses balance exactly while the matrices hold. The friction follows
+    from the velocity at the end of the step.
+
+    Parameters
+    ----------
+    drives : DriveArrays
+        Drives of the batch.
+    h : float
+        Length of a step in s.
+    mass : ndarray
+        M and the rotors, shape (n, 3, 3).
+    bias : ndarray
+        Shape (n, 3), in N m.
+    contact : DryFriction
+        What the velocity at the end of the step follows from.
+    inverse : ndarray
+        Inverse of its inertia, shape (n, 3, 3).
+    """
+
+    drives: DriveArrays
+    h: float
+    mass: Array
+    bias: Array
+    contact: DryFriction
+    inverse: Array
+
+    @staticmethod
+    def at(drives: DriveArrays, h: float, mass: Array, bias: Array) -> Stepper:
+        """Return the stepper for mass matrices and bias of the mechanism.
+
+        Parameters
+        ----------
+        drives : DriveArrays
+            The motors of the joints.
+        h : float
+            Step in s.
+        mass : ndarray, shape (..., 3, 3)
+            Mass matrices.
+        bias : ndarray, shape (..., 3)
+            Torques that do not depend on the acceleration, N m.
+        """
+        total = mass + np.eye(3) * drives.inertia[..., None]
+        inertia = total + np.eye(3) * (h / 2 * drives.damping)[..., None]
+        return Stepper(
+            drives, h, total, bias, DryFriction.of(inertia), np.asarray(np.linalg.inv(inertia))
+        )
+
+    def step(self, state: JointState, command: Array) -> JointState:
+        """Return the state one step later, under commands of shape (n, 3), in rpm."""
+        drives, h, v = self.drives, self.h, state.velocity
+        push = h * (drives.torque_per_command * command - self.bias)
+        impulse = _times(self.mass, v) - h / 2 * drives.damping * v + push
+        # The friction of the last step is right while a joint keeps sliding.
+        guess = np.where(v == 0.0, 0.0, _times(self.inverse, impulse - h * state.friction))
+        new = self.contact.slide_or_stick(impulse, h * drives.friction, guess)
+        friction = (impulse - _times(self.contact.inertia, new)) / h
+        return JointState(state.position + h / 2 * (v + new), new, friction)
+
+
+def _times(matrix: Array, vector: Array) -> Array:
+    return np.asarray((matrix @ vector[..., None])[..., 0])

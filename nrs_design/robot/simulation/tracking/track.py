@@ -1,0 +1,139 @@
+"""What runs together: a controller, what it moves, and where to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+
+from nrs_design.robot.controllers import IndependentJoint, MotionLaw
+from nrs_design.robot.design.motion_control import (
+    design_computed_torque,
+    design_independent_joint,
+    design_load_model,
+)
+from nrs_design.robot.models import Robot, design_balance
+from nrs_design.robot.models.drive import JointDrive, build_drive
+from nrs_design.robot.models.vectors import Array
+from nrs_design.robot.simulation.tracking.experiment import Experiment, thesis_experiments
+from nrs_design.robot.simulation.tracking.plant import Mechanism
+from nrs_design.spec import RobotSpec
+
+CONTROLLERS = ("computed-torque", "independent-joint", "balanced")
+
+
+@dataclass(frozen=True, slots=True)
+class Encoder:
+    """Absolute encoder at the output of the gearhead (MagAlpha MA707, thesis 4.1).
+
+    Parameters
+    ----------
+    ratio : float
+        Turns of the encoder per turn of the joint.
+    counts : int or None
+        Per turn of the encoder; None does not round.
+    """
+
+    ratio: float
+    counts: int | None
+
+    def read(self, joints: Array) -> Array:
+        """Return what encoders say of joint angles: their own angles in rad, to the count."""
+        angle = self.ratio * joints
+        if self.counts is None:
+            return angle
+        count = 2 * pi / self.counts
+        return np.asarray(count * np.round(angle / count))
+
+
+@dataclass(frozen=True)
+class Track:
+    """A controller on a robot, and the experiments that it does.
+
+    Parameters
+    ----------
+    controller : str
+        Name for people.
+    law : MotionLaw
+        The controller.
+    mechanism : Mechanism
+        What it moves.
+    drive : JointDrive
+        Behind each joint.
+    encoder : Encoder
+        On each drive.
+    experiments : tuple of Experiment
+        What is asked for.
+    """
+
+    controller: str
+    law: MotionLaw
+    mechanism: Mechanism
+    drive: JointDrive
+    encoder: Encoder
+    experiments: tuple[Experiment, ...]
+
+    def only(self, moved: str | None) -> Track:
+        """Return the track with the experiment that moves one coordinate; None keeps all."""
+        kept = tuple(one for one in self.experiments if moved in (None, one.moved))
+        return replace(self, experiments=kept)
+
+    def split(self) -> tuple[Track, ...]:
+        """Return one track for each experiment."""
+        return tuple(replace(self, experiments=(one,)) for one in self.experiments)
+
+
+def experiment_tilt(spec: RobotSpec) -> float:
+    """Return the tilt of the base for the experiments, in rad.
+
+    It is the one that the balance is made for, -28.5 deg in the thesis (4.2 and 4.4), or that of
+    the spec if it has no balance.
+    """
+    return spec.base_tilt.si if spec.balance is None else spec.balance.tilt.si
+
+
+def build_track(
+    spec: RobotSpec, robot: Robot, controller: str, period: float | None = None
+) -> Track:
+    """Design one of the thesis's controllers and set up its three experiments.
+
+    Parameters
+    ----------
+    spec : RobotSpec
+        With `control`, and for the balanced robot `balance`.
+    robot : Robot
+        Built from it, on the base of the experiments.
+    controller : str
+        One of `CONTROLLERS`.
+    period : float, optional
+        Of all sines in s, instead of the thesis's.
+
+    Returns
+    -------
+    Track
+        Ready to be simulated.
+
+    Raises
+    ------
+    DesignError
+        If the spec lacks something, or its numbers contradict each other.
+    """
+    mechanism, law = _mechanism_and_law(spec, robot, controller)
+    drive = build_drive(spec.drive)
+    encoder = Encoder(drive.encoder_ratio, spec.drive.encoder_counts)
+    experiments = thesis_experiments(robot, controller, period)
+    return Track(controller, law, mechanism, drive, encoder, experiments)
+
+
+def _mechanism_and_law(
+    spec: RobotSpec, robot: Robot, controller: str
+) -> tuple[Mechanism, MotionLaw]:
+    if controller == "balanced":
+        mechanism = Mechanism.balanced(robot, design_balance(spec, robot))
+        return mechanism, design_independent_joint(spec, None)
+    load = design_load_model(spec, robot)
+    if controller == "computed-torque":
+        return Mechanism(robot), design_computed_torque(spec, load)
+    law: IndependentJoint = design_independent_joint(spec, load)
+    return Mechanism(robot), law

@@ -1,0 +1,147 @@
+"""``nrs-design ros2 check``: the parameters that a robot runs, against what it touches."""
+
+from __future__ import annotations
+
+import sys
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nrs_design.cli.gate import OF_SEVERITY, GateFormat, format_of
+from nrs_design.cli.options import Json, Quiet, read_work
+from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.errors import NrsDesignError, SpecError
+from nrs_design.ros2.cli.options import Lag, range_of, read_lag
+from nrs_design.ros2.quantities import RATE, RATE_UNITS, ROTATIONAL, STIFFNESS
+
+if TYPE_CHECKING:
+    from nrs_design.gating.obligations import GateOutcome, SpecOutcome
+
+LONGEST_AGE = 20
+
+
+def check(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="Parameter file, such as controllers.yaml.")
+    ],
+    stiffness: Annotated[
+        str | None,
+        typer.Option(metavar="RANGE", help="What translations touch, such as '200..2000 N/m'."),
+    ] = None,
+    rotational_stiffness: Annotated[
+        str | None,
+        typer.Option(metavar="RANGE", help="What rotations touch, such as '5..40 N*m/rad'."),
+    ] = None,
+    age: Annotated[
+        str,
+        typer.Option(metavar="RANGE", help="Age of the measured pose and force in periods: 1..3."),
+    ] = "0",
+    lag: Lag = "0 ms",
+    rate: Annotated[
+        str | None,
+        typer.Option(
+            metavar="RATE",
+            help="Of the control loop, such as '500 1/s'; default: update_rate in the file.",
+        ),
+    ] = None,
+    budget: Annotated[
+        float,
+        typer.Option(
+            metavar="WORK",
+            parser=read_work,
+            help="Work of the search of each axis, in units of about a second.",
+        ),
+    ] = 20.0,
+    format_: Annotated[
+        GateFormat, typer.Option("--format", help="What to print.")
+    ] = GateFormat.TEXT,
+    as_json: Json = False,
+    quiet: Quiet = False,
+) -> None:
+    """Prove or refute every axis of the admittance controllers in a parameter file.
+
+    The law of admittance_controller (ros2_controllers) is taken as an exact difference equation at
+    the rate of the loop, with its force filter, for every stiffness in the range and every age of
+    the measurement, changing at will. Where there is no proof, it says up to which stiffness there
+    is one; and it warns of parameters that do not do what they seem to.
+
+    Exit code 0: all axes proved. 1: one refuted. 2: the controller would not start. 3: undecided;
+    so is any other controller of the file that may move the robot.
+
+    Example: nrs-design ros2 check docs/examples/admittance.ros2.yaml --stiffness '200..2000 N/m'
+
+    Example: nrs-design ros2 check controllers.yaml --stiffness '0..900 N/m' --age 1..3 --rate 500
+    """
+    from nrs_design.gating.formats import FORMATS
+    from nrs_design.ros2.check import Question, check_file
+    from nrs_design.search.certification import Limits
+
+    chosen = format_of(format_, as_json=as_json)
+    question = Question(
+        _ages(age),
+        range_of("--stiffness", stiffness, STIFFNESS),
+        range_of("--rotational-stiffness", rotational_stiffness, ROTATIONAL),
+        None if rate is None else _rate(rate),
+        read_lag(lag),
+    )
+    with progress("checking", quiet=quiet) as step:
+        outcome = check_file(file, question, Limits(budget=budget), step)
+    if chosen is not GateFormat.TEXT:
+        sys.stdout.write(FORMATS[chosen](outcome))
+    elif not quiet:
+        _show(outcome)
+    raise typer.Exit(OF_SEVERITY[outcome.severity])
+
+
+def _show(outcome: GateOutcome) -> None:
+    """Print every axis, and below it what surprises people."""
+    (found,) = outcome.specs
+    for item in found.obligations:
+        line = f"{item.path}:{item.line}: {item.status}: {item.message}"
+        if item.fulfilled:
+            say(line)
+        else:
+            say_failure(line, item.status)
+    for caution in found.cautions:
+        note(f"{found.path}:{caution.line}: warning: {caution.message}")
+    _conclude(found, outcome.notes)
+
+
+def _conclude(found: SpecOutcome, notes: tuple[str, ...]) -> None:
+    if found.verdict is not None:
+        say(f"{found.path}: {found.verdict.upper()}", verdict=found.verdict)
+    for line in notes:
+        say(f"  {line}")
+
+
+def _ages(text: str) -> tuple[int, int]:
+    low, _, high = text.partition("..")
+    try:
+        ages = int(low), int(high or low)
+    except ValueError:
+        raise NrsDesignError(
+            f"--age: {text!r} is no range of periods", remedy="write --age 1 or --age 0..2"
+        ) from None
+    if not 0 <= ages[0] <= ages[1] <= LONGEST_AGE:
+        raise NrsDesignError(
+            f"--age: {text!r} does not rise from 0 to at most {LONGEST_AGE}",
+            remedy="write --age 0..2",
+        )
+    return ages
+
+
+def _rate(text: str) -> Fraction:
+    from nrs_design.spec.exact import parse_exact
+
+    number = text
+    for unit in RATE_UNITS:
+        number = number.removesuffix(unit).rstrip(" ")
+    try:
+        rate = parse_exact(number)
+    except SpecError as error:
+        raise NrsDesignError(f"--rate: {error.message}", remedy=f"write {RATE}") from None
+    if rate <= 0:
+        raise NrsDesignError("--rate: is not positive", remedy=f"write {RATE}")
+    return rate

@@ -1,0 +1,56 @@
+"""The wings of the house: their commands, and how the core reaches what lies in them.
+
+A wing is a folder of the package. It imports the core; the core never imports a wing, but asks for
+one here when it is needed. Without its folder, the rest works, and says what is missing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType, ModuleType
+
+from nrs_design.errors import NrsDesignError
+
+# The command NAME of a wing is `NAME` in the module `WING.cli.NAME`.
+WINGS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "robot": ("robot",),
+        "identification": ("identify", "audit"),
+        "ros2": ("ros2",),
+        "thesis": ("reproduce",),
+    }
+)
+
+
+def wing_of(command: str) -> str | None:
+    """Return the wing that has a command; None for those of the core."""
+    return next((wing for wing, commands in WINGS.items() if command in commands), None)
+
+
+def load_wing(wing: str, module: str) -> ModuleType:
+    """Return a module of a wing.
+
+    Parameters
+    ----------
+    wing : str
+        Out of `WINGS`.
+    module : str
+        Its name in there, such as ``pipeline``.
+
+    Raises
+    ------
+    NrsDesignError
+        If the wing is not installed.
+    """
+    name = f"nrs_design.{wing}.{module}"
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        # A library that is not installed is another matter.
+        if not f"{name}.".startswith(f"{error.name}."):
+            raise
+        raise NrsDesignError(
+            f"the wing {wing} is not installed",
+            remedy="install the whole of nrs-design: pip install --force-reinstall nrs-design",
+        ) from None

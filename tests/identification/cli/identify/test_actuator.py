@@ -1,0 +1,34 @@
+"""`nrs-design identify actuator`, as a user types it."""
+
+import json
+import shutil
+
+import pytest
+
+from tests.identification.cli.identify.records import DATA, SINUSOIDS
+from tests.support import SOFT_TISSUE, run
+
+
+@pytest.mark.slow
+def test_sinusoids_and_a_ready_response(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "actuator", *SINUSOIDS, "--json", "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    fit = document["fits"][-1]
+    for key, value in (
+        ("gain_rad_s_rpm", 4.8417e-4),
+        ("time_constant_s", 0.0351),
+        ("friction_rpm", 276.575),
+    ):
+        assert fit[key]["low"] < value < fit[key]["high"]
+    assert document["resistance_ohm"]["value"] == pytest.approx(3.7454, rel=1e-3)
+    assert document["range_covers"] == "confidence"
+    assert "gain: {nominal: 4.84" in spec.read_text()
+    assert "range_covers: confidence" in spec.read_text()
+    text = run("identify", "actuator", DATA / "actuator-response.csv", cwd=tmp_path).stdout
+    assert text.startswith("SYNTHETIC data")
+    assert "ready frequency response" in text
+    assert "both for a motor with K_T = 0.0115 N m/A" in text

@@ -1,0 +1,297 @@
+"""`nrs-design identify tissue`, as a user types it."""
+
+import contextlib
+import json
+import shutil
+from unittest.mock import patch
+
+import pytest
+
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.spec import read_spec
+from tests.identification.cli.identify.records import NOSE, SOFT
+from tests.identification.support import quick, record
+from tests.identification.unilateral import robot_record
+from tests.support import ROOT, SOFT_TISSUE, run
+
+
+def test_end_to_end(tmp_path):
+    """Shipped records into a copy of the soft-tissue spec; the gate proves the whole interval."""
+    spec = tmp_path / "soft-tissue.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    result = run("identify", "tissue", *SOFT, "--write", spec, "--json", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    document = json.loads(result.stdout)
+    assert document["schema"] == "nrs-design/identify-tissue/1"
+    assert document["synthetic"] is True
+    assert document["chosen"] == "elastic"
+    k = document["ranges"]["k"]
+    # Thesis 6.1: three fits and their mean, 747.14 N/m.
+    assert all(k["low"] < fit < k["high"] for fit in (768.17, 720.56, 752.69))
+    assert k["value"] == pytest.approx(747.14, rel=5e-3)
+    assert "data: synthetic" in spec.read_text()
+    gate = run("gate", spec, "--json", "--no-reports", cwd=tmp_path)
+    assert gate.returncode == 0, gate.stdout + gate.stderr
+    check = run("check", spec, cwd=tmp_path).stdout
+    assert "silicone-soft-1.csv" in check
+    assert "synthetic" in check
+
+
+def test_tissue_table(tmp_path):
+    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.startswith("SYNTHETIC data")
+    for law in ("elastic", "kelvin-voigt", "maxwell", "kelvin-boltzmann", "hunt-crossley"):
+        assert law in result.stdout
+    assert "at the pivot: k = 42.9" in result.stdout
+    assert "least BIC" in result.stdout
+
+
+def test_nose_of_the_thesis(tmp_path):
+    """Thesis table 2.4: k1 0.233, k2 0.972, b 23.631; RMSE 0.0216, 0.0165, 0.0062, 0.0111."""
+    document = json.loads(run("identify", "tissue", *NOSE, "--json", cwd=tmp_path).stdout)
+    assert document["chosen"] == "kelvin-boltzmann"
+    model = next(m for m in document["models"] if m["law"] == "kelvin-boltzmann")
+    for name, value in (("k1", 0.233), ("k2", 0.972), ("b", 23.631)):
+        assert model["parameters"][name]["low"] < value < model["parameters"][name]["high"]
+    rmse = [record["rmse"] for record in model["records"]]
+    assert rmse == pytest.approx([0.0216, 0.0165, 0.0062, 0.0111], rel=0.05)
+    assert model["relaxation_time_s"] == pytest.approx(19.6, rel=0.02)
+
+
+def test_foreign_columns(tmp_path):
+    text = SOFT[0].read_text().replace("deflection_m", "x").replace("force_N", "Fz")
+    (tmp_path / "foreign.csv").write_text(text)
+    missing = run("identify", "tissue", "foreign.csv", cwd=tmp_path)
+    assert missing.returncode == 2
+    assert "the columns deflection_m, force_N are missing" in missing.stderr
+    assert " --> foreign.csv:2\n" in missing.stderr
+    arguments = ("--map", "deflection_m=x", "--map", "force_N=Fz")
+    assert run("identify", "tissue", "foreign.csv", *arguments, cwd=tmp_path).returncode == 0
+
+
+def test_a_failed_merge_leaves_the_spec(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "tissue", NOSE[0], "--model", "hunt-crossley", "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "--model elastic" in result.stderr
+    assert spec.read_text() == SOFT_TISSUE.read_text()
+
+
+@pytest.mark.slow
+def test_what_is_chosen_for_the_nose_can_be_proved(tmp_path):
+    spec = tmp_path / "nose.nrs.yaml"
+    shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)
+    result = run("identify", "tissue", *NOSE, "--write", spec, cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "model: kelvin-boltzmann" in spec.read_text()
+    assert "nose-4.csv" in spec.read_text()
+    proved = run("certify-switching", spec, cwd=tmp_path)
+    assert proved.returncode == 0
+    assert proved.stdout.startswith("nose: PROVED")
+
+
+def test_writing_a_law_that_fits_worse_warns(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "tissue", NOSE[0], "--model", "elastic", "--write", spec, "-q")
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 0
+    first, *doubts = result.stderr.splitlines()
+    assert first.startswith("warning: kelvin-boltzmann describes the records better than elastic")
+    assert any("the residual is" in doubt for doubt in doubts)
+    gate = run("gate", spec, "--no-reports", cwd=tmp_path)
+    assert gate.returncode == 1
+    assert "NRS107 missed" in gate.stdout
+
+
+def robot_csv(folder, sign=1):
+    """A record in robot coordinates: 400 N/m at 0.1 m, a tare of -1.3 N, air before contact."""
+    data = robot_record(KelvinVoigt(400.0, 3.0), quick(2), 0.05, 2, zero=0.1, tare=-1.3)
+    rows = zip(data.motion.time, data.motion.deflection, sign * data.force, strict=True)
+    text = "\n".join(f"{t:.3f},{x:.7f},{f:.4f}" for t, x, f in rows)
+    path = folder / f"robot{sign}.csv"
+    path.write_text(f"time_s,deflection_m,force_N\n{text}\n")
+    return path
+
+
+@pytest.mark.slow
+def test_offsets_and_cuts_are_said(tmp_path):
+    path = robot_csv(tmp_path)
+    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    assert document["chosen"] == "kelvin-voigt"
+    assert document["ranges"]["k"]["low"] < 400 < document["ranges"]["k"]["high"]
+    assert document["caveats"] == []
+    (fit,) = next(m for m in document["models"] if m["law"] == "kelvin-voigt")["records"]
+    assert fit["offsets"]["zero"]["value"] == pytest.approx(0.1, abs=2e-4)
+    assert fit["offsets"]["tare"]["value"] == pytest.approx(-1.3, abs=0.02)
+    assert fit["used"] < fit["samples"]
+    assert any("at the edge of contact" in cut for cut in fit["cuts"])
+    command = ("identify", "tissue", path, "--prony", "--report", "page.html")
+    text = run(*command, cwd=tmp_path).stdout
+    assert "3 touches" in text
+    assert "Prony series of" in text
+    assert "Prony series of" in (tmp_path / "page.html").read_text()
+
+
+@pytest.mark.slow
+def test_opposite_signs_stop_the_writing(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(SOFT_TISSUE, spec)
+    arguments = ("identify", "tissue", robot_csv(tmp_path, -1), "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert "force and deflection have opposite signs" in result.stderr
+    told = (*arguments, "--negate-force", "--model", "kelvin-voigt", "-q")
+    assert run(*told, cwd=tmp_path).stderr == ""
+    assert "doubts" not in spec.read_text()
+
+
+VOIGT = ("    model: elastic\n", "    model: kelvin-voigt\n    damping: 30 N*s/m\n")
+
+
+def damped_csv(folder, b=30.0, seed=1):
+    """Presses on 400 N/m and 30 N s/m."""
+    made = record(KelvinVoigt(400.0, b) if b else Elastic(400.0), quick(seed), 0.02, seed)
+    rows = zip(made.motion.time, made.motion.deflection, made.force, strict=True)
+    path = folder / "press.csv"
+    text = "\n".join(f"{t:.3f},{x:.8f},{f:.5f}" for t, x, f in rows)
+    path.write_text(f"t [s],x [m],F [N]\n{text}\n")
+    return path
+
+
+def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
+    arguments = ("identify", "tissue", damped_csv(tmp_path), "--write", spec)
+    kept = run(*arguments, cwd=tmp_path)
+    assert kept.returncode == 0, kept.stderr
+    assert "kelvin-voigt is the law of the spec, which is kept" in kept.stdout
+    assert "changed: environments.soft.damping: 30 N*s/m -> 29." in kept.stderr
+    assert "no longer there" not in kept.stderr
+    soft = read_spec(spec).spec.environments["soft"]
+    assert soft.model == "kelvin-voigt"
+    assert soft.damping.range[0].si < 30 < soft.damping.range[1].si
+    told = run(*arguments, "--model", "elastic", "-q", cwd=tmp_path)
+    assert told.returncode == 0, told.stderr
+    assert "warning: no longer there: environments.soft.damping: 29." in told.stderr
+    assert "warning: kelvin-voigt describes the records better than elastic" in told.stderr
+
+
+def test_a_law_that_is_not_refused_before_the_fit_does_not_lose_it(tmp_path):
+    """Records of a spring do not tell the damper of the spec: what was found is printed."""
+    spec, text = tmp_path / "copy.nrs.yaml", SOFT_TISSUE.read_text().replace(*VOIGT)
+    spec.write_text(text)
+    record_, options = damped_csv(tmp_path, b=0.0), ("--contact", "given", "--zero", "0 m")
+    arguments = ("identify", "tissue", record_, *options, "--write", spec)
+    result = run(*arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert "BIC - least" in result.stdout
+    assert "choose a simpler law with --model" in result.stderr
+    assert spec.read_text() == text
+    document = json.loads(run(*arguments, "--json", cwd=tmp_path).stdout)
+    assert document["chosen"] == "kelvin-voigt"
+    assert "unlimited" in str(document["not_written"])
+
+
+def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
+    spec = tmp_path / "copy.nrs.yaml"
+    shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)
+    sent = tmp_path / "link.nrs.yaml"
+    sent.symlink_to(spec)
+    path = damped_csv(tmp_path)
+    volts = tmp_path / "volts.csv"
+    text = "".join(f"{i / 100:.2f},{i % 7},{i % 5}\n" for i in range(100))
+    volts.write_text(f"time_s,command_V,velocity_rad_s\n{text}")
+    nose = ROOT / "specs/neuroboscope/nose.nrs.yaml"
+    other = ROOT / "specs/examples/commuting.nrs.yaml"
+    rpm = SOFT_TISSUE
+    poses = ROOT / "specs/data/tool-poses.csv"
+    delay = ("delay", volts, "--command", "command_V", "--measured", "velocity_rad_s")
+    fits = ("tissue.identify_tissue", "actuator.identify_actuator", "delay.identify_delay",
+            "tool.identify_tool")  # fmt: skip
+    with contextlib.ExitStack() as stack:
+        for name in fits:
+            fit = f"nrs_design.identification.{name}"
+            stack.enter_context(patch(fit, side_effect=AssertionError("fitted")))
+        for arguments, message in (
+            (("tissue", path, "--write", spec, "--environment", "hard"), "no environment 'hard'"),
+            (("tissue", path, "--write", nose), "has no lever_arm"),
+            (("tissue", path, "--write", other), "has no place for identified values"),
+            (("tissue", path, "--write", tmp_path / "none.nrs.yaml"), "none.nrs.yaml"),
+            (("tissue", path, "--write", sent), "link"),
+            (("tissue", path, "--write", rpm, "--model", "hunt-crossley"), "has no place"),
+            (("tissue", path, "--lever-arm", "3 kg"), "--lever-arm"),
+            (("actuator", volts, "--write", rpm), "commands in V, and derivative_gain is 2060 rpm"),
+            (("actuator", volts, "--write", other), "has no place for identified values"),
+            ((*delay, "--write", rpm), "the spec has no sampling"),
+            (("tool", poses, "--write", other), "has no place for identified values"),
+        ):
+            result = run("identify", *arguments, cwd=tmp_path)
+            assert result.returncode == 2, (arguments, result.stderr)
+            assert message in result.stderr, arguments
+
+
+@pytest.mark.parametrize(
+    ("scales", "said"),
+    [
+        ((1.0, 1e-3), "the force spans 0.00265 N: is that its unit? did you mean 0.00265 kN?"),
+        pytest.param(
+            (1e3, 1.0),
+            "the deflection spans 6.61 m: is that its unit? did you mean 6.61 mm",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            (1e-3, 1.0),
+            "the deflection spans 6.61e-06 m: is that its unit?",
+            marks=pytest.mark.slow,
+        ),
+        ((1.0, -1.0), "force and deflection have opposite signs"),
+        pytest.param(
+            (-1.0, 1.0), "force and deflection have opposite signs", marks=pytest.mark.slow
+        ),
+    ],
+)
+def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
+    """kN for N, mm for m, m for mm, and both signs: each has a doubt, the exit code, the gate."""
+    made = record(KelvinVoigt(400.0, 3.0), quick(1), 0.001, 1)
+    rows = zip(made.motion.time, scales[0] * made.motion.deflection, scales[1] * made.force,
+               strict=True)  # fmt: skip
+    path, spec = tmp_path / "press.csv", tmp_path / "copy.nrs.yaml"
+    path.write_text("time_s,deflection_m,force_N\n" + "\n".join(f"{t},{x},{f}" for t, x, f in rows))
+    shutil.copy(SOFT_TISSUE, spec)
+    result = run("identify", "tissue", path, cwd=tmp_path)
+    assert result.returncode == 3
+    assert f"warning: press: {said}" in result.stderr
+    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    assert any(said in slip for slip in document["slips"])
+    options = ("--write", spec, "--model", "elastic", "-q")
+    written = run("identify", "tissue", path, *options, cwd=tmp_path)
+    if "signs" in said:
+        # No spring pushes that way: its range has no end, and nothing is written.
+        assert written.returncode == 2
+        assert spec.read_text() == SOFT_TISSUE.read_text()
+        return
+    assert written.returncode == 3
+    assert any(said in doubt for doubt in read_spec(spec).spec.environments["soft"].doubts)
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--zero", "3 N"), "--zero: "),
+        (("--tare", "3 m"), "--tare: "),
+        (("--from", "99"), "lie between --from and --to"),
+        (("--skip-cycles", "9"), "9 cycles are to be set apart"),
+        (("--covers", "tolerance"), "needs several records"),
+        (("--preload", "1 mm..2 mm", "--model", "elastic"), "the same at every preload"),
+        (("--preload", "1 mm..2 m"), "not within the deflections"),
+        (("--environment", "soft"), "name a spec by --write, too"),
+        (("--preload", "1 N"), "--preload: "),
+    ],
+)
+def test_wrong_options_of_tissue(tmp_path, option, message):
+    result = run("identify", "tissue", SOFT[0], *option, cwd=tmp_path)
+    assert result.returncode == 2
+    assert message in result.stderr

@@ -1,0 +1,95 @@
+"""The page of an identification."""
+
+import re
+import shutil
+
+import pytest
+
+from nrs_design.identification.actuator import identify_actuator
+from nrs_design.identification.datasets import read_actuator, read_tissue
+from nrs_design.identification.reporting.actuator import actuator_report
+from nrs_design.identification.reporting.tissue import tissue_report
+from nrs_design.identification.tissue import identify_tissue
+from nrs_design.reporting import render_html, render_pdf, render_png
+from tests.identification.support import MOTOR
+from tests.support import ROOT
+
+DATA = ROOT / "specs" / "data"
+
+
+@pytest.fixture(scope="module")
+def tissue():
+    records = [read_tissue(path) for path in sorted(DATA.glob("silicone-soft-*.csv"))]
+    return tissue_report(identify_tissue(records), 0.24)
+
+
+@pytest.fixture(scope="module")
+def actuator():
+    paths = [DATA / f"actuator-{name}hz.csv" for name in ("2", "3", "4p5", "8", "15")]
+    records = [record for path in paths for record in read_actuator(path)]
+    return actuator_report(identify_actuator(records, MOTOR))
+
+
+def test_tissue_page(tissue):
+    page = render_html(tissue)
+    assert '<body class="identified">' in page
+    assert page.count("SYNTHETIC") >= 8
+    for text in ("hysteresis", "Comparison of laws", "Doubts", "at the pivot", "AIC"):
+        assert text in page
+    assert "certificate" not in page
+    assert [item.name for item in tissue.illustrations] == [
+        "interval-k",
+        *(f"{kind}-silicone-soft-{i}" for i in (1, 2, 3) for kind in ("fit", "loop")),
+    ]
+
+
+@pytest.mark.slow
+def test_actuator_page(actuator):
+    page = render_html(actuator)
+    held = "The range holds gain and time constant of the recorded motor, both at once with 95 %"
+    for text in ("Velocity over command", "Armature resistance", "Slowest and fastest", held):
+        assert text in page
+    names = [item.name for item in actuator.illustrations]
+    assert names == ["bode", "angle-actuator-2hz", "angle-actuator-15hz"]
+
+
+def test_ready_response_has_a_bode_plot_only():
+    data = [read_actuator(DATA / "actuator-response.csv")]
+    report = actuator_report(identify_actuator(data, MOTOR))
+    assert [item.name for item in report.illustrations] == ["bode"]
+
+
+@pytest.mark.slow
+def test_same_bytes_and_unique_ids(actuator):
+    page = render_html(actuator)
+    assert page == render_html(actuator)
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert len(ids) == len(set(ids))
+
+
+@pytest.mark.slow
+def test_names_of_records_are_text(tmp_path):
+    """Not formulas, not markup, not marks that turn the direction of writing."""
+    names = ["a$\\frac{$", 'b<i>&"$x$', "c\u202efdp", "a%\\frac{%", "שלום 中"]
+    paths = [tmp_path / f"{name}.csv" for name in names]
+    for i, path in enumerate(paths, 1):
+        shutil.copy(DATA / f"concha-{i}.csv", path)
+    report = tissue_report(identify_tissue([read_tissue(path) for path in paths], "kelvin-voigt"))
+    ids = [item.name for item in report.illustrations]
+    assert len(set(ids)) == len(ids)
+    page = render_html(report)
+    assert "b&lt;i&gt;&amp;&#34;$x$" in page
+    assert "c\\u202efdp" in page
+    assert "\u202e" not in page
+    assert render_pdf(report).startswith(b"%PDF")
+    rows = next(report.illustrations).figure.axes[0].get_yticklabels()
+    assert [row.get_text() for row in rows] == [
+        *("a$\\frac{$", 'b<i>&"$x$', "c\\u202efdp", "a%\\frac{%", "שלום \\u4e2d"),
+        "pooled",
+    ]
+
+
+@pytest.mark.slow
+def test_other_formats(actuator):
+    assert render_pdf(actuator).startswith(b"%PDF")
+    assert all(png.startswith(b"\x89PNG") for png in render_png(actuator).values())

@@ -1,0 +1,44 @@
+"""What several commands for the robot read: three numbers, and poses in rad and m."""
+
+import pytest
+import typer
+
+from nrs_design.errors import PoseError
+from nrs_design.robot.cli.options import read_pose, three_numbers
+from nrs_design.robot.models import build_robot
+from nrs_design.spec import parse_spec
+from nrs_design.spec.templates import TEMPLATES
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return build_robot(parse_spec(TEMPLATES["robot"]))
+
+
+def test_three_numbers():
+    assert three_numbers("0.1,-2e-1, 3", "--pose") == (0.1, -0.2, 3.0)
+
+
+@pytest.mark.parametrize("text", ["", "1,2", "1,2,3,4", "1;2;3", "1,2,x", "1,2,nan", "inf,0,0"])
+def test_what_is_not_three_numbers(text):
+    with pytest.raises(typer.BadParameter, match="not three numbers") as caught:
+        three_numbers(text, "--velocity")
+    assert caught.value.param_hint == "--velocity"
+
+
+def test_a_pose_up_to_a_right_angle(robot):
+    assert read_pose("1.57,-1.57,0.2", robot) == (1.57, -1.57, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("text", "said", "remedy"),
+    [
+        ("10,0,0.2", "phi = 10 rad", "10 deg are 0.174533"),
+        ("0,-20,0.2", "psi = -20 rad", "-20 deg are -0.349066"),
+        ("0,0,200", "d = 200 m", "200 mm are 0.2"),
+    ],
+)
+def test_other_units_are_doubted_with_the_number_that_is_meant(robot, text, said, remedy):
+    with pytest.raises(PoseError, match=said) as caught:
+        read_pose(text, robot)
+    assert remedy in caught.value.remedy

@@ -1,0 +1,22 @@
+import pytest
+
+from nrs_design.robot.design.motion_control import design_load_model
+from nrs_design.robot.models import build_robot
+from nrs_design.robot.simulation.tracking import experiment_tilt
+from nrs_design.spec import parse_spec
+from nrs_design.spec.templates import TEMPLATES
+
+
+@pytest.fixture(scope="session")
+def spec():
+    return parse_spec(TEMPLATES["robot"])
+
+
+@pytest.fixture(scope="session")
+def robot(spec):
+    return build_robot(spec).tilted(experiment_tilt(spec))
+
+
+@pytest.fixture(scope="session")
+def load(spec, robot):
+    return design_load_model(spec, robot)

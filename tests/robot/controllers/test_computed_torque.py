@@ -1,0 +1,41 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.design.motion_control import design_computed_torque
+from nrs_design.robot.models import inverse_kinematics
+
+POSE = np.array([[0.05, -0.1, 0.2]])
+ACCELERATION = np.array([[0.3, -0.1, 0.2]])
+VELOCITY = np.array([[0.2, 0.1, -0.3]])
+
+
+@pytest.fixture(scope="module")
+def law(spec, load):
+    return design_computed_torque(spec, load)
+
+
+@pytest.fixture(scope="module")
+def angle(robot):
+    return 5 * inverse_kinematics(robot, POSE)
+
+
+def test_equation_4_18_with_acceleration_and_error_of_the_encoders(law, load, angle):
+    error = np.array([[0.01, -0.02, 0.005]])
+    reference = JointReference((angle + error) / 5, VELOCITY, ACCELERATION)
+    memory = LawState(error - 0.001)
+    command, _ = law.step(memory, reference, angle)
+    wanted = 5 * ACCELERATION + 56.9801 * 0.001 / 0.002 + 1623.85 * error
+    terms = load.terms(angle)
+    expected = 2.7044e5 * (terms.inertia[0] @ wanted[0] / (905 * 5) + terms.gravity[0] / 905)
+    assert command[0] == pytest.approx(expected, rel=1e-5)
+
+
+def test_rotor_and_motor_can_be_added(law, angle, load):
+    reference = JointReference(angle / 5, VELOCITY, ACCELERATION)
+    plain, _ = law.step(LawState(), reference, angle)
+    more, _ = replace(law, rotor_inertia=1.2, motor_damping=34.0).step(LawState(), reference, angle)
+    added = (more - plain) * 905 / 2.7044e5
+    assert added == pytest.approx(1.2 * ACCELERATION + 34.0 * VELOCITY, rel=1e-9)

@@ -1,0 +1,47 @@
+import numpy as np
+import pytest
+
+from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.design.motion_control import design_independent_joint
+from nrs_design.robot.models import inverse_kinematics, simplified_dynamics
+
+POSE = np.array([[0.05, -0.1, 0.2]])
+
+
+@pytest.fixture(scope="module")
+def angle(robot):
+    return 5 * inverse_kinematics(robot, POSE)
+
+
+def reference(angle, ahead):
+    return JointReference((angle + ahead) / 5, np.zeros((1, 3)), np.zeros((1, 3)))
+
+
+def test_pd_in_encoder_coordinates_is_in_rpm_already(spec, angle):
+    # Thesis 4.30 and 4.31 with Kp = 117359.43, Kd = 2060: no gradient before them (errata 4.36).
+    law = design_independent_joint(spec, None)
+    first, memory = law.step(LawState(), reference(angle, 0.01), angle)
+    assert first == pytest.approx(np.full((1, 3), 1173.5943), rel=1e-6)
+    second, _ = law.step(memory, reference(angle, 0.012), angle)
+    expected = 117359.43 * 0.012 + 2060 * 0.002 / 0.002
+    assert second == pytest.approx(np.full((1, 3), expected), rel=1e-6)
+
+
+def test_weight_is_fed_forward_through_gradient_and_gears(spec, robot, load, angle):
+    law = design_independent_joint(spec, load)
+    command, memory = law.step(LawState(), reference(angle, 0.0), angle)
+    K = np.array(load.correction)
+    expected = 2.7044e5 / 905 * K * simplified_dynamics(robot, POSE).Gs
+    assert command == pytest.approx(expected, rel=1e-9)
+    assert memory.load is not None
+
+
+def test_one_tick_of_many_robots_is_that_of_each(spec, load, angle):
+    law = design_independent_joint(spec, load)
+    both = np.concatenate([angle, angle + 0.3])
+    ahead = np.array([[0.01, 0.0, -0.02], [0.0, 0.03, 0.0]])
+    wanted = JointReference((both + ahead) / 5, np.zeros((2, 3)), np.zeros((2, 3)))
+    together, _ = law.step(LawState(), wanted, both)
+    for row in (0, 1):
+        alone, _ = law.step(LawState(), wanted.of([row]), both[[row]])
+        assert together[[row]] == pytest.approx(alone, rel=1e-12)

@@ -1,0 +1,115 @@
+"""Counter-masses and springs (thesis 4.4)."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DesignError
+from nrs_design.robot.models import (
+    balanced_robot,
+    design_balance,
+    examine_balance,
+    gravity_torque,
+    inverse_dynamics,
+    jacobian,
+    residual_torque,
+    spring_torque,
+    workspace_grid,
+)
+from nrs_design.robot.models.body import MASSLESS, point_mass, rigid_body
+from nrs_design.robot.models.geometry import posture
+
+GRID_DEPTHS = 4
+
+
+@pytest.fixture(scope="module")
+def balance(spec, robot):
+    return design_balance(spec, robot)
+
+
+def grid(robot):
+    return 0.95 * (workspace_grid(robot, 5, GRID_DEPTHS).reshape(-1, 3) - robot.home) + robot.home
+
+
+def test_left_leg(balance):
+    left = balance.left
+    masses = [1e3 * m for m in (left.arm_mass, left.coupler_mass, left.total_mass)]
+    assert masses == pytest.approx([843.6, 1301.2, 2887.9], abs=0.06)
+    assert 1e3 * left.total_distance == pytest.approx(133.49, abs=6e-3)
+    assert 1e-3 * left.stiffness == pytest.approx(1.8042, abs=6e-5)
+
+
+def test_right_leg(balance):
+    right = balance.right
+    masses = [1e3 * m for m in (right.arm_mass, right.coupler_mass, right.total_mass)]
+    assert masses == pytest.approx([844.1, 1302.4, 2891.8], abs=0.06)
+    assert 1e3 * right.total_distance == pytest.approx(133.48, abs=6e-3)
+    # Printed as 1.5919 N/mm.
+    assert 1e-3 * right.stiffness == pytest.approx(1.5916, rel=2e-4)
+
+
+def ideal(robot, spec, balance):
+    """The robot as the balance sees it: payloads on the side arms, and no middle leg."""
+
+    def loaded(leg, choice):
+        center = (choice.arm_center_of_mass.si, 0, 0)
+        arm = rigid_body(leg.arm.mass, center, leg.arm.inertia)
+        return replace(leg, arm=arm.plus(point_mass(spec.balance.payload.si, (leg.l3, 0, 0))))
+
+    left, right, middle = robot.legs
+    bare = replace(middle, crank=MASSLESS, coupler=MASSLESS, arm=MASSLESS)
+    legs = (loaded(left, spec.balance.left), loaded(right, spec.balance.right), bare)
+    return replace(robot, legs=legs, platform=MASSLESS, base_tilt=balance.tilt)
+
+
+def test_what_the_balance_knows_of_is_balanced_everywhere(robot, spec, balance):
+    known = ideal(robot, spec, balance)
+    assert np.abs(gravity_torque(known, grid(robot))).max() > 3
+    assert np.abs(residual_torque(known, balance, grid(robot))).max() < 1e-12
+
+
+def test_another_tilt_is_not_balanced(robot, spec, balance):
+    level = ideal(robot, spec, balance).tilted(0.0)
+    assert np.abs(residual_torque(level, balance, grid(robot))).max() > 0.5
+
+
+def test_residual_of_the_real_robot(robot, balance):
+    torques = examine_balance(robot, balance)
+    without = torques.summary(torques.gravity)["rms"]
+    remaining = torques.summary(torques.residual)["rms"]
+    # The middle leg and the offset of the platform remain: about a seventh of side leg torques.
+    assert np.divide(remaining, without) == pytest.approx([0.135, 0.133, 0.221], abs=5e-3)
+
+
+def test_spring_torque_is_the_slope_of_its_energy(robot, balance):
+    pose, h = np.array([0.1, -0.2, 0.21]), 1e-6
+    up = np.array([-np.sin(balance.tilt), 0, np.cos(balance.tilt)])
+
+    def energy(x):
+        closed, total = posture(robot, x), 0.0
+        for leg, spring in zip(closed.legs, (balance.left, balance.right), strict=False):
+            a = np.array(leg.leg.axis)
+            b = np.cross(leg.normal, a)
+            crank = spring.spring_on_crank * (leg.cos_beta * a + leg.sin_beta * b)
+            total += spring.stiffness * np.sum((crank - spring.spring_on_base * up) ** 2) / 2
+        return total
+
+    slopes = [
+        (energy(pose + h * column) - energy(pose - h * column)) / (2 * h)
+        for column in jacobian(robot, pose).T
+    ]
+    assert spring_torque(robot, balance, pose) == pytest.approx(slopes, abs=1e-6)
+
+
+def test_counter_masses_cost_inertia(robot, balance):
+    heavy = balanced_robot(robot, balance)
+    pose, rest, push = robot.home, np.zeros(3), np.ones(3)
+    light_torque = inverse_dynamics(replace(robot, gravity=0.0), pose, rest, push)
+    heavy_torque = inverse_dynamics(replace(heavy, gravity=0.0), pose, rest, push)
+    assert np.linalg.norm(heavy_torque) > np.linalg.norm(light_torque)
+
+
+def test_a_spec_without_balance(robot, spec):
+    with pytest.raises(DesignError, match="no `balance`"):
+        design_balance(spec.model_copy(update={"balance": None}), robot)

@@ -1,0 +1,144 @@
+"""Properties of the full dynamics; its values are in test_reference and test_pinocchio."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from nrs_design.robot.models import (
+    coriolis_matrix,
+    gravity_torque,
+    inverse_dynamics,
+    jacobian,
+    mass_and_bias,
+    mass_matrix,
+    potential_energy,
+)
+
+from .strategies import poses, rates, tilts
+
+
+@given(pose=poses)
+def test_mass_matrix_is_symmetric_and_positive_definite(robot, pose):
+    M = mass_matrix(robot, pose)
+    assert pytest.approx(M.T, abs=1e-15) == M
+    assert np.linalg.eigvalsh(M).min() > 1e-3
+
+
+@given(pose=poses, velocity=rates, acceleration=rates, tilt=tilts)
+def test_torque_is_the_sum_of_its_parts(robot, pose, velocity, acceleration, tilt):
+    robot = robot.tilted(tilt)
+    M, C = mass_matrix(robot, pose), coriolis_matrix(robot, pose, velocity)
+    G = gravity_torque(robot, pose)
+    torque = inverse_dynamics(robot, pose, velocity, acceleration)
+    assert M @ acceleration + C @ velocity + G == pytest.approx(torque, abs=1e-12)
+    again, bias = mass_and_bias(robot, pose, velocity)
+    assert again == pytest.approx(M, abs=1e-15)
+    assert bias == pytest.approx(C @ velocity + G, abs=1e-12)
+
+
+@given(pose=poses, velocity=rates)
+def test_rate_of_mass_less_twice_coriolis_is_skew(robot, pose, velocity):
+    along = jacobian(robot, pose) @ velocity
+    h = 1e-5
+    rate = (mass_matrix(robot, pose + h * along) - mass_matrix(robot, pose - h * along)) / (2 * h)
+    skew = rate - 2 * coriolis_matrix(robot, pose, velocity)
+    assert skew == pytest.approx(-skew.T, abs=1e-6)
+
+
+@given(pose=poses, tilt=tilts)
+def test_gravity_is_the_slope_of_the_potential(robot, pose, tilt):
+    robot, h = robot.tilted(tilt), 1e-6
+    J = jacobian(robot, pose)
+    slopes = [
+        (potential_energy(robot, pose + h * column) - potential_energy(robot, pose - h * column))
+        / (2 * h)
+        for column in J.T
+    ]
+    assert gravity_torque(robot, pose) == pytest.approx(slopes, abs=1e-7)
+
+
+@given(pose=poses)
+def test_potential_is_that_of_the_centers_of_mass(robot, pose):
+    # The platform alone: its center of mass by thesis 3.32.
+    bare = robot.without_links()
+    phi, psi, d = pose
+    x = np.arcsin(np.sin(phi) / np.cos(psi))
+    lateral, axial = 0.0367, d + 0.010
+    height = axial * np.cos(x) * np.cos(psi) - lateral * np.cos(x) * np.sin(psi)
+    assert potential_energy(bare, pose) == pytest.approx(0.7972 * 9.81 * height, rel=1e-12)
+
+
+@pytest.mark.slow
+@settings(max_examples=3)
+@given(pose=poses, velocity=rates)
+def test_energy_of_a_free_motion_is_kept(robot, pose, velocity):
+    # Released without friction or torque, for 25 ms in steps of 0.5 ms.
+    x, v, h = np.array(pose), 0.2 * velocity, 5e-4
+
+    def energy(x, v):
+        return v @ mass_matrix(robot, x) @ v / 2 + potential_energy(robot, x)
+
+    def slope(x, v):
+        M, bias = mass_and_bias(robot, x, v)
+        return jacobian(robot, x) @ v, np.linalg.solve(M, -bias)
+
+    before = energy(x, v)
+    for _ in range(50):
+        if abs(x[2] - 0.2) > 0.05:
+            break
+        k = [slope(x, v)]
+        for part in (h / 2, h / 2, h):
+            k.append(slope(x + part * k[-1][0], v + part * k[-1][1]))
+        x = x + h / 6 * (k[0][0] + 2 * k[1][0] + 2 * k[2][0] + k[3][0])
+        v = v + h / 6 * (k[0][1] + 2 * k[1][1] + 2 * k[2][1] + k[3][1])
+    assert energy(x, v) == pytest.approx(before, abs=1e-6)
+
+
+@given(pose=poses, velocity=rates, acceleration=rates)
+def test_power_of_the_torques_is_the_rate_of_energy(robot, pose, velocity, acceleration):
+    h = 1e-5
+    along = jacobian(robot, pose) @ velocity
+    turn = (jacobian(robot, pose + h * along) - jacobian(robot, pose - h * along)) / (2 * h)
+    curve = jacobian(robot, pose) @ acceleration + turn @ velocity
+
+    def energy(t):
+        x = pose + t * along + t * t / 2 * curve
+        v = velocity + t * acceleration
+        return v @ mass_matrix(robot, x) @ v / 2 + potential_energy(robot, x)
+
+    power = inverse_dynamics(robot, pose, velocity, acceleration) @ velocity
+    assert (energy(h) - energy(-h)) / (2 * h) == pytest.approx(power, abs=1e-5)
+
+
+def test_batch_is_pose_by_pose(robot):
+    rng = np.random.default_rng(3)
+    pose = rng.uniform((-0.24, -0.33, 0.155), (0.24, 0.33, 0.24), (10_000, 3))
+    velocity, acceleration = rng.normal(0, 2, (2, 10_000, 3))
+    batch = inverse_dynamics(robot, pose, velocity, acceleration)
+    for i in range(0, 10_000, 997):
+        alone = inverse_dynamics(robot, pose[i], velocity[i], acceleration[i])
+        assert batch[i] == pytest.approx(alone, abs=1e-12)
+    C = coriolis_matrix(robot, pose[:5], velocity[:5])
+    assert C[4] == pytest.approx(coriolis_matrix(robot, pose[4], velocity[4]), abs=1e-14)
+
+
+def test_motion_may_be_the_same_for_all_poses(robot):
+    poses = np.array([[0, 0, 0.2], [0.1, -0.2, 0.2]])
+    torques = inverse_dynamics(robot, poses, (0.5, -0.3, 0.8), (1, 2, -1))
+    assert torques[1] == pytest.approx([-3.412764, 3.142030, 2.681441], abs=1e-6)
+
+
+def test_rotor_of_the_middle_actuator_counts(robot):
+    # Without it the torques of thesis 3.3.1 are off in the sixth digit.
+    from dataclasses import replace
+
+    middle = replace(robot.legs[2], axis_inertia=0.0)
+    without = replace(robot, legs=(*robot.legs[:2], middle))
+    change = mass_matrix(robot, robot.home) - mass_matrix(without, robot.home)
+    assert change[:2, :2] == pytest.approx(np.full((2, 2), 14.81e-7 / 2), rel=1e-9)
+
+
+def test_gravity_turns_with_the_base(robot):
+    # Thesis 3.40: a negative tilt raises the +x side.
+    x, y, z = robot.tilted(np.radians(-30)).gravity_vector
+    assert (x, y, z) == pytest.approx((-9.81 / 2, 0, -9.81 * np.sqrt(3) / 2))

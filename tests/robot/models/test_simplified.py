@@ -1,0 +1,68 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+
+from nrs_design.robot.models import (
+    gravity_torque,
+    jacobian,
+    mass_matrix,
+    orientation,
+    orientation_jacobian,
+    simplified_dynamics,
+    simplified_torque,
+)
+
+from .strategies import poses, rates, tilts
+
+
+def only_platform(robot):
+    left, right, middle = robot.without_links().legs
+    rotor = replace(middle, axis_inertia=robot.legs[2].axis_inertia)
+    return replace(robot, legs=(left, right, rotor))
+
+
+def test_gravity_at_home(robot):
+    expected = [-1.829253, 1.829253, 1.309862]
+    assert simplified_dynamics(robot, robot.home).Gs == pytest.approx(expected, abs=1e-6)
+
+
+@given(pose=poses, tilt=tilts)
+def test_it_is_the_full_model_without_links(robot, pose, tilt):
+    robot = robot.tilted(tilt)
+    model, bare = simplified_dynamics(robot, pose), only_platform(robot)
+    assert pytest.approx(mass_matrix(bare, pose), abs=1e-15) == model.Ms
+    assert pytest.approx(gravity_torque(bare, pose), abs=1e-13) == model.Gs
+
+
+@given(pose=poses)
+def test_as_the_thesis_writes_it(robot, pose):
+    # Thesis 3.31 to 3.35, with the angular velocity of 3.33 as printed.
+    x, y, d = orientation(pose)
+    Rx = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
+    Ry = np.array([[np.cos(y), 0, np.sin(y)], [0, 1, 0], [-np.sin(y), 0, np.cos(y)]])
+    R = Rx @ Ry
+    J = orientation_jacobian(pose) @ jacobian(robot, pose)
+    L = np.array([0.0367, 0.0, d + 0.010])
+    linear = np.column_stack([np.cross((1, 0, 0), R @ L), np.cross(R[:, 1], R @ L), R[:, 2]]) @ J
+    angular = np.diag([1.0, 1.0, 0.0]) @ J
+    rod = 0.7972 * 0.25**2 / 12
+    inertia = R @ np.diag([rod, rod, 0]) @ R.T + np.diag([14.81e-7, 0, 0])
+    Ms = 0.7972 * linear.T @ linear + angular.T @ inertia @ angular
+    assert simplified_dynamics(robot, pose, printed=True).Ms == pytest.approx(Ms, abs=1e-14)
+
+
+def test_print_is_an_approximation(robot):
+    pose = (0.2, -0.3, 0.2)
+    right = simplified_dynamics(robot, pose).Ms
+    printed = simplified_dynamics(robot, pose, printed=True).Ms
+    assert 1e-4 < np.abs(printed - right).max() / np.abs(right).max() < 1e-2
+
+
+@given(pose=poses, acceleration=rates)
+def test_torque(robot, pose, acceleration):
+    model = simplified_dynamics(robot, pose)
+    found = simplified_torque(robot, [pose, pose], [acceleration, 0 * acceleration])
+    assert found[0] == pytest.approx(model.Ms @ acceleration + model.Gs, abs=1e-14)
+    assert found[1] == pytest.approx(model.Gs, abs=0)

@@ -1,0 +1,29 @@
+from dataclasses import replace
+
+import pytest
+
+from nrs_design.robot.models import build_robot
+from nrs_design.robot.models.drive import build_drive
+from nrs_design.robot.simulation.tracking import experiment_tilt
+from nrs_design.spec import parse_spec
+from nrs_design.spec.templates import TEMPLATES
+
+
+@pytest.fixture(scope="session")
+def spec():
+    return parse_spec(TEMPLATES["robot"])
+
+
+@pytest.fixture(scope="session")
+def robot(spec):
+    return build_robot(spec).tilted(experiment_tilt(spec))
+
+
+@pytest.fixture(scope="session")
+def drive(spec):
+    return build_drive(spec.drive)
+
+
+@pytest.fixture(scope="session")
+def smooth(drive):
+    return replace(drive, coulomb_friction=0.0)

@@ -1,0 +1,48 @@
+import pytest
+
+from nrs_design.errors import DesignError
+from nrs_design.robot.controllers import ComputedTorque, IndependentJoint
+from nrs_design.robot.models import build_robot
+from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, experiment_tilt
+from nrs_design.spec import parse_spec
+from nrs_design.spec.templates import TEMPLATES
+
+TEXT = TEMPLATES["robot"]
+UNBALANCED = TEXT[: TEXT.index("# Thesis 4.4 and its")]
+
+
+def test_three_controllers_of_the_thesis(spec, robot):
+    torque, joint, balanced = (build_track(spec, robot, name) for name in CONTROLLERS)
+    assert isinstance(torque.law, ComputedTorque)
+    assert isinstance(joint.law, IndependentJoint)
+    assert joint.law.load is not None
+    assert isinstance(balanced.law, IndependentJoint)
+    assert balanced.law.load is None
+    assert torque.mechanism.robot is joint.mechanism.robot
+    assert joint.mechanism.balance is None
+    assert balanced.mechanism.balance is not None
+    # Counter-masses of 2 x 843.6 g and 2 x 1301 g (thesis 4.4, left and right leg).
+    mass = [
+        sum(b.mass for loads in t.mechanism.robot.loads for b in loads) for t in (joint, balanced)
+    ]
+    assert mass[1] - mass[0] == pytest.approx(0.8436 + 1.3012 + 0.8441 + 1.3024, abs=1e-3)
+    assert {t.encoder.counts for t in (torque, joint, balanced)} == {8192}
+
+
+def test_experiments_one_by_one(spec, robot):
+    track = build_track(spec, robot, "computed-torque")
+    assert [one.experiments[0].moved for one in track.split()] == ["d", "phi", "psi"]
+    assert [one.moved for one in track.only("psi").experiments] == ["psi"]
+    assert track.only(None).experiments == track.experiments
+
+
+def test_tilt_of_the_experiments(spec):
+    # Thesis 4.2 and 4.4: -28.5 deg.
+    assert experiment_tilt(spec) == pytest.approx(-0.497419, abs=1e-6)
+    assert experiment_tilt(parse_spec(UNBALANCED)) == 0
+
+
+def test_a_robot_without_balance_has_no_balanced_controller():
+    spec = parse_spec(UNBALANCED)
+    with pytest.raises(DesignError, match="no `balance`"):
+        build_track(spec, build_robot(spec), "balanced")

@@ -1,0 +1,119 @@
+"""Each wing can be taken away: the core is whole without it, and says what is missing."""
+
+import os
+import shutil
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+import nrs_design.wings
+from nrs_design.errors import NrsDesignError
+from nrs_design.wings import WINGS, load_wing, wing_of
+from tests.package import FILES, PACKAGE
+from tests.support import ROOT, SOFT_TISSUE
+
+CORE = sorted(name for name in FILES if [*name.split("."), ""][1] not in WINGS)
+IMPORT_ALL = "import sys, importlib\nfor name in sys.argv[1:]: importlib.import_module(name)"
+AXES = "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
+THESIS_ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
+ABSENT = "the wing robot is not installed"
+
+
+def missing(name):
+    def fail(module):
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+    return fail
+
+
+@pytest.mark.parametrize("name", ["nrs_design.robot", "nrs_design.robot.pipeline"])
+def test_a_wing_that_is_missing_is_named(monkeypatch, name):
+    monkeypatch.setattr(nrs_design.wings, "import_module", missing(name))
+    with pytest.raises(NrsDesignError, match="the wing robot is not installed"):
+        load_wing("robot", "pipeline")
+
+
+@pytest.mark.parametrize("name", ["mujoco", "nrs_design.spec", "nrs_design.robot.pipe"])
+def test_what_else_is_missing_is_no_missing_wing(monkeypatch, name):
+    monkeypatch.setattr(nrs_design.wings, "import_module", missing(name))
+    with pytest.raises(ModuleNotFoundError, match=name):
+        load_wing("robot", "pipeline")
+
+
+def test_whose_a_command_is():
+    assert (wing_of("audit"), wing_of("certify-switching")) == ("identification", None)
+
+
+@pytest.fixture(scope="module", params=WINGS)
+def house(request, tmp_path_factory):
+    """A copy of the package without one of its wings."""
+    folder = tmp_path_factory.mktemp(request.param)
+    left_out = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(PACKAGE, folder / "nrs_design", ignore=left_out)
+    shutil.rmtree(folder / "nrs_design" / request.param)
+
+    def run(*arguments):
+        return subprocess.run(
+            [sys.executable, *map(str, arguments)],
+            cwd=folder,
+            env=os.environ | {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def program(*arguments):
+        # As `-m` does, but it takes the current folder off the path, in which this copy lies.
+        return run("-c", "from nrs_design.cli import program; program()", *arguments)
+
+    return SimpleNamespace(wing=request.param, folder=folder, run=run, program=program)
+
+
+@pytest.mark.slow
+def test_the_core_is_whole_without_a_wing(house):
+    done = house.run("-c", IMPORT_ALL, *CORE)
+    assert (done.returncode, done.stderr) == (0, "")
+    where = house.run("-c", "import nrs_design; print(nrs_design.__file__)").stdout
+    assert where.startswith(str(house.folder))
+    text = " ".join(house.program("--help").stdout.split())
+    assert f"(the wing {house.wing} is not installed)" in text
+    done = house.program("certify-switching", SOFT_TISSUE)
+    assert done.returncode == 0, done.stderr
+    assert "PROVED" in done.stdout
+
+
+@pytest.mark.slow
+def test_a_command_of_a_missing_wing_ends_in_one_message(house):
+    for command in WINGS[house.wing]:
+        for arguments in ((), ("--help",), ("check", THESIS_ROBOT, "-q")):
+            done = house.program(command, *arguments)
+            assert done.returncode == 2
+            assert done.stderr.startswith(
+                f"error[NRS000]: the wing {house.wing} is not installed"
+            ), done.stderr
+            assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("house", ["robot"], indirect=True)
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("report", THESIS_ROBOT),
+        ("verify", ROOT / "reports/soft-tissue-axes.cert.json", AXES, "--bounds"),
+        ("simulate", SOFT_TISSUE, "--engine", "mujoco"),
+        ("gate", AXES, "--no-reports"),
+        ("gate", "--locked", AXES),
+    ],
+    ids=["report", "verify", "simulate", "gate", "gate --locked"],
+)
+def test_what_needs_robots_says_so_without_them(house, arguments):
+    """No run, page or verdict takes for granted what the wing would have checked."""
+    shutil.copytree(ROOT / "specs", house.folder / "specs", dirs_exist_ok=True)
+    shutil.copytree(ROOT / "reports", house.folder / "reports", dirs_exist_ok=True)
+    shutil.copy(ROOT / "nrs.lock", house.folder)
+    done = house.program(*arguments)
+    assert done.returncode == 2, done.stdout
+    assert ABSENT in " ".join((done.stdout + done.stderr).split())

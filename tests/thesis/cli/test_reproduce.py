@@ -1,0 +1,193 @@
+"""``nrs-design reproduce`` as typed."""
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from nrs_design.cli.app import make_app
+from nrs_design.thesis import specimens, table
+from nrs_design.thesis.comparison import PrintVerdict
+from tests.support import ROOT
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Leave only the quick rows of the specimens in the table."""
+    monkeypatch.setattr(table, "TOPICS", (specimens,))
+
+
+@pytest.fixture
+def drifting(short, monkeypatch):
+    good = specimens.rows()
+    bad = replace(good[1], verdict=PrintVerdict.DRIFT, value="700")
+    monkeypatch.setattr(specimens, "rows", lambda: (good[0], bad, *good[2:]))
+
+
+def run(*arguments):
+    return CliRunner().invoke(make_app(), ["reproduce", *arguments])
+
+
+@pytest.mark.slow
+def test_the_command_as_typed():
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "reproduce", "--json"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert document["schema"] == "nrs-design/reproduce/1"
+    assert document["drift"] == []
+    assert set(document["rows"][0]) == {
+        "name", "section", "printed", "value", "unit", "deviation", "verdict", "note",
+        "precision", "drift", "limit", "fitted", "errata",
+    }  # fmt: skip
+    assert sum(document["counts"].values()) == len(document["rows"]) > 60
+    assert {row["verdict"] for row in document["rows"]} == {
+        "reproduced", "printed differently", "fitted", "derived", "not reproducible",
+    }  # fmt: skip
+    readme = (ROOT / "README.md").read_text()
+    assert f"\nAll in all: {document['summary']}\n" in readme
+    errors = len(document["errors_of_the_print"])
+    assert f"(errors of the print: {errors})" in document["summary"]
+    rows = {
+        (row["section"], row["name"], row["printed"], row["verdict"]) for row in document["rows"]
+    }
+    shown = readme.partition("| section | quantity |")[2].partition("\n\n")[0].splitlines()[2:]
+    assert len(shown) > 20
+    for line in shown:
+        section, name, printed, _, _, verdict = (cell.strip() for cell in line.split("|")[1:-1])
+        assert (section, name, printed, verdict) in rows
+
+
+@pytest.mark.usefixtures("short")
+def test_text_has_table_notes_and_counts():
+    result = run()
+    assert result.exit_code == 0
+    assert "mean of the fits" in result.stdout
+    why = "6.1 elastic fits, soft specimen: Not reproducible, because the records"
+    assert why in result.stdout
+    assert "converted by machine" in result.stdout
+    assert table.count_verdicts(specimens.rows())["not reproducible"] == 8
+    last = result.stdout.splitlines()[-1].strip()
+    assert last == table.counts_line(specimens.rows())
+
+
+@pytest.mark.usefixtures("short")
+def test_counts_lines_and_json_agree():
+    found = json.loads(run("--json").stdout)
+    parts = [f"{count} {verdict}" for verdict, count in found["counts"].items()]
+    assert sum(found["counts"].values()) == len(found["rows"])
+    assert all(part in found["summary"] for part in parts)
+    assert found["summary"] == run().stdout.splitlines()[-1].strip()
+    (error,) = found["errors_of_the_print"]
+    assert (error["id"], len(error["rows"])) == ("6.1 largest error", 2)
+    assert "(errors of the print: 1)" in found["summary"]
+
+
+@pytest.mark.usefixtures("drifting")
+def test_a_drift_is_counted_in_the_last_line():
+    assert ", 1 drift." in run().stdout.splitlines()[-1]
+
+
+@pytest.mark.usefixtures("short")
+def test_quiet_prints_nothing():
+    assert run("--quiet").output == ""
+
+
+@pytest.mark.usefixtures("drifting")
+def test_a_drift_exits_1_and_is_named():
+    result = run("--quiet")
+    assert result.exit_code == 1
+    assert "drift: 6.1 mean of the fits, soft specimen: 700 N/m, printed 747.14" in result.stderr
+
+
+@pytest.mark.usefixtures("drifting")
+def test_json_of_a_drift():
+    result = run("--json")
+    assert result.exit_code == 1
+    assert json.loads(result.stdout)["drift"] == ["mean of the fits, soft specimen"]
+
+
+def test_a_page_is_named_as_one(tmp_path):
+    """Before the seconds of work."""
+    done = run("--html", str(tmp_path / "table.txt"))
+    assert ".txt is not a type of report" in str(done.exception)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.usefixtures("short")
+def test_html_is_written_whole(tmp_path):
+    page = tmp_path / "new" / "page.html"
+    assert run("--html", str(page)).exit_code == 0
+    assert page.read_text(encoding="utf-8").rstrip().endswith("</html>")
+    assert [path.name for path in page.parent.iterdir()] == ["page.html"]
+
+
+@pytest.mark.usefixtures("short")
+def test_json_stays_clean_beside_html(tmp_path):
+    result = run("--json", "--html", str(tmp_path / "page.html"))
+    assert json.loads(result.stdout)["rows"]
+    assert "page written to" in result.stderr
+
+
+def test_unwritable_page_is_a_usage_error(tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--html", str(blocked / "a.html")],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error[NRS005]")
+
+
+def test_help_has_an_example_and_stays_lean():
+    code = (
+        "import sys; from nrs_design.cli.app import make_app\n"
+        "try: make_app()(['reproduce', '--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'control', 'cvxpy', 'matplotlib', 'jinja2', 'clarabel'}\n"
+        "sys.exit(len(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0
+    assert "nrs-design reproduce --html" in done.stdout
+
+
+@pytest.mark.slow
+def test_figures_are_written_beside_the_table_and_linked(tmp_path):
+    page, folder = tmp_path / "reports" / "table.html", tmp_path / "reports" / "the figures"
+    command = [sys.executable, "-m", "nrs_design", "reproduce", "--json", "--html", str(page)]
+    done = subprocess.run(
+        [*command, "--figures", str(folder)], capture_output=True, text=True, check=True
+    )
+    found = json.loads(done.stdout)["figures"]
+    assert [name for one in found for name in one["figures"]] == [f"6.{n}" for n in range(14, 35)]
+    gallery = folder / "figures.html"
+    assert 'href="the%20figures/figures.html"' in page.read_text(encoding="utf-8")
+    first = gallery.read_bytes()
+    runs = {name for one in found for name in one["runs"]}
+    assert {path.name for path in folder.iterdir()} == {"figures.html", *runs}
+    head = (folder / "figure-6-14.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert head.startswith("time_s,angle_rad,velocity_rad_s,torque_Nm,")
+    # Over what is ours, and the same bytes.
+    again = [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--figures", str(folder)]
+    told = subprocess.run(again, capture_output=True, text=True, check=True)
+    assert told.stdout == ""
+    assert gallery.read_bytes() == first
+
+
+def test_figures_go_over_nothing_foreign(tmp_path):
+    (tmp_path / "figures.html").write_text("mine")
+    done = subprocess.run(
+        [sys.executable, "-m", "nrs_design", "reproduce", "-q", "--figures", str(tmp_path)],
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error[NRS005]")
+    assert (tmp_path / "figures.html").read_text() == "mine"

@@ -1,0 +1,211 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.thesis.comparison import (
+    PrintVerdict,
+    Tolerance,
+    claim,
+    derived,
+    drifted,
+    fitted,
+    format_number,
+    meets_standard,
+    misprint,
+    near,
+    omitted,
+    reproduced,
+)
+
+
+def confirm(printed, value, tolerance, **options):
+    return reproduced("quantity", "1.1", printed, value, "s", tolerance, **options)
+
+
+def correct(printed, value, tolerance, right):
+    return misprint(
+        "quantity", "1.1", printed, value, "s", tolerance, right=right, note="why", errata=("e",)
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "verdict"), [(2.002, "reproduced"), (2.004, "drift"), (math.nan, "drift")]
+)
+def test_reproduced_only_within_the_tolerance(value, verdict):
+    assert confirm("2", value, Tolerance(relative=1.5e-3)).verdict == verdict
+
+
+def test_tolerance_holds_entry_by_entry():
+    # 0.2 of 1 is far off, however large the other entry is.
+    assert confirm(("1", "1000"), (1.2, 1000.0), Tolerance(1e-3)).verdict == "drift"
+    assert confirm(("1", "1000"), (1.0005, 1000.5), Tolerance(1e-3)).verdict == "reproduced"
+
+
+def test_tolerance_is_about_the_right_value_where_one_is_given():
+    assert confirm("2.15", 2.1514, Tolerance(absolute=1e-4), right="2.1514").verdict == "reproduced"
+    assert confirm("2.15", 2.15, Tolerance(absolute=1e-4), right="2.1514").verdict == "drift"
+
+
+def test_words_in_print_have_no_deviation():
+    row = confirm("Hurwitz", (-1.0, -2.0), Tolerance(1e-3), right=("-1", "-2"))
+    assert (row.verdict, row.deviation, row.printed) == ("reproduced", None, "Hurwitz")
+
+
+def test_misprint_needs_the_right_value():
+    row = correct("3.7754", 3.74541, Tolerance(1e-4), "3.7454")
+    assert row.verdict == "printed differently"
+    assert row.deviation == pytest.approx(0.0301 / 3.7754, rel=1e-2)
+    assert correct("3.7754", 3.7554, Tolerance(1e-4), "3.7454").verdict == "drift"
+
+
+def test_misprint_is_a_drift_if_the_print_is_right_after_all():
+    assert correct("3.7454", 3.7454, Tolerance(1e-4), "3.7454").verdict == "drift"
+
+
+def test_a_claim_that_no_longer_holds_is_a_drift():
+    verdicts = [
+        claim(
+            "q", "1", "p", "v", verdict=PrintVerdict.PRINTED_DIFFERENTLY, holds=holds, note=""
+        ).verdict
+        for holds in (True, False)
+    ]
+    assert verdicts == ["printed differently", "drift"]
+
+
+def test_pairs_of_poles():
+    row = confirm("-28.4900 +- 28.49861j", complex(-28.49, 28.4986), Tolerance(1e-5))
+    assert row.verdict == "reproduced"
+    assert row.value == "-28.49 +- 28.4986j"
+    assert confirm("-28 +- 28j", complex(-28, 29), Tolerance(1e-2)).verdict == "drift"
+
+
+def test_deviation_is_absolute_where_the_print_is_zero():
+    assert confirm("0", 0.25, Tolerance(absolute=1)).deviation == 0.25
+
+
+def test_values_of_other_length_drift():
+    assert confirm(("1", "2"), (1.0,), Tolerance(1.0)).verdict == "drift"
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_no_deviation_that_json_cannot_hold(value):
+    assert confirm("1", value, Tolerance(1e-3)).deviation is None
+
+
+def test_value_shows_as_many_digits_as_the_print():
+    assert confirm("117359.43", 117359.436, Tolerance(1e-5)).value == "117359.44"
+    assert confirm("4.8417e-4", 4.8417237e-4, Tolerance(1e-4)).value == "0.000484172"
+
+
+def test_what_cannot_be_recomputed_says_why():
+    row = omitted("q", "1", "20", "%", "there is no record")
+    assert row.verdict == "not reproducible"
+    assert (row.value, row.deviation, row.drift) == (None, None, None)
+    assert row.note == "Not reproducible, because there is no record."
+
+
+def test_drifted_picks_the_drifts():
+    good, bad = (confirm("1", value, Tolerance(1e-3)) for value in (1.0, 2.0))
+    assert drifted((good, bad, good)) == (bad,)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_number_text_is_close_to_the_number(value):
+    assert float(format_number(value)) == pytest.approx(value, rel=1e-5)
+
+
+@given(st.floats(1e-3, 1e3), st.floats(-2e-3, 2e-3))
+def test_verdict_agrees_with_the_deviation(printed, relative):
+    row = confirm(repr(printed), printed * (1 + relative), Tolerance(1e-3))
+    if abs(abs(relative) - 1e-3) > 1e-9:
+        assert (row.verdict == "reproduced") == (row.deviation < 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("value", "printed", "meets"),
+    [
+        (2.0021, "2.000", False),  # More than 0.1 %, and than 0.001.
+        (2.0019, "2.000", True),
+        (2.14, "2.1", True),
+        (2.21, "2.1", False),
+        (1.23e5, "1.2e5", True),
+        (1.31e5, "1.2e5", False),
+        (complex(-28.49, 28.49), "-28.4900 +- 28.49861j", True),
+        (complex(-28.4, 28.49), "-28.4900 +- 28.49861j", False),
+    ],
+)
+def test_the_standard_is_a_part_in_a_thousand_or_the_last_digit(value, printed, meets):
+    assert meets_standard((value,), printed) == meets
+
+
+def test_a_tolerance_wider_than_the_standard_reproduces_nothing():
+    assert confirm("1.8318", 1.8229, Tolerance(1e-2)).verdict == "drift"
+
+
+def test_a_misprint_within_the_standard_is_none():
+    assert correct("1.000", 1.0005, Tolerance(1e-5), "1.0005").verdict == "drift"
+
+
+@pytest.mark.parametrize(
+    ("printed", "value", "cut"),
+    [("0.99", 0.9974, True), ("-0.99", -0.9974, True), ("1.00", 0.9974, False), ("1", 1.0, False)],
+)
+def test_what_is_cut_off_is_said(printed, value, cut):
+    row = confirm(printed, value, Tolerance(1e-2))
+    assert row.verdict == "reproduced"
+    assert ("Cut off" in row.note) == cut
+
+
+def test_near_is_neither_reproduced_nor_far():
+    def close(value):
+        options = {"right": "1.05", "because": "why"}
+        return near("q", "1", "1.00", value, "s", Tolerance(0.1), **options).verdict
+
+    assert [close(value) for value in (1.0, 1.05, 1.2)] == ["drift", "not reproducible", "drift"]
+
+
+def test_print_and_reference_are_two_things():
+    """Far from the print and on our reference is no drift, and the other way about it is one."""
+
+    def found(value):
+        row = near("q", "1", "2.0", value, "s", Tolerance(1e-3), right="2.5", because="why")
+        return row.verdict, row.deviation, row.precision, row.drift, row.limit
+
+    assert found(2.5) == ("not reproducible", 0.25, "0.1", 0.0, "0.1 %")
+    assert found(2.4)[0] == "drift"
+    row = confirm("2.15", 2.1514, Tolerance(absolute=1e-4), right="2.1514")
+    assert (row.precision, row.drift, row.limit) == ("0.01", 0.0, "0.0001")
+
+
+def test_precision_number_by_number():
+    assert confirm(("1000", "2", "1000"), (1000.0, 2.0, 1000.0), Tolerance(1.0)).precision == (
+        "0.1 %, 1"
+    )
+
+
+def test_what_is_fitted_names_its_constant():
+    row = fitted("q", "1", "1.00", 1.0, "s", Tolerance(1e-3), constants="l0 = 200 mm")
+    assert (row.verdict, row.fitted) == ("fitted", "l0 = 200 mm")
+    far = fitted("q", "1", "1.00", 1.1, "s", Tolerance(1e-3), constants="l0 = 200 mm")
+    assert far.verdict == "drift"
+
+
+def test_derived_numbers_are_held_to_the_record():
+    def found(value, **options):
+        return derived("q", "1", value, "s", note="why", **options).verdict
+
+    assert found(6.69, right="6.8", tolerance=Tolerance(absolute=0.2)) == "derived"
+    assert found(6.5, right="6.8", tolerance=Tolerance(absolute=0.2)) == "drift"
+    assert found(6.8, right="6.8", holds=False) == "drift"
+    assert [found("none", holds=holds) for holds in (True, False)] == ["derived", "drift"]
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "text"),
+    [(Tolerance(1e-3), "0.1 %"), (Tolerance(3e-5), "0.003 %"), (Tolerance(absolute=0.2), "0.2")],
+)
+def test_tolerance_in_words(tolerance, text):
+    assert str(tolerance) == text
+    assert confirm("2", 2.0, tolerance).limit == text

@@ -1,0 +1,66 @@
+"""Every error of the print has a row, and counts once."""
+
+import pytest
+
+from nrs_design.thesis import formulas, modes, switching
+from nrs_design.thesis.comparison import PrintVerdict
+from nrs_design.thesis.errata import errata
+from nrs_design.thesis.formulas import CHECKS
+from nrs_design.thesis.table import printed_errors
+
+
+def test_every_erratum_has_a_row_and_every_row_a_known_erratum(rows):
+    touched = {one for row in rows for one in row.errata}
+    assert touched == {one.id for one in errata()}
+
+
+def test_what_is_printed_differently_names_its_error(rows):
+    wrong = [row for row in rows if row.verdict is PrintVerdict.PRINTED_DIFFERENTLY]
+    assert [row.name for row in wrong if not row.errata] == []
+
+
+def test_ids_are_distinct():
+    names = [one.id for one in errata()]
+    assert len(set(names)) == len(names)
+
+
+# Equations whose error is in a formula, not in a number.
+FORMULAS = (
+    "2.17", "3.18", "3.26", "4.1", "4.16", "4.18", "4.24", "4.25", "4.32", "4.36", "5.18", "5.19",
+    "5.24", "6.21",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("equation", FORMULAS)
+def test_errata_without_a_number_have_one_row(equation):
+    found = [row for row in formulas.rows() if equation in row.section.split(", ")]
+    assert len(found) == 1
+    assert found[0].verdict == "printed differently"
+    assert found[0].printed != found[0].value
+
+
+def test_one_error_counts_once_with_its_rows():
+    """The sign of +1618.80 is in six rows."""
+    found = printed_errors((*modes.rows(), *switching.rows()))
+    counts = {error.id: len(touched) for error, touched in found}
+    assert counts["A(2,1)"] == 6
+    assert len(found) == len(counts) == 5
+
+
+@pytest.mark.parametrize("name", CHECKS)
+def test_a_formula_that_no_longer_holds_is_a_drift(name, monkeypatch):
+    monkeypatch.setattr(formulas, "CHECKS", {**CHECKS, name: lambda: False})
+    drifts = [row.errata for row in formulas.rows() if row.verdict is PrintVerdict.DRIFT]
+    assert drifts == [(name,)]
+
+
+def test_the_checks_tell_the_print_from_what_is_right(monkeypatch):
+    """With another power in 2.15, other arms in 4.18 and another sign in 6.21 they fail."""
+    monkeypatch.setattr(formulas.thesis, "SETTLING_TIME", 0.2)
+    assert not CHECKS["4.25"]()
+    monkeypatch.setattr(formulas.thesis, "DAMPING_RATIO", 0.5)
+    assert not CHECKS["4.24"]()
+    monkeypatch.setattr(formulas, "printed_rows", lambda *entries: [[-1]])
+    assert not CHECKS["5.18"]()
+    monkeypatch.setattr(formulas, "impedance_rows", lambda *given: [[-1, 0, 0, 0]] * 4)
+    assert not CHECKS["6.21"]()

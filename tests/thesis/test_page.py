@@ -1,0 +1,58 @@
+from dataclasses import replace
+
+from nrs_design.thesis.comparison import omitted
+from nrs_design.thesis.page import format_within, render_page
+from nrs_design.thesis.specimens import rows
+from nrs_design.thesis.table import counts_line
+
+
+def test_page_is_self_contained():
+    page = render_page(rows())
+    assert page.startswith("<!DOCTYPE html>")
+    assert "://" not in page
+    assert not any(word in page for word in ("<script", "<link", "<img", "@import"))
+
+
+def test_page_shows_every_row():
+    page = render_page(rows())
+    for row in rows():
+        assert row.name in page
+        assert row.printed in page
+        assert row.verdict in page
+        assert row.limit in page
+        assert row.precision in page
+    assert counts_line(rows()) in page
+    assert "converted by machine" in page
+
+
+def test_page_is_the_same_every_time():
+    assert render_page(rows()) == render_page(rows())
+
+
+def test_hostile_text_is_escaped():
+    row = replace(omitted("<script>alert(1)</script>", "1", '"&', "%", "why"), note="a < b")
+    page = render_page((row,))
+    assert "<script" not in page
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
+    assert "&#34;&amp;" in page
+    assert "a &lt; b" in page
+
+
+def test_deviation_text():
+    found = [format_within(d, "0.1 %") for d in (None, 0.0, 0.000468)]
+    assert found == ["", "0 (0.1 %)", "4.7e-04 (0.1 %)"]
+
+
+def test_the_page_of_figures_is_linked_where_there_is_one():
+    assert "<a " not in render_page(rows())
+    page = render_page(rows(), "my%20figures/figures.html")
+    assert '<a href="my%20figures/figures.html">' in page
+    assert "default-src 'none'" in render_page(rows())
+
+
+def test_a_telephone_names_every_value():
+    """Below 48rem the head of the table is gone, and each cell says what it is."""
+    page = render_page(rows())
+    for column in ("Printed", "Recomputed", "Unit", "Off the print", "Off our reference"):
+        assert page.count(f'<td data-label="{column}"') == len(rows())
+    assert "attr(data-label)" in page

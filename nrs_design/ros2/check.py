@@ -188,7 +188,9 @@ def check_file(path: Path, question: Question, limits: Limits, progress: Progres
     """
     nodes = read_nodes(path)
     others = (node for node in nodes if node.base_name != MANAGER)
-    controllers = [node for node in others if is_admittance(node, kind_of(node, nodes))]
+    admittances = [node for node in others if is_admittance(node, kind_of(node, nodes))]
+    # What stands at a wildcard is said of the controllers that it means: no controller of its own.
+    controllers = [node for node in admittances if not any(map(node.stands_for, admittances))]
     if not controllers:
         names = ", ".join(node.name for node in nodes)
         raise SpecError(

@@ -63,6 +63,10 @@ class RosNode:
             return bases[0] == bases[1] or "*" in "".join(bases)
         return _means(self.name, other.name) or _means(other.name, self.name)
 
+    def stands_for(self, other: RosNode) -> bool:
+        """Tell whether it is a wildcard that means another node, which is none."""
+        return "*" in self.name and "*" not in other.name and _means(self.name, other.name)
+
     def fault(self, name: str, message: str, remedy: str, index: int | None = None) -> Fault:
         """Return a fault at a parameter, or at one item of its list.
 

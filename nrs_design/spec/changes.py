@@ -12,6 +12,7 @@ def spec_changes(loaded: LoadedSpec, text: str) -> tuple[tuple[str, ...], tuple[
         {row.name: row.written for row in describe(spec)}
         for spec in (loaded.spec, parse_spec(text))
     )
-    changed = (f"{n}: {w} -> {new[n]}" for n, w in old.items() if n in new and new[n] != w)
+    was = {name: old.get(name, "not there") for name in new}
+    changed = (f"{n}: {was[n]} -> {w}" for n, w in new.items() if w != was[n])
     lost = (f"{n}: {w}" for n, w in old.items() if n not in new)
     return tuple(changed), tuple(lost)

@@ -181,6 +181,13 @@ def test_ranges_of_the_actuator_where_the_proof_covers_them(tmp_path, motor, fil
     assert merge_actuator(merged(tmp_path, text), motor) == text
 
 
+def test_a_range_that_was_not_there_is_a_change(tmp_path, motor):
+    """The proof will cover it, and only the nominal value was told."""
+    loaded = merged(tmp_path, SOFT_TISSUE.read_text())
+    changed, _ = spec_changes(loaded, merge_actuator(loaded, motor))
+    assert any(line.startswith("actuator.gain.range: not there -> [") for line in changed)
+
+
 def test_what_changes_and_what_is_lost(tmp_path, silicone):
     text = SOFT_TISSUE.read_text().replace(
         "    model: elastic\n", "    model: kelvin-voigt\n    damping: 5 N*s/m\n"

@@ -158,6 +158,16 @@ def test_what_other_nodes_of_the_file_say_of_the_law_is_not_passed_over(tmp_path
     assert "counts for admittance_controller, too" in found.obligations[0].message
 
 
+def test_a_wildcard_is_no_controller_beside_those_that_it_means(tmp_path):
+    """Each parameter was to be moved to the other of the two; and no controller is called `**`."""
+    file = changed(tmp_path)
+    with file.open("a") as stream:
+        stream.write("/**:\n  ros__parameters: {admittance: {joint_damping: 3.0}}\n")
+    found, _, _ = statuses(file, Question((0, 2), SOFT, None))
+    (only,) = [item for item in found.obligations if item.status is Status.ERROR]
+    assert "write it at admittance_controller alone" in only.message
+
+
 def test_a_wildcard_that_says_nothing_of_the_law_and_other_nodes(tmp_path):
     file = changed(tmp_path)
     with file.open("a") as stream:

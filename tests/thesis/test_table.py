@@ -45,6 +45,14 @@ def test_every_verdict_occurs(rows):
     }
 
 
+def test_at_least_is_rounded_down(find):
+    """0.2135 N of 5.1 N are 4.186 %, and were called at least 4.19 %; prints are rounded, too."""
+    row = find("largest error of the elastic law over the largest force, stiff specimen", "6.1")
+    assert row.value == "at least 4.14, 2.96, 2.68"
+    assert 21.345 / 5.15 > 4.14
+    assert 17.635 / 5.95 > 2.96
+
+
 def test_rows_are_distinct(rows):
     assert len({(row.name, row.section) for row in rows}) == len(rows)
 

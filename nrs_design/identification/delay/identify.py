@@ -59,6 +59,8 @@ _NOTABLE = 0.1
 _RELATED = 0.2
 # Model misses so much of the motion, in errors that are not white: that is a doubt.
 _MISSED = 0.02
+# And of so much, no interval that is made for noise says anything.
+_UNEXPLAINED = 0.1
 # A command whose power is in one frequency, but for so much, has one phase to tell.
 _OTHER = 0.01
 # Where a spline through every other sample misses those between by more than this part of the
@@ -135,10 +137,10 @@ class DelayIdentification:
 
     @property
     def slips(self) -> tuple[str, ...]:
-        """What is asked about the size of the delay, and of the steps of time."""
+        """What is asked about the size of the delay, the steps of time and the signs."""
         asked = doubt_size("delay", self.delay.value, "s")
         said = () if asked is None else (f"the delay is {self.delay.value:.4g} s: {asked}",)
-        return (*doubt_step(self.record.step), *said)
+        return (*doubt_step(self.record.step), *said, *_opposed(self.record, self.chosen))
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -183,7 +185,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     Raises
     ------
     DataError
-        If the columns have nothing to do with each other.
+        If the columns have nothing to do with each other, or no model explains them.
     """
     peak = correlation_peak(record)
     if abs(peak[1]) < _RELATED:
@@ -203,6 +205,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
     others = (fit_delay(record, *start, rows) for start in _starts(record, peak[0], rows))
     fits = (copy, *others)
     chosen = _simplest(fits)
+    _check_explained(record, chosen)
     step = record.step
     value = chosen.delay / step
     told = _interval(record, chosen)
@@ -225,6 +228,27 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
             *_doubts(record, chosen, value, half, parts),
         ),
     )  # fmt: skip
+
+
+def _check_explained(record: SignalRecord, fit: DelayFit) -> None:
+    """Refuse a model that misses much of the motion: its delay may be any."""
+    missed = _missed_part(record, fit)
+    if missed <= _UNEXPLAINED or fit.uncertainty.whiteness >= WHITE:
+        return
+    longest = _LONGEST * float(np.ptp(record.time[record.longest]))
+    raise DataError(
+        f"no delay, with or without a lag, explains {record.names[1]} by {record.names[0]}: the "
+        f"best misses {100 * missed:.2g} % of the motion, in errors that are not noise",
+        path=record.source.path,
+        remedy=f"delays up to {longest:.3g} s are looked for, a tenth of the record: make it ten "
+        "times as long as the delay may be; or a stretch of it in which the delay does not vary",
+    )
+
+
+def _missed_part(record: SignalRecord, fit: DelayFit) -> float:
+    """Return the root mean square of the errors over that of the motion."""
+    seen = record.seen[fit.rows]
+    return float(np.linalg.norm(fit.errors) / np.linalg.norm(seen - seen.mean()))
 
 
 def is_smooth(record: SignalRecord) -> bool:
@@ -487,6 +511,11 @@ def _other_than_one_frequency(record: SignalRecord) -> float:
     return float(found.fun) / max(float(sent @ sent), np.finfo(float).tiny)
 
 
+def _opposed(record: SignalRecord, fit: DelayFit) -> Iterator[str]:
+    if fit.gain < 0:
+        yield f"{record.names[1]} moves against {record.names[0]}: their signs are opposite"
+
+
 def _doubts(
     record: SignalRecord,
     fit: DelayFit,
@@ -500,10 +529,8 @@ def _doubts(
             f"{record.names[1]} comes {-value:.3g} samples before {record.names[0]}: the columns "
             "are swapped, or their clocks differ"
         )
-    if fit.gain < 0:
-        yield f"{record.names[1]} moves against {record.names[0]}: their signs are opposite"
-    seen = record.seen[fit.rows]
-    missed = float(np.linalg.norm(fit.errors) / np.linalg.norm(seen - seen.mean()))
+    yield from _opposed(record, fit)
+    missed = _missed_part(record, fit)
     if missed > _MISSED and fit.uncertainty.whiteness < WHITE:
         yield f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise"
     steps = np.diff(record.time)

@@ -87,7 +87,8 @@ def estimate_contact(
         reason = "force and deflection have opposite signs; turn one with another column"
         return replace(_not_estimated(reason), windows=told)
     free = [w for w in told if _is_free(w, bounds, log)]
-    touching = [w for w in told if w not in free]
+    # Where the slope may be zero and may be that of a contact, a window tells neither.
+    touching = [w for w in told if w not in free and (w.low > 0 or w.high < 0)]
     # A log with gaps has fewer rows than its time has steps.
     whole = max(float(log.time[-1] - log.time[0]) / log.step + 1, float(len(log.time)))
     loose = (int((zero & felt).sum()) + _rows(free)) / whole

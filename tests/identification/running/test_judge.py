@@ -114,6 +114,16 @@ def test_lost_contact(tmp_path):
     assert (str(unsaid.status), unsaid.allowed) == ("estimated", "not said")
 
 
+def test_noise_in_free_motion_is_no_contact(tmp_path):
+    """Windows too noisy to tell a slope were counted as contact: 54 % of a run that had 2 %."""
+    t, angle, _, command, mode = runs.run()
+    torque = np.random.default_rng(5).normal(0.0, 2e-3, len(t))
+    slow = t, 1e-4 * angle, torque, command, mode
+    found = judged(log(tmp_path, slow), losable=True)
+    assert check(found, "contact").measured == "about 0 % of the time free, 0 % in contact"
+    assert found.share == 0.0
+
+
 def test_a_torque_of_exactly_zero_is_free_motion(tmp_path):
     """Not contact with a stiffness of zero: its rows are in no window."""
     t, angle, torque, command, mode = runs.run(noise=0.0)

@@ -137,7 +137,9 @@ def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
 def bounds_of(lock: Lock) -> Mapping[str, LockedGoal]:
     """Return what a gate of this release found of bounds of robots, by the hash of the spec."""
     found = {e.sha256: e.goal_of(ROBOT_BOUNDS) for e in lock.specs if e.version == __version__}
-    return {hash_: goal for hash_, goal in found.items() if goal and Status(goal.status) is Status.MET}
+    return {
+        hash_: goal for hash_, goal in found.items() if goal and Status(goal.status) is Status.MET
+    }
 
 
 def check_folder(folder: Path, file: Path) -> None:

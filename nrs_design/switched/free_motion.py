@@ -9,6 +9,7 @@ from functools import partial
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import AssemblyError
+from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
@@ -152,9 +153,24 @@ def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
 
 
 def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
-    """Yield the forces that could pull, those of damped springs, at the corners of their ranges."""
-    damped = (e for e in state.touched if "b" in e.parameters)
-    return (_force_row(state, law) for environment in damped for law in environment.corners)
+    """Yield the forces of what could pull, at the corners of their ranges."""
+    acting = could_pull(state.touched)
+    return (_force_row(state, law) for environment in acting for law in environment.corners)
+
+
+def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
+    """Return whose forces tell where nothing pushes at a positive deflection.
+
+    Without damping nothing lags, and there are none. Beside damped environments springs count, too:
+    what flies because every force would pull must not be pushed by a spring instead.
+
+    Parameters
+    ----------
+    touched : iterable of Environment
+        All that may be touched.
+    """
+    touched = tuple(touched)
+    return touched if any("b" in e.parameters for e in touched) else ()
 
 
 def _force_row(state: SharedState, law: AbstractLinearLaw) -> RationalMatrix:

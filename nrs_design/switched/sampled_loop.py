@@ -32,6 +32,7 @@ from nrs_design.spec.touched import FREE
 from nrs_design.switched.assumptions import LOST_CONTACT, at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.coupled import AxesCoupling, among_axes
+from nrs_design.switched.free_motion import could_pull
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
@@ -99,8 +100,8 @@ def close_sampled_loop(
     parts, free = _motions(loop, plant, design, laws, loss)
     groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
-    damped = (environment for environment in touched if "b" in environment.parameters)
-    pulls = tuple(row for environment in damped for row in force_rows(frame.states, environment))
+    acting = could_pull(touched)
+    pulls = tuple(row for environment in acting for row in force_rows(frame.states, environment))
     losable = None
     if free:
         flying = tuple(item.mode for item in free)

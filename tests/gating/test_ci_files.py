@@ -20,6 +20,7 @@ WORKFLOW = ROOT / "docs/ci/github-actions.yml"
 GITLAB = ROOT / "docs/ci/gitlab-ci.yml"
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 GUIDE = ROOT / "docs/ci/README.md"
+CLEARED = "rm -rf gate"
 
 
 def parse(text):
@@ -127,7 +128,8 @@ def test_gitlab_installs_and_keeps_what_github_does():
     assert before[1] == "git worktree add --detach ../base FETCH_HEAD"
     assert set(jobs) == {"nrs-design-locked", "nrs-design-weaker", "nrs-design-gate"}
     for job in jobs.values():
-        (line,) = job["script"]
+        *cleared, line = job["script"]
+        assert set(cleared) <= {CLEARED}
         assert job["extends"] == ".nrs-design"
         assert job["artifacts"]["reports"]["junit"] == line.rpartition("--out ")[2]
         assert job["artifacts"]["when"] == "always"
@@ -149,7 +151,8 @@ def test_nothing_of_a_pull_request_is_run():
             if "run" in step:
                 installs = "pip install" in step["run"]
                 assert step["working-directory"] == ("base" if installs else "head")
-                assert installs or step["run"].startswith("nrs-design gate specs ")
+                cleared = step["run"] == CLEARED
+                assert installs or cleared or step["run"].startswith("nrs-design gate specs ")
     assert "secrets" not in WORKFLOW.read_text().replace("no secret", "")
 
 
@@ -160,6 +163,13 @@ def test_a_pull_request_may_only_read():
     writing = {name for name, job in workflow["jobs"].items() if "permissions" in job}
     assert writing == {"scanning"}
     assert workflow["jobs"]["scanning"]["if"] == "always() && github.event_name == 'push'"
+
+
+@pytest.mark.parametrize("lines", [[s.get("run", "") for s in steps()], gitlab_lines()])
+def test_from_scratch_means_without_a_lock_file_of_the_pull_request(lines):
+    """A lock file that it brought would be believed about the bounds of robots."""
+    (place,) = (k for k, line in enumerate(lines) if "--lock gate/nrs.lock" in line)
+    assert lines[place - 1] == CLEARED
 
 
 def test_what_is_weaker_is_asked_by_a_job_of_its_own():

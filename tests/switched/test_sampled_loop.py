@@ -37,13 +37,14 @@ TOLERANCE = (
 
 
 def system_of(
-    path: Path, sampling: str, *changes: tuple[str, str], text: str = TEXT
+    path: Path, sampling: str | None, *changes: tuple[str, str], text: str = TEXT
 ) -> SwitchedSystem:
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
     path = path / "sampled.nrs.yaml"
-    path.write_text(f"{text}\nsampling: {sampling}\n", encoding="utf-8")
+    added = "" if sampling is None else f"\nsampling: {sampling}\n"
+    path.write_text(f"{text}{added}", encoding="utf-8")
     designed = run_design(read_spec(path))
     assert designed is not None
     return assemble(designed.spec, designed.plant, designed.design, "deflection")
@@ -147,6 +148,10 @@ DAMPED = (
 )
 
 
+DAMPED_TOOL = "  tool: {model: kelvin-voigt, stiffness: 5 N*m/rad, damping: 0.3 N*m*s/rad}\n"
+DRIVE = "  drive: {type: impedance, environment: tool, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}\n"
+
+
 def test_a_damped_environment_lags_instead_of_pulling(tmp_path):
     """Four forces, at the ends of k and b; in the air, and while it lags, no force is sampled."""
     system = system_of(tmp_path, "{period: 2 ms, delay: 1}", DAMPED)
@@ -165,6 +170,21 @@ def test_a_damped_environment_lags_instead_of_pulling(tmp_path):
     assert all(not any(mode.A.numerators[sample]) for mode in system.contact.free)
     assert "would have to pull" in system.contact.loss
     assert system.contact.loss not in system.assumptions
+
+
+def test_beside_what_is_damped_a_spring_still_pushes(tmp_path):
+    """What flies at a positive deflection because a damped force would pull is not in a spring."""
+    both = (
+        ("environments:\n", f"environments:\n{DAMPED_TOOL}"),
+        ("controllers:\n", f"controllers:\n{DRIVE}"),
+    )
+    for sampling in ("{period: 2 ms, delay: 0}", None):
+        system = system_of(tmp_path, sampling, *both)
+        assert find_contradiction(system) is None
+        forces = [row for q in system.contact.pulls for row in q.fractions()]
+        springs = [row for row in forces if not any(row[:-1]) and row[-1] > 0]
+        assert len(springs) == 2
+        assert len(forces) == 3
 
 
 def test_a_faster_outer_loop_holds_the_command(tmp_path):

@@ -74,7 +74,16 @@ def test_commands_work_in_a_project(tmp_path, monkeypatch):
         with pytest.raises(SystemExit) as caught:
             main()
         assert not caught.value.code, arguments
-    assert Path("gate/gate.sarif").is_file()
+    assert Path("../gate/gate.sarif").is_file()
+
+
+def test_nothing_of_a_pull_request_is_kept_but_what_was_written():
+    """A link among the files that are uploaded would be followed."""
+    for job in parse(WORKFLOW)["jobs"].values():
+        for step in job["steps"]:
+            if "upload-artifact" in step.get("uses", ""):
+                assert step["with"]["path"] == "gate"
+    assert parse(GITLAB)["nrs-design-gate"]["script"][0] == "rm -rf gate"
 
 
 @pytest.mark.parametrize("hooks", [parse(HOOKS), local_hooks()], ids=["here", "local"])
@@ -127,7 +136,7 @@ def test_gitlab_installs_and_keeps_what_github_does():
     assert before[1] == "git worktree add --detach ../base FETCH_HEAD"
     assert set(jobs) == {"nrs-design-locked", "nrs-design-weaker", "nrs-design-gate"}
     for job in jobs.values():
-        (line,) = job["script"]
+        line = job["script"][-1]
         assert job["extends"] == ".nrs-design"
         assert job["artifacts"]["reports"]["junit"] == line.rpartition("--out ")[2]
         assert job["artifacts"]["when"] == "always"

@@ -66,6 +66,7 @@ def test_commands_work_in_a_project(tmp_path, monkeypatch):
     (tmp_path / "head").mkdir()
     Path("specs").rename("head/specs")
     shutil.copytree("head", "base")
+    shutil.copytree("head", "target")
     monkeypatch.chdir("head")
     # Those that make the lock file come first, as in a project.
     for words in sorted(commands(), key=lambda words: ("--locked" in words, "--lock" in words)):
@@ -102,7 +103,7 @@ def test_hooks(hooks):
 
 def test_actions_are_pinned_by_commit():
     used = [step["uses"] for step in steps() if "uses" in step]
-    assert len(used) == 12
+    assert len(used) == 13
     assert all(re.fullmatch(r"[\w./-]+@[0-9a-f]{40}", action) for action in used)
 
 
@@ -150,7 +151,11 @@ def test_nothing_of_a_pull_request_is_run():
         if name == "scanning":
             continue
         checkouts = [step["with"] for step in job["steps"] if "checkout" in step.get("uses", "")]
-        base, head = checkouts
+        base, head, *others = checkouts
+        # What is compared with, is the branch that would change.
+        assert [(each["path"], "base.ref" in each["ref"]) for each in others] == [
+            ("target", True)
+        ] * (name == "weaker")
         assert (base["path"], "ref" in base) == ("base", False)
         assert (head["path"], "refs/pull" in head["ref"]) == ("head", True)
         assert not any(each["persist-credentials"] for each in checkouts)
@@ -176,7 +181,7 @@ def test_what_is_weaker_is_asked_by_a_job_of_its_own():
     asking = {
         name
         for name, job in jobs.items()
-        if any("--against ../base" in step.get("run", "") for step in job["steps"])
+        if any("--against ../target" in step.get("run", "") for step in job["steps"])
     }
     assert asking == {"weaker"}
     assert "nrs-design-weaker" in parse(GITLAB)

@@ -97,6 +97,7 @@ def read_confined(
         "reader": reader,
         "libraries": list(libraries),
         "path": str(path),
+        "parent": os.getpid(),
         "memory": MEMORY,
         "seconds": seconds,
         "places": _places(),
@@ -184,7 +185,10 @@ def answer_of(child: subprocess.Popen[bytes]) -> tuple[str, Any]:
         with suppress(subprocess.TimeoutExpired):
             child.wait(1)
         raise ValueError
-    ((told, value),) = json.loads(head).items()
+    said = json.loads(head)
+    if not isinstance(said, dict):
+        raise TypeError
+    ((told, value),) = said.items()
     if told == "fault":
         message, advice = value
         if not isinstance(message, str) or not isinstance(advice, str | None):
@@ -203,6 +207,8 @@ class _Raw:
         self._left = LARGEST_ARRAYS
 
     def take(self, length: int) -> bytearray:
+        if type(length) is not int:
+            raise TypeError
         self._left -= length
         if length < 0 or self._left < 0:
             raise ValueError
@@ -234,14 +240,20 @@ def _array(held: Any, raw: _Raw) -> Any:
     length = dtype.itemsize
     for n in shape:
         length *= n
-    return np.frombuffer(raw.take(length), dtype).reshape(shape)
+    found = np.frombuffer(raw.take(length), dtype).reshape(shape)
+    if dtype.kind == "U" and found.size:
+        # NumPy takes any four bytes for a character, and fails where such a text is read.
+        codes = found.reshape(-1).view(np.dtype("u4").newbyteorder(dtype.byteorder))
+        if codes.max() > sys.maxunicode:
+            raise ValueError
+    return found
 
 
 _KINDS: dict[str, Callable[[Any, _Raw], Any]] = {
     "list": lambda held, raw: [_decoded(item, raw) for item in held],
     "dict": lambda held, raw: {str(key): _decoded(item, raw) for key, item in held},
     "complex": lambda held, raw: complex(*map(float, held)),
-    "bytes": lambda held, raw: bytes(raw.take(int(held))),
+    "bytes": lambda held, raw: bytes(raw.take(held)),
     "array": _array,
 }
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import sys
 import time
 import warnings
@@ -24,6 +25,7 @@ from nrs_design.errors import DataError
 
 # Of Linux: a network, and a set of users, of one's own.
 _NEW_NETWORK, _NEW_USERS = 0x40000000, 0x10000000
+_SIGNAL_AT_DEATH_OF_PARENT = 1
 # What Python asks about before it does so. No reader has to do with other programs or machines,
 # nor changes a file.
 _REFUSED = (
@@ -42,11 +44,13 @@ def main(order: dict[str, Any]) -> None:
     Parameters
     ----------
     order : dict
-        ``reader``, ``libraries``, ``path``, ``memory`` in bytes and ``seconds`` of a processor.
+        ``reader``, ``libraries``, ``path``, ``parent``, ``memory`` in bytes and ``seconds`` of a
+        processor.
     """
     # Whatever a library prints is no answer.
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    end_with(order["parent"])
     leave_network()
     warnings.simplefilter("ignore")
     module, _, function = order["reader"].partition(":")
@@ -83,6 +87,18 @@ def _fault(error: Exception) -> list[str | None]:
         return [error.message, error.remedy]
     lines = str(error).strip().splitlines()
     return [f"cannot be read ({(lines[0] if lines else type(error).__name__)[:200]})", None]
+
+
+def end_with(parent: int) -> None:
+    """End with the process that asks, even if that is killed: on Linux, the system sees to it."""
+    if sys.platform != "linux":
+        return
+    import ctypes
+
+    ctypes.CDLL(None).prctl(_SIGNAL_AT_DEATH_OF_PARENT, int(signal.SIGKILL))
+    # It may have ended before.
+    if os.getppid() != parent:
+        os._exit(1)
 
 
 def leave_network() -> bool:

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from nrs_design import confined
 from nrs_design.confined import encoded, read_confined
 from nrs_design.errors import DataError
+from tests.support import ROOT
 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of other systems are others")
 
@@ -114,6 +116,9 @@ ANSWERS = {
     "an endless array": b'{"value": {"array": ["<f8", [1000000000, 1000000000]]}}',
     "a negative axis": b'{"value": {"array": ["<f8", [-1]]}}',
     "many axes": json.dumps({"value": {"array": ["<f8", [0] * 1000]}}).encode(),
+    "no object": b"[1]",
+    "an infinite length": b'{"value": {"bytes": 1e999}}',
+    "a text of no characters": b'{"value": {"array": ["<U1", [1]]}}\n\xff\xff\xff\xff',
     "an object as a message": b'{"fault": [{}, null]}',
 }
 
@@ -131,6 +136,28 @@ def test_an_answer_that_is_none_is_one_message(monkeypatch, tmp_path, case):
     monkeypatch.setattr(confined.subprocess, "Popen", pretend)
     with (tmp_path / "answer").open("rb") as file, pytest.raises(DataError, match="hostile"):
         read_confined("a:b", (), file, tmp_path / "answer")
+
+
+@LINUX
+@pytest.mark.slow
+def test_the_child_ends_with_the_command_that_is_killed(tmp_path):
+    program = (
+        "from pathlib import Path\nfrom nrs_design.confined import read_confined\n"
+        f"file = Path({str(tmp_path / 'file.mat')!r})\nfile.write_bytes(b'')\n"
+        "read_confined('tests.foreign_readers:sleep', (), file.open('rb'), file)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", program], cwd=ROOT) as command:
+        children = Path(f"/proc/{command.pid}/task/{command.pid}/children")
+        deadline = time.monotonic() + 20
+        while not (found := children.read_text().split()) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        (child,) = found
+        # It has said so to the system once it is in a network of its own, or could not go there.
+        time.sleep(1)
+        command.kill()
+    while (alive := Path(f"/proc/{child}").exists()) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not alive
 
 
 def test_a_long_message_is_cut(monkeypatch):

@@ -204,15 +204,13 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
     """What a search begins, and where it ends, is counted: a clock would differ under load."""
     assert {item.source for item in imports() if item.target == "time"} == {
         "nrs_design.work",
-        # What a file of another program may take.
+        # How much of the limit of a processor the import of libraries has taken.
         "nrs_design.confined_child",
         # How long something took, told beside what was found.
         "nrs_design.search.certify",
         "nrs_design.pipeline.certification",
         "nrs_design.cli.printing",
         "nrs_design.cli.gate",
-        # What the limit of a foreign reader is counted from: it ends in an error, too.
-        "nrs_design.confined_child",
     }
     limited = {name for name in FILES if "time_limit" in FILES[name].read_text(encoding="utf-8")}
     assert limited == {"nrs_design.search.sdp", "nrs_design.search.raw"}

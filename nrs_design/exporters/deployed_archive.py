@@ -20,6 +20,9 @@ _XML = b'<?xml version="1.0" encoding="UTF-8"?>'
 # It names the release that wrote the file.
 _RELEASE = "generationTool"
 
+# Bytes of the format ZIP: for each entry twice, beside name and content, and once at the end.
+_OF_AN_ENTRY, _OF_THE_END = 30 + 46, 22
+
 # Tag, attributes by name, text.
 Element = tuple[str, tuple[tuple[str, str], ...], str]
 
@@ -90,6 +93,9 @@ def unpack_archive(
                 info.compress_type == zipfile.ZIP_STORED and info.file_size <= LARGEST_ENTRY
                 for info in listed
             )
+            # Whatever else there is could be another archive to another reader.
+            said = sum(2 * len(info.filename) + info.file_size for info in listed)
+            plain &= file.seek(0, os.SEEK_END) == said + len(listed) * _OF_AN_ENTRY + _OF_THE_END
             if not plain or len({info.filename for info in listed}) < len(listed):
                 return None
             entries = {info.filename: archive.read(info) for info in listed}

@@ -50,12 +50,21 @@ def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
     if os.path.realpath(base) == os.path.realpath("."):
         raise NrsDesignError("is this folder itself", path=base, remedy="name another checkout")
     relative = [Path(os.path.relpath(path)) for path in paths]
-    if outside := [path for path in relative if path.parts[:1] == ("..",) or path.is_absolute()]:
-        raise NrsDesignError(
-            "is not below the working folder, so its place in the base is not known",
-            path=outside[0],
-            remedy="run the command where the paths begin in both folders",
-        )
+    here = os.path.realpath(".")
+    for path in relative:
+        if path.parts[:1] == ("..",) or path.is_absolute():
+            raise NrsDesignError(
+                "is not below the working folder, so its place in the base is not known",
+                path=path,
+                remedy="run the command where the paths begin in both folders",
+            )
+        # A link to the base, of somebody who wants to be compared with what is there.
+        if os.path.commonpath([here, os.path.realpath(path)]) != here:
+            raise NrsDesignError(
+                "is a link that leads out of the working folder",
+                path=path,
+                remedy="name what is compared itself, or remove the link",
+            )
     return tuple(base / path for path in relative if os.path.lexists(base / path))
 
 
@@ -165,9 +174,8 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
     except NrsDesignError as error:
         yield Change((), f"cannot be compared: that of the base cannot be read ({error})", True)
         return
-    changes = tuple(find_changes(to_data(before.root), to_data(after.root)))
-    yield from changes
-    if not changes and before.sha256 != after.sha256:
+    yield from find_changes(to_data(before.root), to_data(after.root))
+    if before.bounds and after.bounds and before.bounds != after.bounds:
         yield Change(("coupling",), "the bounds of its robot are others", True)
     yield from _of_recorded(before, after)
 

@@ -137,9 +137,8 @@ def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
 def bounds_of(lock: Lock) -> Mapping[str, LockedGoal]:
     """Return what a gate of this release found of bounds of robots, by the hash of the spec."""
     found = {e.sha256: e.goal_of(ROBOT_BOUNDS) for e in lock.specs if e.version == __version__}
-    return {
-        hash_: goal for hash_, goal in found.items() if goal and goal.status == Status.MET.value
-    }
+    met = Status.MET.value
+    return {hash_: goal for hash_, goal in found.items() if goal and goal.status == met}
 
 
 def check_folder(folder: Path, file: Path) -> None:

@@ -62,6 +62,8 @@ class LoadedSpec:
         What it says.
     parsed : Mapping, Sequence or Scalar, optional
         The text as a tree, for positions; parsed once more where it is not given.
+    bounds : str
+        Id of the bounds of the robot that it names; empty if it names none.
     """
 
     path: Path
@@ -69,6 +71,7 @@ class LoadedSpec:
     text: str
     spec: Spec
     parsed: Node | None = field(default=None, repr=False, compare=False)
+    bounds: str = ""
 
     @property
     def root(self) -> Node:
@@ -110,6 +113,7 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     root, syntax = parse_with_faults(text, file)
     spec = _validate(root, syntax, file)
     sha256 = hash_meaning(to_data(root))
+    used = ""
     if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.robot:
         from nrs_design.spec.robot_bounds import read_robot_bounds
 
@@ -117,8 +121,9 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
         bounds = read_robot_bounds(file, spec.coupling.robot, at)
         spec = spec.model_copy(update={"coupling": spec.coupling.bounded(bounds)})
         # What is said of the robot is a part of what the spec says.
-        sha256 = hash_meaning({"spec": sha256, "bounds": bounds.id})
-    return LoadedSpec(file, sha256, text, spec, root)
+        used = bounds.id
+        sha256 = hash_meaning({"spec": sha256, "bounds": used})
+    return LoadedSpec(file, sha256, text, spec, root, used)
 
 
 def load_spec(path: str | os.PathLike[str]) -> Spec:

@@ -24,17 +24,32 @@ _ASSUMED = frozenset(
 )
 # What a proof is not about: words for people, where values come from, how long is searched.
 _BESIDE = frozenset({"title", "description", "provenance", "certification", "design"})
-# Limits below which something must stay, and above which: of a goal, a scenario, a disturbance.
-_AT_MOST = frozenset({"peak_torque", "dwell_time"})
+# Parts whose keys are names that somebody has given, and no words of ours.
+_NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scenarios"})
+# Limits below which something must stay, and above which: of a goal, a scenario, an assumption.
+_AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "slowest_speed", "shortest_contact"})
 _AT_LEAST = frozenset({"decay_rate", "delay", "initial_force", "longest_dwell_time"})
-# Places all of whose numbers are limits that must be kept, and all that must be borne.
-_LIMITS, _BORNE = "limits", "disturbances"
-# Of two words, the one that asks for more.
-_STRONGER = {"contact": "losable", "switching": "arbitrary", "varies": "true"}
+_LIMITS = "limits"
+# Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample, what the
+# axes do to each other. Of the sensor, those below it are parts of the loop.
+_BORNE = frozenset({"disturbances", "coupling", "sampling"})
+_ERRORS = frozenset({"signals", "errors"})
+# Of two words, the one that asks for more; what stands there unless it is said, in two of them.
+_STRONGER = {
+    "contact": "losable",
+    "switching": "arbitrary",
+    "varies": "true",
+    "gravity_compensated": "at-rest",
+}
+_UNSAID = frozenset({"contact", "varies"})
 # Lists that say what may occur; whatever is left out is not shown.
 _SETS = frozenset({"contacts", "doubts"})
+# What an environment says about its values, and not of what is touched.
+_ABOUT_VALUES = _BESIDE | {
+    *("doubts", "accept_doubt", "range_covers", "range_id", "linearized_about"),
+}
 # Ranges that stand alone, as lists of their ends.
-_RANGES = frozenset({"range", "delay"})
+_RANGES = frozenset({"range", "delay", "preload", "inertia"})
 
 Place = tuple[str | int, ...]
 
@@ -67,7 +82,38 @@ def find_changes(before: Data, after: Data) -> Iterator[Change]:
     before, after : dict, tuple or str
         What the files say, as `nrs_design.spec.document.to_data` gives it.
     """
-    yield from _changes(before, after, ())
+    yield from _changes(_written_out(before, after), _written_out(after, before), ())
+
+
+def _written_out(said: Data, other: Data) -> Data:
+    """Write out what holds unsaid, where the other spec says it or changes what it follows from.
+
+    A controller touches its own environment, and has the goals of the whole spec.
+    """
+    if not isinstance(said, dict) or not isinstance(other, dict):
+        return said
+    controllers, others = said.get("controllers"), other.get("controllers")
+    if not isinstance(controllers, dict) or not isinstance(others, dict):
+        return said
+    goals = said.get("goals")
+    found: dict[str, Data] = {}
+    for name, controller in controllers.items():
+        beside = others.get(name)
+        found[name] = controller
+        if not isinstance(controller, dict) or not isinstance(beside, dict):
+            continue
+        whole = dict(controller)
+        environment = whole.get("environment")
+        moved = "contacts" in beside or beside.get("environment") != environment
+        if isinstance(environment, str) and "contacts" not in whole and moved:
+            whole["contacts"] = (environment,)
+        own, theirs = whole.get("goals", {}), beside.get("goals")
+        if isinstance(goals, dict) and isinstance(own, dict) and isinstance(theirs, dict):
+            common = {key: goals[key] for key in theirs if key in goals and key not in own}
+            if common:
+                whole["goals"] = own | common
+        found[name] = whole
+    return said | {"controllers": found}
 
 
 def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
@@ -75,7 +121,7 @@ def _changes(before: Data, after: Data, at: Place) -> Iterator[Change]:
     if before == after:
         return
     was, now = _range_of(before, key), _range_of(after, key)
-    two_values = isinstance(before, str) and isinstance(after, str)
+    two_values = isinstance(before, str) and isinstance(after, str) and not _is_touched(at)
     if was is not None and now is not None and not two_values:
         yield from _of_ranges(was, now, at, (_said(before), _said(after)))
         if isinstance(before, dict) and isinstance(after, dict):
@@ -96,12 +142,17 @@ def _of_keys(before: dict[str, Data], after: dict[str, Data], at: Place) -> Iter
         if key in after:
             yield from _changes(said, after[key], here)
         else:
-            weaker = key not in _ASSUMED and _BESIDE.isdisjoint(map(str, here))
+            keys = _keys(here)
+            weaker = (_ASSUMED | _BESIDE).isdisjoint(keys)
+            if keys[-1] in _UNSAID:
+                weaker &= _word(said) == _STRONGER[keys[-1]]
             yield Change(here, f"{_name(here)} is gone, {_said(said)} before", weaker)
     for key, said in after.items():
         if key not in before:
             here = (*at, key)
-            weaker = key in _ASSUMED
+            keys = _keys(here)
+            weaker = not _ASSUMED.isdisjoint(keys)
+            weaker |= keys[-1] in _UNSAID and _word(said) != _STRONGER[keys[-1]]
             yield Change(here, f"{_name(here)} is new: {_said(said)}", weaker)
 
 
@@ -152,26 +203,60 @@ def _of_ranges(
     same = covers and not is_less(new_low, low) and not is_less(high, new_high)
     if not (same and said[0] == said[1]):
         message = f"{_name(at)}: {said[0]} before, {said[1]} now"
-        weaker = not covers and not was_point
+        weaker = not covers and (not was_point or _is_touched(at))
         yield Change(at, message + weaker * " (values of before are not covered)", weaker)
 
 
 def _is_weaker(before: Data, after: Data, at: Place) -> bool:
     """Tell whether one value, or one way to say it, asks for less than another."""
-    path = [part for part in at if isinstance(part, str)]
+    path = _keys(at)
     key = path[-1] if path else ""
+    if not _BESIDE.isdisjoint(path):
+        return False
     if stronger := _STRONGER.get(key):
-        return before == stronger
-    was, now = _number(before), _number(after)
-    if was is None or now is None or was.dimension != now.dimension:
-        said_otherwise = isinstance(before, str) is not isinstance(after, str)
-        return said_otherwise and _BESIDE.isdisjoint(path)
+        return _word(after) != stronger
+    if isinstance(before, str) is not isinstance(after, str) or _is_law(at):
+        return True
     goal = "goals" in path
     most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
-    least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path)
-    least |= path[:1] == [_BORNE]
-    grown, shrunk = is_less(was, now), is_less(now, was)
-    return (most and grown) or (least and shrunk)
+    least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or _is_borne(path)
+    was, now = _number(before), _number(after)
+    if was is None or now is None or was.dimension != now.dimension:
+        # A limit that cannot be compared with that of before.
+        return was is not None and (most or least or _is_touched(at))
+    return (most and is_less(was, now)) or (least and is_less(now, was))
+
+
+def _keys(at: Place) -> list[str]:
+    """Return the words of ours on the way to a place, without names that somebody has given."""
+    named = at[:1] and at[0] in _NAMED
+    return [part for i, part in enumerate(at) if isinstance(part, str) and not (named and i == 1)]
+
+
+def _word(said: Data) -> Data:
+    return said.lower() if isinstance(said, str) else said
+
+
+def _is_touched(at: Place) -> bool:
+    """Tell whether a place says what is touched, words for people aside.
+
+    A proof for one value says nothing of another one, not even where there is no range.
+    """
+    return at[:1] == ("environments",) and len(at) > 2 and at[2] not in _ABOUT_VALUES
+
+
+def _is_law(at: Place) -> bool:
+    return _is_touched(at) and at[-1] == "model"
+
+
+def _is_borne(path: list[str]) -> bool:
+    """Tell whether a number says how much must be borne: a proof for less is a proof of less."""
+    return (
+        path[0] in _BORNE
+        or (path[0] == "sensor" and len(path) == 2)
+        or not _ERRORS.isdisjoint(path)
+        or path in ([_LIMITS, "bandwidth"], ["scenarios", "duration"])
+    )
 
 
 def _is_limit(path: list[str]) -> bool:

@@ -277,3 +277,31 @@ def test_a_monitor_of_coupled_axes_keeps_their_speed(sampled, sampled_export, tm
 def test_a_law_in_code_is_not_read_as_numbers(differences, sampled_export):
     with pytest.raises(NrsDesignError, match="none of the files whose numbers are compared"):
         differences(render_c(sampled_export)[".c"], "law.c")
+
+
+def _leaves(node, at=()):
+    pairs = node.items() if isinstance(node, dict) else enumerate(node)
+    for key, held in pairs:
+        yield (*at, key)
+        if isinstance(held, dict | list):
+            yield from _leaves(held, (*at, key))
+
+
+def test_every_field_of_a_record_counts_but_its_release(differences, sampled_export):
+    text = render_json(sampled_export)[".export.json"].decode()
+    for way in [*_leaves(json.loads(text))]:
+        document = json.loads(text)
+        node = document
+        for key in way[:-1]:
+            node = node[key]
+        held = node.pop(way[-1])
+        for changed in ((), (f"{held}x",)) if isinstance(node, dict) else ((f"{held}x",),):
+            if changed and isinstance(node, dict):
+                node[way[-1]] = changed[0]
+            elif changed:
+                node.insert(way[-1], changed[0])
+            try:
+                found = differences(json.dumps(document), "x.json")
+            except NrsDesignError:
+                continue
+            assert bool(found) is (way[0] != "package"), (way, changed)

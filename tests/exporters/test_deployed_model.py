@@ -126,6 +126,8 @@ def test_hostile_files(differences, entries, sampled_export):
     with zipfile.ZipFile(pressed, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("x", bytes(2**24))
     many = packed({str(k): b"" for k in range(1000)})
-    for content in (b"", b"PK", pressed.getvalue(), many, packed(entries)[:-9]):
+    whole = packed(entries)
+    around = (b"before" + whole, whole + b"behind", packed({"x": b""}) + whole)
+    for content in (b"", b"PK", pressed.getvalue(), many, whole[:-9], *around):
         (found,) = model_differences(unpacked(content), sampled_export)
         assert found == "it is no archive that was exported"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 
 from nrs_design.errors import DataError
@@ -12,6 +14,7 @@ from nrs_design.identification.running.check import BoundStatus, Check, Violatio
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import CONFIDENCE, student_quantile
+from nrs_design.proof.bounds import lower, upper
 
 # Clocks of loop and log differ by less than this part of a period.
 _UNEVEN = 0.05
@@ -41,10 +44,12 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     except DataError as error:
         return Check("delay", BoundStatus.NOT_JUDGED, error.message, "", "")
     low, high = found.delay.low, found.delay.high
-    words = f"{found.delay.value:.3g} [{low:.3g}, {high:.3g}] s"
     length = float(log.time[-1] - log.time[0])
     if high - low > length:
         words = f"not told by this record: its interval is longer than the {length:.3g} s"
+    else:
+        outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
+        words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
         return Check(
             "delay", BoundStatus.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", ""

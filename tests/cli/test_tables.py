@@ -9,7 +9,7 @@ from tests.support import SOFT_TISSUE, run
 from tests.terminal import run_on_terminal
 
 STYLE = re.compile("\x1b\\[[0-9;?]*[A-Za-z]")
-NUMBERS = ("2.1486", "43.0356", "0.1552", "1.0743", "60.1 deg", "10.7 ms")
+NUMBERS = ("2.1486", "43.0356", "0.1552", "1.0743", "59.13 deg", "9.89 ms")
 
 
 @pytest.mark.slow

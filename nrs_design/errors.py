@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
-
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,11 +9,11 @@ what else it does. The clock is but a fuse: it may end all in an error, and shap
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import inf
 from time import monotonic
 
 from nrs_design.errors import ClockError
-from nrs_design.proof.noun import dataclass
 
 GIGABYTE = 1e9
 # The fuse of a budget: so many seconds for each unit of work, and so many more.

@@ -39,7 +39,9 @@ def pytest_configure(config: pytest.Config) -> None:
     if cache is not None and os.environ.pop("PYTHONDONTWRITEBYTECODE", ""):
         os.environ.setdefault("PYTHONPYCACHEPREFIX", str(cache.mkdir("bytecode")))
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw1":
-        config.args = [path for argument in config.args for path in _backwards(argument)]
+        ignored = {Path(path).resolve() for path in config.getoption("ignore") or ()}
+        listed = [path for argument in config.args for path in _backwards(argument)]
+        config.args = [path for path in listed if Path(path).resolve() not in ignored]
 
 
 def _backwards(argument: str) -> list[str]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.system_fields import system_fields
 

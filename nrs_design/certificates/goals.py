@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec

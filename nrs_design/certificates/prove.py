@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from nrs_design.certificates.certificate import (
@@ -23,7 +23,6 @@ from nrs_design.errors import DISAGREE, InternalError, NrsDesignError
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
 from nrs_design.proof.evidence.fields import read_text
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.system_fields import read_system

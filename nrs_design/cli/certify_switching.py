@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -31,7 +31,6 @@ from nrs_design.cli.options import (
     Verbose,
 )
 from nrs_design.cli.printing import note, print_json, progress, say
-from nrs_design.proof.noun import dataclass
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 

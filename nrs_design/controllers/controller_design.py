@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,13 +13,12 @@ nothing saturates.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal
 
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.step_logic import StepLogic
-from nrs_design.proof.noun import dataclass
 
 # How the result of an operation, or the reading of an input, counts as rounded: with the terms that
 # it is made of; as a number of its own, of which the next operations take the rounded value; in

@@ -27,11 +27,11 @@ less. The position is taken at the sample, the force sample may be older.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import PRECISION
 from nrs_design.errors import DesignError
-from nrs_design.proof.noun import dataclass
 
 # Half a unit in the last place, over the number.
 UNIT = Fraction(1, 2**PRECISION)

@@ -9,7 +9,7 @@ the wrong direction: by an angle e, at most ``2 sin(e/2) <= e`` of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from math import comb, isqrt
@@ -17,7 +17,6 @@ from math import comb, isqrt
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.sensor import PointSpec, SensorSpec, ToolSpec

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.operations import LINEAR, Operation, StepLaw
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
-from nrs_design.proof.noun import dataclass
 
 # Single precision reaches to 2^128; what a bound itself leaves out is far less than the other half.
 LARGEST = Fraction(2) ** 127

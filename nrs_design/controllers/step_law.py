@@ -7,7 +7,7 @@ matrices and the roundings of a certificate from it.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
@@ -24,7 +24,6 @@ from nrs_design.controllers.step_parts import (
     lags,
     motion,
 )
-from nrs_design.proof.noun import dataclass
 
 UNITS = {"command": "rpm"}
 ONE, ZERO = Fraction(1), Fraction(0)

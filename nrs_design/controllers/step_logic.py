@@ -8,13 +8,13 @@ spec holds for these.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 from typing import Self
 
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below
 from nrs_design.errors import DesignError
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec.threshold_logic import LogicSwitchSpec, ThresholdLogicSpec
 
 # The count of samples stops there.

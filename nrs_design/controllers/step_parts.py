@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, Value
 from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.controllers.sensor import SampledLowPass
-from nrs_design.proof.noun import dataclass
 
 # Where a spec says nothing: no robot gets there, and nothing overflows.
 BEYOND = Fraction(1_000_000)

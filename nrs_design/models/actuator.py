@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from math import pi
 
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact import linear_law_of, nonlinear_law_of
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec, RangedQuantity
 from nrs_design.spec.interval import Interval
 

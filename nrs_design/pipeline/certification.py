@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,6 @@ from nrs_design.certificates.certificate import Certificate, Gains, Verdict
 from nrs_design.errors import AssemblyError, CertificateError
 from nrs_design.pipeline.design import Designed, placed, run_design
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Attempt, Certification, Limits
 from nrs_design.search.method import Method

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline.design import Designed
-from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.scenarios import Simulated

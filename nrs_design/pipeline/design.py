@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError, NrsDesignError
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec import LoadedSpec
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,6 @@ from nrs_design.pipeline.certification import Result, assemble_spec, search_limi
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Certification, Limits
 

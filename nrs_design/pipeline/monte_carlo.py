@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.pipeline.scenarios import Runs, scenarios_of, simulate_group
-from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
     from nrs_design.simulation.monte_carlo import Outcome, Share

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.noun import dataclass
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:

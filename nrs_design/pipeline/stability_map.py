@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.certificates.certificate import Verdict
@@ -14,7 +14,6 @@ from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import placed
 from nrs_design.pipeline.margins import quick_limits
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.noun import dataclass
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.spec.interval import Interval
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 from nrs_design.certificates.certificate import Verdict
@@ -10,7 +10,6 @@ from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import Designed
 from nrs_design.pipeline.margins import quick_limits
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.noun import dataclass
 from nrs_design.search.certification import Limits
 
 # As `nrs_design.spec.aspects` names it.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate
@@ -11,7 +11,6 @@ from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import Designed, placed
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
     from nrs_design.proof.system import SwitchedSystem

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

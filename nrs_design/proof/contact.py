@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from operator import mul
 
@@ -24,7 +25,6 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 
 # A rate is sharpened to one part in two to this power of the range that it may lie in.
 RATE_BITS = 20

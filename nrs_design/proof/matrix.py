@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, lcm
 from operator import index
 from typing import TypeVar
-
-from nrs_design.proof.noun import dataclass
 
 Rows = Sequence[Sequence[Fraction | int]]
 Entry = TypeVar("Entry", int, Fraction)

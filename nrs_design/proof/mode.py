@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.noun import dataclass
 
 
 class Time(StrEnum):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.noun import dataclass
 
 # There are two to this power of matrices for each mode.
 MOST_SIGNALS = 4

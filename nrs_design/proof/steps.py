@@ -29,13 +29,13 @@ all of them would make the integers several times as long.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 
 from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.exact import IntegerMatrix, add, congruence, transpose
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.proof.matrix import RationalMatrix, exact_fraction
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.noun import dataclass
 from nrs_design.search.family import Family
 
 E = TypeVar("E", bound=AbstractEvidence, covariant=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from nrs_design.certificates.certificate import (
     CommonQuadraticStatus,
@@ -12,7 +12,6 @@ from nrs_design.certificates.certificate import (
     refuted_in,
 )
 from nrs_design.proof.evidence import AbstractEvidence
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.gradient_settings import Gradient
 from nrs_design.work import GIGABYTE

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import chain
 
 import numpy as np
@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.decay import limit_rate

@@ -9,12 +9,12 @@ Todd with the predictor and corrector of Mehrotra (Toh, Todd, Tütüncü 1999; V
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.noun import dataclass
 from nrs_design.search.sdp import pack, unpack
 from nrs_design.work import Cost
 

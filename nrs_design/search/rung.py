@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 from math import inf
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits

@@ -7,13 +7,13 @@ takes to solve it; off the hot path, `nrs_design.search.raw` leaves that to CVXP
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.noun import dataclass
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]

@@ -8,6 +8,7 @@ back to its direction and is larger, what it was in since is a sequence to propo
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby, islice, product
 
@@ -19,7 +20,6 @@ from nrs_design.proof.evidence import UnstableContact, UnstableMode
 from nrs_design.proof.evidence.unstable_contact import product as product_of
 from nrs_design.proof.evidence.unstable_mode import free_motions
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import scale_states
 from nrs_design.search.candidates import Candidate, Candidates

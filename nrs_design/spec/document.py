@@ -9,6 +9,7 @@ from __future__ import annotations
 import bisect
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
@@ -27,7 +28,6 @@ from ruamel.yaml.events import (
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.files import is_page, open_regular
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.syntax import explain_syntax, fault_mark
 

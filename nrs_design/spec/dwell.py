@@ -6,9 +6,8 @@ A proof with a dwell time rests on one constant matrix from each switch to the n
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-from nrs_design.proof.noun import dataclass
 
 if TYPE_CHECKING:
     from nrs_design.spec.controllers import ControllerSpec

@@ -9,13 +9,13 @@ is shorter than the age of the torque: so two in a row that agree decide, once f
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
 from pydantic import Field
 
 from nrs_design.proof.bounds import upper
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.controllers import ControllerSpec
 from nrs_design.spec.environment import EnvironmentSpec

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
-
-from nrs_design.proof.noun import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,11 +6,10 @@ import difflib
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit, respelt

@@ -10,13 +10,13 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 from nrs_design.errors import SpecError
 from nrs_design.files import open_regular, read_json_text
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import Position, parse_document, read_source, to_data
 from nrs_design.spec.exact import parse_exact

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from math import lcm
@@ -11,7 +12,6 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
 from nrs_design.errors import SpecError
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import counted, quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.exact import parse_exact

@@ -9,13 +9,13 @@ sides of such a band.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field, WithJsonSchema, model_validator
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.faults import did_you_mean, fault
 from nrs_design.spec.fields import Label

@@ -11,10 +11,10 @@ from __future__ import annotations
 import difflib
 import functools
 import re
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.errors import SpecError
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import quoted
 
 COMMAND_UNITS = ("rpm", "V", "A", "counts")

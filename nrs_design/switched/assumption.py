@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Self
-
-from nrs_design.proof.noun import dataclass
 
 
 class Standing(StrEnum):

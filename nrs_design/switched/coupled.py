@@ -7,7 +7,7 @@ docs/certificates/coupled-axes.md derives what is made of them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
@@ -15,7 +15,6 @@ from nrs_design.proof.bounds import upper
 from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec

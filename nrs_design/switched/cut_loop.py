@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
@@ -29,7 +29,6 @@ from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix, multiply
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
@@ -10,7 +11,6 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.assumption import Assumption

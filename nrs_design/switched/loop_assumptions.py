@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
@@ -11,7 +12,6 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS, CompliantLaw
 from nrs_design.models.contact.environment import Environment
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
 from nrs_design.spec.controllers import Command, Offset
 from nrs_design.switched import assumption_kinds as kinds

@@ -10,6 +10,7 @@ controllers that command one have it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.laws import CompliantLaw
@@ -19,7 +20,6 @@ from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.matrix import multiply
-from nrs_design.proof.noun import dataclass
 
 Rows = list[LinearForm]
 

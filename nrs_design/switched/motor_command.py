@@ -8,6 +8,7 @@ rest under the same disturbances: saturation is then not left out of the bounds,
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
@@ -17,7 +18,6 @@ from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.switched.assumption import Assumption

@@ -12,12 +12,12 @@ corners suffice, for the same reason.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product, starmap
 from types import MappingProxyType
 
 from nrs_design.errors import InternalError
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]

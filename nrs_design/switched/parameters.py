@@ -7,13 +7,13 @@ corners. What decreases in all corners in continuous time therefore decreases in
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.interval import Interval

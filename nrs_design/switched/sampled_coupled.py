@@ -11,7 +11,7 @@ and what an axis does differs from what it does by itself with a motor of the ti
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
@@ -19,7 +19,6 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.proof.channels import Channel, Coupling
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.coupled import AxesCoupling, check_gravity, not_below
 from nrs_design.switched.sampled_frame import INPUTS, Frame

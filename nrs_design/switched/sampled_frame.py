@@ -14,6 +14,7 @@ that is held stands after e_before.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
@@ -28,7 +29,6 @@ from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.controllers.step_law import numbers_of
 from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
-from nrs_design.proof.noun import dataclass
 from nrs_design.switched.sampled_law import (
     ERROR,
     IDLE_REFERENCE,

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
 from nrs_design.controllers.sampled_range import coefficient_ranges
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.noun import dataclass
 from nrs_design.switched.assumption import Assumption
 from nrs_design.switched.assumption_kinds import RANGE
 from nrs_design.switched.gain_box import GainBox

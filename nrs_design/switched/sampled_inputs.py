@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.sampled import rounding_share
@@ -11,7 +12,6 @@ from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import DisturbancesSpec

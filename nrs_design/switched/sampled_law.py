@@ -7,7 +7,7 @@ a loop has, whatever their numbers; what each term is, from the numbers of the l
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 
@@ -24,7 +24,6 @@ from nrs_design.controllers.step_law import build_law
 from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.errors import InternalError
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.proof.noun import dataclass
 
 ONE = Fraction(1)
 # Not in the loop of a proof: what is commanded is zero, and angles count from there.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import chain, product
@@ -23,7 +24,6 @@ from nrs_design.proof.channels import Coupling
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec

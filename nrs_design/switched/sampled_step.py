@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 
 from nrs_design.controllers.sampled import SampledLaw
 from nrs_design.controllers.step_analysis import Term
 from nrs_design.models.linear_form import LinearForm, combine
-from nrs_design.proof.noun import dataclass
 from nrs_design.switched.sampled_law import (
     ERROR,
     KD,

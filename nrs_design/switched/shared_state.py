@@ -6,6 +6,7 @@ While another environment is touched, the memory of an environment decays as it 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import ControllerDesign
@@ -17,7 +18,6 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
@@ -11,7 +11,6 @@ from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw, AbstractNonlinearLaw
-from nrs_design.proof.noun import dataclass
 from nrs_design.spec.interval import Interval
 
 

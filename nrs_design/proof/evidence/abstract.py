@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any, ClassVar, Self
@@ -18,7 +19,6 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
 )
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -12,7 +12,6 @@ from nrs_design.proof.evidence.fields import read_integer
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 

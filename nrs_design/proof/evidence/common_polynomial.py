@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 from typing import Any, ClassVar, Self
@@ -30,7 +30,6 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.lift import derivative_lift, power_lift, vanishes
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 
 MAX_DEGREE = 64

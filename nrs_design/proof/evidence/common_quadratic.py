@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -24,7 +24,6 @@ from nrs_design.proof.exact import (
     stein_decrease,
 )
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import SwitchedSystem
 

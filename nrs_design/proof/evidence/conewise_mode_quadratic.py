@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -27,7 +28,6 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.matrix import leading, with_crossing
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 

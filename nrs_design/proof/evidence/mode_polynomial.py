@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb
 from typing import Any, ClassVar, Self
@@ -25,7 +25,6 @@ from nrs_design.proof.exact import MAX_WORK, IntegerMatrix, add
 from nrs_design.proof.lift import power_lift, vanishes
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Reset, Switching
 from nrs_design.proof.system import SwitchedSystem
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -34,7 +34,6 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.matrix import RationalMatrix, multiply
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Edge, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted

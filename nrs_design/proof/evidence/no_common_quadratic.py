@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from operator import mul
 from typing import Any, ClassVar, Self
 
@@ -10,7 +11,6 @@ from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import Matrix, read_integers, read_text
 from nrs_design.proof.exact import IntegerMatrix, add, common_denominator
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
 from typing import Any, ClassVar, Self
@@ -17,7 +18,6 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease, scaled
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.system import SwitchedSystem
 
 

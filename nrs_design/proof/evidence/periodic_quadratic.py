@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any, ClassVar, Self
@@ -20,7 +21,6 @@ from nrs_design.proof.evidence.fields import (
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.steps import Steps, find_odd_roundings
 from nrs_design.proof.system import SwitchedSystem
 

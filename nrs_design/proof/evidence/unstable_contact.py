@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -16,7 +17,6 @@ from nrs_design.proof.evidence.unstable_mode import UnstableMode
 from nrs_design.proof.evidence.unstable_period import UnstablePeriod
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 

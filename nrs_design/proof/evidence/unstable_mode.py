@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 from nrs_design.proof.enclosure import eigenvalues
@@ -19,7 +20,6 @@ from nrs_design.proof.exact import (
 )
 from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, ClassVar, Self
 
@@ -14,7 +15,6 @@ from nrs_design.proof.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
-from nrs_design.proof.noun import dataclass
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 

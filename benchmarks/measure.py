@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
@@ -199,11 +199,18 @@ def run_child(command: Sequence[str], bytecode: str | None = None) -> Child:
 def machine_facts() -> str:
     """Describe the machine in one line."""
     cores = len(os.sched_getaffinity(0))
-    libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    libraries = ", ".join(f"{name} {_version(name)}" for name in LIBRARIES)
     return (
         f"{cores} cores, {_processor()}, load {os.getloadavg()[0]:.1f}, "
         f"{platform.system()} {platform.machine()}, Python {platform.python_version()}, {libraries}"
     )
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"
 
 
 def _processor() -> str:

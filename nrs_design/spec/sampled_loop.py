@@ -52,7 +52,7 @@ def _not_modelled(spec: AbstractInteractionSpec) -> Iterator[Refusal]:
     # Rules about controllers in one contact each are refused as a whole elsewhere.
     times = () if spec.switching.names_contacts else spec.switching.dwell_times()
     for at, _ in times:
-        what = "the rules of switching have dwell times in s"
+        what = "dwell times in the rules of switching"
         yield ("switching", *at), what, "leave them out, or sampling"
 
 

@@ -48,7 +48,17 @@ def read(text, *changes):
                 ("switching: arbitrary", "switching: {dwell_time: 1 s}"),
             ],
             "switching.dwell_time",
-            "have dwell times",
+            "dwell times in the rules",
+            "or sampling",
+        ),
+        (
+            TEXT + SAMPLED,
+            [
+                (RANGED_SOFT, "747.1461 N/m"),
+                ("switching: arbitrary", "switching: {dwell_time: 200 steps}"),
+            ],
+            "switching.dwell_time",
+            "dwell times in the rules",
             "or sampling",
         ),
         (TEXT + SAMPLED + "coordinates: force\n", [], "coordinates", "force coord", "deflection"),

@@ -231,9 +231,17 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
 
 
 def _check_explained(record: SignalRecord, fit: DelayFit) -> None:
-    """Refuse a model that misses much of the motion: its delay may be any."""
-    missed = _missed_part(record, fit)
-    if missed <= _UNEXPLAINED or fit.uncertainty.whiteness >= WHITE:
+    """Refuse a model that misses much of the motion: its delay may be any.
+
+    Of a held command, the part of a sample is open: to be a sample late misses as much as the
+    motion changes in a sample.
+    """
+    missed, allowed = _missed_part(record, fit), _UNEXPLAINED
+    if not is_smooth(record):
+        seen = record.seen[fit.rows]
+        change = np.linalg.norm(np.diff(seen)) / np.linalg.norm(seen - seen.mean())
+        allowed = max(allowed, float(change))
+    if missed <= allowed or fit.uncertainty.whiteness >= WHITE:
         return
     longest = _LONGEST * float(np.ptp(record.time[record.longest]))
     raise DataError(

@@ -104,7 +104,12 @@ def _explained(
 ) -> tuple[float, float]:
     """Return which part of the errors a signal explains, beside a better fit, and its factor."""
     parts = [found.motor.linearize(record) for record in records]
-    x = np.concatenate([found.motor.beyond_start(r, signature(r)) for r in records])
+    rows = []
+    for record in records:
+        free, _ = np.linalg.qr(found.motor.free(record))
+        signal = signature(record)
+        rows.append(signal - free @ (free.T @ signal))
+    x = np.concatenate(rows)
     J = np.concatenate([part for part, _ in parts])
     basis, _ = np.linalg.qr(J / np.maximum(np.linalg.norm(J, axis=0), 1e-300))
     x = x - basis @ (basis.T @ x)

@@ -226,7 +226,7 @@ def _from_records(
     progress("time domain")
     found = _first_order(records)
     fits.append(fit_of("output in the time domain", found))
-    reason = "The fit to the output uses every sample after the first dead time."
+    reason = "The fit to the output uses every sample."
     if found.uncertainty.whiteness < WHITE:
         progress("second order")
         second = _second_order(records, found)

@@ -35,9 +35,6 @@ class MotorModel:
         Dead time in s.
     damping : float or None
         Damping ratio of a motor of second order.
-    unknown : float
-        In s: so long after the beginning of a record, its output hangs on commands from before it,
-        and is not fitted.
     """
 
     gain: float
@@ -45,7 +42,6 @@ class MotorModel:
     friction: float | None
     delay: float
     damping: float | None = None
-    unknown: float = 0.0
 
     @property
     def lags(self) -> Lags:
@@ -100,8 +96,8 @@ class MotorModel:
     def simulate(self, record: ActuatorRecord) -> Array:
         """Return the output in rad or rad/s, its initial state fitted to a record, shape (n,)."""
         forced = self.forced(record, *self.hold(record))
-        free, known = self.free(record), self._known(record)
-        start = np.linalg.lstsq(free[known], (record.output - forced)[known], rcond=None)[0]
+        free = self.free(record)
+        start = np.linalg.lstsq(free, record.output - forced, rcond=None)[0]
         return np.asarray(forced + free @ start, float)
 
     def linearize(self, record: ActuatorRecord) -> tuple[Array, Array]:
@@ -110,7 +106,7 @@ class MotorModel:
 
     def errors(self, record: ActuatorRecord) -> Array:
         """Return measured less fitted output, shape (n,)."""
-        return self.beyond_start(record, record.output - self.forced(record, *self.hold(record)))
+        return self._beyond_start(record, record.output - self.forced(record, *self.hold(record)))
 
     def derivatives(self, record: ActuatorRecord) -> Array:
         """Return the derivatives of the fitted output by the parameters, shape (n, p).
@@ -128,25 +124,9 @@ class MotorModel:
 
         steps = np.diag(sizes)
         columns = [(output(x + h) - output(x - h)) / (2 * h.sum()) for h in steps]
-        return self.beyond_start(record, np.column_stack(columns))
+        return self._beyond_start(record, np.column_stack(columns))
 
-    def beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
-        """Return what neither the initial state nor commands from before a record explain.
-
-        Parameters
-        ----------
-        record : ActuatorRecord
-            The record.
-        values : ndarray, shape (n,) or (n, p)
-            At its samples.
-        """
-        known = self._known(record)
-        free, _ = np.linalg.qr(self.free(record)[known])
-        beyond = np.zeros_like(values)
-        beyond[known] = values[known] - free @ (free.T @ values[known])
-        return beyond
-
-    def _known(self, record: ActuatorRecord) -> slice:
-        """Return the rows that no command from before the record reaches, at least half of all."""
-        rows = np.searchsorted(record.time, record.time[0] + self.unknown)
-        return slice(min(int(rows), len(record.time) // 2), None)
+    def _beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
+        """Return what no initial state explains."""
+        free, _ = np.linalg.qr(self.free(record))
+        return np.asarray(values - free @ (free.T @ values), float)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,10 +67,8 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
     """Refine a motor in the time domain, its dead time with it.
 
     The command is held between samples and the velocity is solved exactly. Initial angle and
-    velocity of every record are eliminated by linear least squares; the samples before the dead
-    time is over are left out, since the commands behind them are not in the record. If the errors
-    are not white, the spread between records, or between parts of few records, goes into the
-    intervals.
+    velocity of every record are eliminated by linear least squares. If the errors are not white,
+    the spread between records, or between parts of few records, goes into the intervals.
 
     Parameters
     ----------
@@ -85,9 +82,9 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
     DataError
         If the iteration does not settle.
     """
-    usual = min(record.step for record in records)
-    motor = replace(start, unknown=_reach(start.delay, usual))
+    motor = start
     parts = [motor.linearize(record) for record in records]
+    usual = min(record.step for record in records)
     for _ in range(_STEPS):
         J, error = (np.concatenate(series) for series in zip(*parts, strict=True))
         scale = np.ones(J.shape[1])
@@ -110,15 +107,8 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
             "the fit in the time domain does not settle",
             remedy="check the records, or give a ready frequency response",
         )
-    if motor.delay > motor.unknown:
-        return fit_in_time(records, motor)
     J, error = (np.concatenate(series) for series in zip(*parts, strict=True))
     return TimeFit(motor, _uncertainty(records, parts, J, error), error)
-
-
-def _reach(delay: float, step: float) -> float:
-    """Return how long commands from before a record may reach into it: a step beyond the delay."""
-    return (math.ceil(delay / step) + 1) * step if delay > 0 else 0.0
 
 
 def _improved(

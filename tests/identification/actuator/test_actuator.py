@@ -144,7 +144,7 @@ def runs():
     """Three short runs of a motor whose gain differs by 5 % from one to the next."""
     return [
         replace(
-            made, time=made.time[:800], command=made.command[:800], output=f * made.output[:800]
+            made, time=made.time[:400], command=made.command[:400], output=f * made.output[:400]
         )
         for made, f in ((motors.record("PRBS", i), 0.9 + 0.05 * i) for i in (1, 2, 3))
     ]

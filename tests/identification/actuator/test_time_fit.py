@@ -22,24 +22,6 @@ def found(record):
     return identify_actuator([record], MOTOR)
 
 
-def test_a_record_that_begins_with_a_step():
-    """Of commands from before it nothing is known: a motor at rest was "of second order"."""
-    t = np.arange(2000) * 1e-3
-    u = np.where(t % 1.0 < 0.5, 1.0, -1.0)
-    velocity, decay = np.zeros(len(t)), np.exp(-1e-3 / 0.012)
-    for i in range(1, len(t)):
-        late = u[i - 4] if i >= 4 else 0.0
-        velocity[i] = decay * velocity[i - 1] + (1 - decay) * 12.0 * late
-    velocity += np.random.default_rng(1).normal(0.0, 0.05, len(t))
-    made = motors.record("PRBS", 1, is_angle=False)
-    record = replace(made, time=t, command=u, output=velocity)
-    fit = found(record).chosen
-    assert fit.order == 1
-    assert fit.gain.value == pytest.approx(12.0, rel=1e-3)
-    assert fit.time_constant.value == pytest.approx(0.012, rel=0.01)
-    assert fit.dead_time.value == pytest.approx(0.003, abs=5e-5)
-
-
 @pytest.mark.parametrize("is_angle", [True, False])
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_simulation_is_that_of_fine_steps(kind, is_angle):

@@ -78,48 +78,28 @@ _SCANNED = 5000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DelayIdentification:
-    """What a record says about a delay.
+    """What a record says about a delay."""
 
-    Parameters
-    ----------
-    record : SignalRecord
-        The data.
-    fits : tuple of DelayFit
-        One for each model.
-    chosen : DelayFit
-        The simplest of those whose BIC none clearly beats.
-    delay : Estimate
-        In s, with a 95 % interval.
-    samples : Estimate
-        The same in samples of the record.
-    peak : tuple of float
-        Lag in s at which both columns are most alike, lag of the dynamics included, and their
-        correlation there.
-    parts : tuple of (float, Estimate)
-        The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
-        together.
-    smooth : bool
-        Whether the command is smooth between samples, so that a copy tells parts of them.
-        Otherwise, or beside a lag, nobody knows when within a sample a logged command began: the
-        interval is a sample wide, at least.
-    held : tuple of float
-        From and to, in samples: they hold the interval and every part of the record. Where errors
-        are not noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
-        Of a command of one frequency, they hold all from zero to those of a copy.
-    doubts : tuple of str
-        What speaks against it.
-    """
-
-    record: SignalRecord
-    fits: tuple[DelayFit, ...]
-    chosen: DelayFit
-    delay: Estimate
-    samples: Estimate
+    record: SignalRecord  # The data
+    fits: tuple[DelayFit, ...]  # One for each model
+    chosen: DelayFit  # The simplest of those whose BIC none clearly beats
+    delay: Estimate  # In s, with a 95 % interval
+    samples: Estimate  # The same in samples of the record
+    # Lag in s at which both columns are most alike, lag of the dynamics included, and their
+    # correlation there.
     peak: tuple[float, float]
+    # The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
+    # together.
     parts: tuple[tuple[float, Estimate], ...]
+    # Whether the command is smooth between samples, so that a copy tells parts of them. Otherwise,
+    # or beside a lag, nobody knows when within a sample a logged command began: the interval is a
+    # sample wide, at least.
     smooth: bool
+    # From and to, in samples: they hold the interval and every part of the record. Where errors are
+    # not noise, they hold those of a copy, too: then a lag may stand for a part of the delay. Of a
+    # command of one frequency, they hold all from zero to those of a copy.
     held: tuple[float, float]
-    doubts: tuple[str, ...]
+    doubts: tuple[str, ...]  # What speaks against it
 
     @property
     def whole_samples(self) -> tuple[int, int]:

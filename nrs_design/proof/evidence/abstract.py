@@ -74,24 +74,12 @@ _EXACT: Mapping[Shows, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """What evidence of a bound says, in numbers.
+    """What evidence of a bound says, in numbers."""
 
-    Parameters
-    ----------
-    output : Output
-        What is bounded.
-    level : Fraction
-        Its size is never above this, from rest.
-    channels : tuple of Channel
-        The disturbances that act at once; no other does.
-    share : Fraction
-        How fast what is left of an earlier state goes: in 1/s, or per step.
-    """
-
-    output: Output
-    level: Fraction
-    channels: tuple[Channel, ...]
-    share: Fraction
+    output: Output  # What is bounded
+    level: Fraction  # Its size is never above this, from rest
+    channels: tuple[Channel, ...]  # The disturbances that act at once; no other does
+    share: Fraction  # How fast what is left of an earlier state goes: in 1/s, or per step
 
 
 class AbstractEvidence(ABC):

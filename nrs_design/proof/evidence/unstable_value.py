@@ -31,19 +31,12 @@ class UnstableValue(AbstractEvidence):
     The mode in force is ``(1 - s) low + s high`` with one share s for all modes and all times.
     Each share from 0 to 1 is a value that the parameter may have, so instability of the system at
     one share refutes the claim for all of them.
-
-    Parameters
-    ----------
-    share : Fraction
-        The s.
-    part : UnstableMode, UnstableMixture or UnstablePeriod
-        Evidence of instability of the system at that share.
     """
 
     kind: ClassVar[str] = "unstable-value"
 
-    share: Fraction
-    part: Part
+    share: Fraction  # The s
+    part: Part  # Evidence of instability of the system at that share
 
     @property
     def shows(self) -> Shows:

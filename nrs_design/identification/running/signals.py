@@ -44,12 +44,10 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     except DataError as error:
         return Check("delay", BoundStatus.NOT_JUDGED, error.message, "", "")
     low, high = found.delay.low, found.delay.high
-    length = float(log.time[-1] - log.time[0])
-    if high - low > length:
-        words = f"not told by this record: its interval is longer than the {length:.3g} s"
-    else:
-        outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
-        words = f"{found.delay.value:.3g} {outwards} s"
+    if found.untold is not None:
+        return Check("delay", BoundStatus.NOT_JUDGED, found.untold, "", "")
+    outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
+    words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
         return Check(
             "delay", BoundStatus.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", ""

@@ -17,7 +17,7 @@ from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 from nrs_design.proof.bounds import lower, upper
 
 # Clocks of loop and log differ by less than this part of a period.
-_UNEVEN = 0.05
+_UNEVEN = 0.01
 
 
 def _assumed(bounds: RunBounds) -> str:
@@ -91,8 +91,7 @@ def _time_of(bounds: RunBounds) -> str:
     if bounds.period is None:
         return f"none: the {model} is in continuous time"
     return (
-        f"none: the {model} is about a motion that follows at once, sampled every "
-        f"{bounds.period:g} s"
+        f"none: the {model} is about a motion without dead time, sampled every {bounds.period:g} s"
     )
 
 

@@ -29,18 +29,11 @@ Element = tuple[str, tuple[tuple[str, str], ...], str]
 
 @dataclass(frozen=True, slots=True)
 class Archive:
-    """What an archive holds.
+    """What an archive holds."""
 
-    Parameters
-    ----------
-    entries : mapping of str to bytes
-        By path.
-    documents : mapping of str to (list of tuple or str)
-        The elements of each XML document with their attributes, without the release that wrote it;
-        or what is wrong with it.
-    """
-
-    entries: Mapping[str, bytes]
+    entries: Mapping[str, bytes]  # By path
+    # The elements of each XML document with their attributes, without the release that wrote it; or
+    # what is wrong with it.
     documents: Mapping[str, list[Element] | str]
 
 

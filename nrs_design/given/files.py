@@ -36,24 +36,12 @@ Content = dict[str, Plain]
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """A quadratic function that somebody proposes for a family of modes.
+    """A quadratic function that somebody proposes for a family of modes."""
 
-    Parameters
-    ----------
-    modes : mapping
-        Name to matrix.
-    P : object
-        The matrix of ``x' P x``.
-    rate : object
-        At which rate it is said to decrease; None if nothing is said.
-    time : str or None
-        ``continuous``, ``discrete``, or None if nothing is said.
-    """
-
-    modes: Mapping[str, object]
-    P: object
-    rate: object
-    time: str | None
+    modes: Mapping[str, object]  # Name to matrix
+    P: object  # The matrix of ``x' P x``
+    rate: object  # At which rate it is said to decrease; None if nothing is said
+    time: str | None  # ``continuous``, ``discrete``, or None if nothing is said
 
 
 def read_proposal(path: Path) -> Proposal:

@@ -24,27 +24,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class MonteCarloSummary:
-    """Runs, and what is told of them.
+    """Runs, and what is told of them."""
 
-    Parameters
-    ----------
-    asked : MonteCarlo
-        What was simulated.
-    outcomes : sequence of Outcome
-        Of all runs.
-    shares : mapping of str to Share
-        Runs above the limits.
-    bounds : mapping of str to tuple of (float, tuple of str)
-        Certified, in SI, and why it is not about these runs.
-    files : sequence of Path
-        That were written.
-    """
-
-    asked: MonteCarlo
-    outcomes: Sequence[Outcome]
-    shares: Mapping[str, Share]
+    asked: MonteCarlo  # What was simulated
+    outcomes: Sequence[Outcome]  # Of all runs
+    shares: Mapping[str, Share]  # Runs above the limits
+    # Certified, in SI, and why it is not about these runs.
     bounds: Mapping[str, tuple[float, tuple[str, ...]]]
-    files: Sequence[Path]
+    files: Sequence[Path]  # That were written
 
 
 def monte_carlo(

@@ -124,25 +124,14 @@ Resume = Annotated[
 
 @dataclass(frozen=True, slots=True)
 class Many:
-    """What is asked for beside, or in the place of, the scenarios as they are written.
+    """What is asked for beside, or in the place of, the scenarios as they are written."""
 
-    Parameters
-    ----------
-    worst : bool
-        Whether an adversary is to search.
-    runs : int or None
-        How many runs are drawn.
-    seed, jobs : int
-        Of these.
-    resume : Path or None
-        Keeps what is drawn.
-    """
-
-    worst: bool
-    runs: int | None
+    worst: bool  # Whether an adversary is to search
+    runs: int | None  # How many runs are drawn
+    # seed, jobs: of these.
     seed: int
     jobs: int
-    resume: Path | None
+    resume: Path | None  # Keeps what is drawn
 
     def check(self, of_scenarios: tuple[object, ...]) -> None:
         """Refuse options that exclude each other, or that nothing would heed.

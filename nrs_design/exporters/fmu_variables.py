@@ -10,41 +10,22 @@ from nrs_design.controllers.operations import StepLaw
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """One variable that is a real number.
+    """One variable that is a real number."""
 
-    Parameters
-    ----------
-    name : str
-        As the description calls it.
-    reference : int
-        Its number.
-    place : str
-        Member of the model in C.
-    causality : {"input", "output", "local"}
-        What it is to others.
-    unit, meaning : str
-        In words.
-    """
-
-    name: str
-    reference: int
-    place: str
-    causality: str
+    name: str  # As the description calls it
+    reference: int  # Its number
+    place: str  # Member of the model in C
+    causality: str  # What it is to others
+    # unit, meaning: in words.
     unit: str
     meaning: str
 
 
 @dataclass(frozen=True, slots=True)
 class Variables:
-    """All real variables of a law: inputs first, then outputs, then states.
+    """All real variables of a law: inputs first, then outputs, then states."""
 
-    Parameters
-    ----------
-    reals : tuple of Variable
-        By their references.
-    """
-
-    reals: tuple[Variable, ...]
+    reals: tuple[Variable, ...]  # By their references
 
     @classmethod
     def of(cls, law: StepLaw) -> Variables:

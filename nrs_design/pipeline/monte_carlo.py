@@ -20,24 +20,12 @@ _CHUNK = 4
 
 @dataclass(frozen=True, slots=True)
 class MonteCarlo:
-    """Many runs that are to be simulated.
+    """Many runs that are to be simulated."""
 
-    Parameters
-    ----------
-    designed : Designed
-        The spec, its plant and its gains.
-    wanted : Runs
-        Which scenarios, and how.
-    runs : int
-        How many.
-    seed : int
-        Of what is drawn.
-    """
-
-    designed: Designed
-    wanted: Runs
-    runs: int
-    seed: int
+    designed: Designed  # The spec, its plant and its gains
+    wanted: Runs  # Which scenarios, and how
+    runs: int  # How many
+    seed: int  # Of what is drawn
 
     @property
     def scenarios(self) -> list[Scenario]:
@@ -71,21 +59,11 @@ class MonteCarlo:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """What all runs came to.
+    """What all runs came to."""
 
-    Parameters
-    ----------
-    outcomes : tuple of Outcome
-        Of one run after the other, in SI.
-    shares : mapping of str to Share
-        Of runs above the limit, for each quantity that has one.
-    limits : mapping of str to mapping of str to float
-        Of the quantities in every scenario, in SI.
-    """
-
-    outcomes: tuple[Outcome, ...]
-    shares: Mapping[str, Share]
-    limits: Mapping[str, Mapping[str, float]]
+    outcomes: tuple[Outcome, ...]  # Of one run after the other, in SI
+    shares: Mapping[str, Share]  # Of runs above the limit, for each quantity that has one
+    limits: Mapping[str, Mapping[str, float]]  # Of the quantities in every scenario, in SI
 
 
 def draw_runs(asked: MonteCarlo, jobs: int = 1) -> Drawing:

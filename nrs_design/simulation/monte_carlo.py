@@ -26,54 +26,25 @@ CONFIDENCE = 0.95
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """One run that is to be simulated.
+    """One run that is to be simulated."""
 
-    Parameters
-    ----------
-    scenario : Scenario
-        With laws of tissue and a seed of its own.
-    plant : Plant
-        With a motor of its own.
-    design : ControllerDesign
-        With gains of its own.
-    parameters : mapping of str to float
-        What was drawn, in SI.
-    """
-
-    scenario: Scenario
-    plant: Plant
-    design: ControllerDesign
-    parameters: Mapping[str, float]
+    scenario: Scenario  # With laws of tissue and a seed of its own
+    plant: Plant  # With a motor of its own
+    design: ControllerDesign  # With gains of its own
+    parameters: Mapping[str, float]  # What was drawn, in SI
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What one run came to.
+    """What one run came to."""
 
-    Parameters
-    ----------
-    index : int
-        Of the run, from zero.
-    scenario : str
-        Its name.
-    seed : int
-        Of noise, jitter and varying delay.
-    peaks : mapping of str to float
-        By the names of `PEAKS`, in SI.
-    stopped : str or None
-        Why the run ended before its time.
-    parameters : mapping of str to float
-        What was drawn.
-    uncovered : sequence of str
-        What happened in it that no proof takes up, and may not happen at other parameters.
-    """
-
-    index: int
-    scenario: str
-    seed: int
-    peaks: Mapping[str, float]
-    stopped: str | None
-    parameters: Mapping[str, float]
+    index: int  # Of the run, from zero
+    scenario: str  # Its name
+    seed: int  # Of noise, jitter and varying delay
+    peaks: Mapping[str, float]  # By the names of `PEAKS`, in SI
+    stopped: str | None  # Why the run ended before its time
+    parameters: Mapping[str, float]  # What was drawn
+    # What happened in it that no proof takes up, and may not happen at other parameters.
     uncovered: Sequence[str]
 
     @classmethod
@@ -112,19 +83,13 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """How many runs were above a limit.
+    """How many runs were above a limit."""
 
-    Parameters
-    ----------
-    above, runs : int
-        How many of how many.
-    low, high : float
-        Ends of the exact interval of Clopper and Pearson (1934) for the probability of it, with
-        the confidence `CONFIDENCE`.
-    """
-
+    # above, runs: how many of how many.
     above: int
     runs: int
+    # Ends of the exact interval of Clopper and Pearson (1934) for the probability of it, with the
+    # confidence `CONFIDENCE`.
     low: float
     high: float
 

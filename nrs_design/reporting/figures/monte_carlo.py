@@ -29,27 +29,13 @@ _PALE = 0.45
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """The peaks of one quantity.
+    """The peaks of one quantity."""
 
-    Parameters
-    ----------
-    label : str
-        With its unit.
-    peaks : ndarray, shape (N,)
-        One for each run.
-    limits : tuple of float
-        Of the scenarios; equal ones once.
-    bound : float or None
-        Certified.
-    holds : bool
-        Whether the bound is about these runs.
-    """
-
-    label: str
-    peaks: Array
-    limits: tuple[float, ...]
-    bound: float | None
-    holds: bool
+    label: str  # With its unit
+    peaks: Array  # Shape (N,). One for each run.
+    limits: tuple[float, ...]  # Of the scenarios; equal ones once
+    bound: float | None  # Certified
+    holds: bool  # Whether the bound is about these runs
 
 
 @styled

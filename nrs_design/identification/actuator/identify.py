@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.doubts import find_doubts
 from nrs_design.identification.actuator.frequency_fit import fit_phasors, fit_response
-from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures, fit_of
+from nrs_design.identification.actuator.model import FROM_THE_ROW, ActuatorFit, MotorFigures, fit_of
 from nrs_design.identification.actuator.phasors import Phasors, phasors_of
 from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
@@ -80,9 +80,9 @@ class ActuatorIdentification:
             return self.doubts
         return (
             *self.doubts,
-            f"the motor has a dead time of {late.low:.3g} s to {late.high:.3g} s, which the proof "
-            "leaves out: it acts on the motion loop, so that it is no part of sampling.delay (the "
-            "age of the force sample)",
+            f"the motor has a dead time of {late.low:.3g} s to {late.high:.3g} s ({FROM_THE_ROW}), "
+            "which the proof leaves out: it acts on the motion loop, so that it is no part of "
+            "sampling.delay (the age of the force sample)",
         )
 
     @property

@@ -27,6 +27,13 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+# A log does not say when within a sample a command began.
+FROM_THE_ROW = (
+    "counted from the row that first holds a command; one that began before it, by up to a sample, "
+    "is later by as much"
+)
+
+
 @dataclass(frozen=True, slots=True)
 class MotorFigures:
     """What follows from the fit and the data sheet."""

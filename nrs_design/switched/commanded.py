@@ -49,7 +49,7 @@ def with_command(
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
-    if not plain or state.coordinates != "deflection" or not state.touched:
+    if not plain or spec.coordinates != "deflection" or not state.touched:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something, in "
             "deflection coordinates",

@@ -107,7 +107,11 @@ def test_a_load_is_in_all_that_is_said(tmp_path):
         ("15.8", "", "it is stable below 15.7"),
         # Delay 0 is unstable here, too, and is named first.
         ("43", "", "it is stable below 15.7"),
-        ("43", "{nominal: 0.0351 s, range: [0.035 s, 0.036 s]}", "it is stable with the nominal motor below 15.7"),
+        (
+            "43",
+            "{nominal: 0.0351 s, range: [0.035 s, 0.036 s]}",
+            "it is stable with the nominal motor below 15.7",
+        ),
     ],
 )
 def test_an_unstable_loop_is_told_the_limit_at_the_worst_age(tmp_path, stiffness, motor, said):

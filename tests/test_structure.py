@@ -321,7 +321,7 @@ SHARED = {
     # One operation on numbers of other types, one question to another noun.
     *("add", "multiply", "is_stable", "read_integer", "content_id", "too_stiff", "best_rate"),
     # In continuous time, and sampled.
-    *("force_rows", "outputs_of"),
+    "force_rows",
 }
 
 

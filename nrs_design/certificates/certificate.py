@@ -14,7 +14,7 @@ from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTAC
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.system_fields import system_fields
 
-SCHEMA = "nrs-design/certificate/5"
+SCHEMA = "nrs-design/certificate/6"
 # It named the modes only; what they are had to be assembled from the spec.
 FORMER = "nrs-design/certificate/3"
 # What says nothing about the claim, so that the id does not cover it.

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.clock import keeps_turns, on_turn
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import CommonQuadratic, UnstableMode, UnstablePeriod
+from nrs_design.proof.evidence import UnstableMode, UnstablePeriod
 from nrs_design.proof.switching import Clock
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, matrix, pushed
 
 ROUND = Clock(3, ("a", "b"))
@@ -115,4 +116,4 @@ def test_kinds_that_know_no_turns_show_nothing():
     system = doubled_in_turns(4)
     assert UnstableMode("m0", "2").find_fault(replace(system, clock=None)) is None
     assert "take turns" in UnstableMode("m0", "2").find_fault(system)
-    assert "take turns" in CommonQuadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)
+    assert "every place" in common_quadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)

@@ -15,11 +15,11 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.coupled import AxesCoupling
 from nrs_design.switched.sampled_coupled import pushes
+from tests.proof.graphs import shape_of
 from tests.search.support import thesis_robot
 from tests.switched.test_coupled import rotation
 
@@ -131,7 +131,7 @@ def proof(*Bt, **sections):
 
 def test_both_controllers_are_proved_with_rounding_and_loss_of_contact():
     found = proof("2.15", "1.5")
-    assert isinstance(found.evidence, CoupledAxes)
+    assert shape_of(found.evidence) == "coupled-axes"
     assert found.evidence.covers_rounding
     claim = found.evidence.claim(found.system)
     assert claim.startswith("For any number of axes that act on each other")

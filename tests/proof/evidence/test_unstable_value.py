@@ -7,7 +7,6 @@ import pytest
 
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
-    CommonQuadratic,
     UnstableMixture,
     UnstableMode,
     UnstablePeriod,
@@ -19,6 +18,7 @@ from nrs_design.proof.switching import FixedParameter, Switching
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.search.gradient_settings import Gradient
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import (
     PAIR,
     PAIRS,
@@ -165,7 +165,7 @@ def test_resets_are_not_covered_unless_nothing_switches():
 
 
 def test_parts_of_other_kinds_show_nothing():
-    stable = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 4))
+    stable = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 4))
     assert UnstableValue(HALF, stable).find_fault(hidden_value(1)) is not None
     nested = UnstableValue(HALF, MIDDLE)
     assert nested.find_fault(hidden_value(3)) is not None

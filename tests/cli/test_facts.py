@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.cli.margins_summary import loop_summary
+from nrs_design.cli.facts import loop_facts
 from nrs_design.pipeline.margins import ProofMargins
 from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines
@@ -25,7 +25,7 @@ FOUND = MarginBrackets(
 
 
 def test_doubles_stay_on_the_side_that_is_true():
-    summary = loop_summary(FOUND)
+    summary = loop_facts(FOUND)
     assert summary["delay"] == {
         "proved": 2.0,
         "refuted": None,
@@ -38,7 +38,7 @@ def test_doubles_stay_on_the_side_that_is_true():
     assert Fraction(summary["period"]["refuted"]) >= THIRD
     (kept,) = summary["force_limit"]["disturbances"]
     assert Fraction(kept["kept_up_to"]) < THIRD < Fraction(kept["broken_in_simulation_at"])
-    assert loop_summary(MarginBrackets(None, None, None)) == {}
+    assert loop_facts(MarginBrackets(None, None, None)) == {}
 
 
 def test_what_is_not_found_is_said():

@@ -14,7 +14,7 @@ from nrs_design.proof.evidence import (
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.reporting.document import Table
-from nrs_design.reporting.kinds import page_of
+from nrs_design.reporting.evidence import page_of
 from tests.simulation.systems import system
 
 ONE = CommonQuadratic(((1,),), 0, Fraction(1, 2))
@@ -35,7 +35,7 @@ def test_blocks_are_called_by_the_names_of_their_pages():
     page = page_of(CASCADE, BlockTriangular(BLOCKS, ((0, ONE), (1, FOURTH))))
     assert table(page) == {
         "1": ("x1", "common quadratic function", "0.5"),
-        "2": ("x2", "polynomial of degree 4", "0.25"),
+        "2": ("x2", "common polynomial of degree 4", "0.25"),
     }
 
 

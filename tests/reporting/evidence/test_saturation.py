@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.reporting.document import Table
-from nrs_design.reporting.kinds import page_of
+from nrs_design.reporting.evidence import page_of
 from tests.proof.systems import genuine
 
 SYSTEM, EVIDENCE = genuine("saturated-ellipsoid")

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from nrs_design.proof.constant import system_at
 from nrs_design.reporting.document import Paragraph
-from nrs_design.reporting.kinds import page_of
+from nrs_design.reporting.evidence import page_of
 from tests.proof.systems import genuine
 
 SYSTEM, EVIDENCE = genuine("unstable-value")
@@ -16,5 +16,5 @@ def test_it_is_the_page_of_its_part_at_one_value():
     assert "a narrower range may be stable" in page.limits()[-1]
     first, *rest = page.run().blocks
     assert isinstance(first, Paragraph)
-    assert "simulated at this value of the parameter" in first.text
+    assert "simulated at the value of the parameter" in first.text
     assert [block.title for block in rest] == [block.title for block in part.run().blocks]

@@ -9,9 +9,42 @@ from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.formatting import shortened
+from nrs_design.spec.robot_bounds import ON_TRUST
 
 # Modes that a sentence names.
 NAMED = 8
+
+_DECIDED = (
+    "The decision is exact: the modes are rational matrices, the numbers of the certificate are "
+    "integers over a power of two, and integer arithmetic decides that every form is positive "
+    "definite and every inequality of the claim holds. The solver only proposed the numbers"
+)
+_ROUNDS = (
+    "A round is what both loops take to meet again, and each step of it has a function of its own, "
+    "which decreases to that of the next step. The claim is about every sample of the faster loop."
+)
+_ALL_AXES = (
+    "The function is the sum of w' Q w over all axes, with the same Q for each. Every axis may be "
+    "under a controller of its own, in contact or not, at any time: for each way in which axes act "
+    "on each other there is one multiplier for all modes. How the inertia depends on the pose, and "
+    "how fast it changes, does not matter."
+)
+_IN_THE_AIR = (
+    "In free motion the deflection is left out of the function. So it measures motion, force and "
+    "penetration, and not how far the axis has moved away from the surface: once it has come to "
+    "rest in the air, it stays there."
+)
+_MOVED_REST = (
+    "A force reference or a velocity command that pushes into the environment: they move the point "
+    "of rest, and the bound is about the point of rest without them."
+)
+_BEYOND = "Poses and speeds in which the links act more on each other than the bounds say."
+_DECLARED = "The bounds are declared by the spec, and nothing here shows them."
+_OF_ROBOT = (
+    "The bounds are taken on trust from the file of bounds of the robot, over all poses of a "
+    "workspace; `nrs-design gate` and `nrs-design verify --bounds` compute them again from its "
+    "spec. That the robot stays in there, and below the speed, is taken for granted."
+)
 
 
 def decay_factor(system: SwitchedSystem) -> str:
@@ -101,19 +134,20 @@ def outside_the_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Itera
         yield "Switches that the spec does not list."
 
 
-def decision(how: str) -> str:
-    """Say how the decision was made; a phrase says what was decided about which numbers."""
-    return (
-        f"The decision is exact: the modes are rational matrices, {how}; a second library agreed."
-    )
+def decision(system: SwitchedSystem, *, ruled: bool = False) -> str:
+    """Say how a proof was decided, and on what.
 
-
-def ruled_decision(system: SwitchedSystem, how: str) -> str:
-    """Say how the decision was made where exponentials over dwell times may be part of it."""
-    switching = system.switching
-    if system.time is Time.CONTINUOUS and (switching.dwell_time > 0 or switching.stays):
-        how += "; exponentials over the dwell time are enclosed rigorously, in balls"
-    return decision(how)
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What it is about.
+    ruled : bool
+        It rests on the rules of switching, so that exponentials over dwell times may be part of it.
+    """
+    switching, text = system.switching, _DECIDED
+    if ruled and system.time is Time.CONTINUOUS and (switching.dwell_time > 0 or switching.stays):
+        text += "; exponentials over the dwell time are enclosed rigorously, in balls"
+    return f"{text}; a second library agreed."
 
 
 def all_corners(
@@ -150,6 +184,47 @@ def all_corners(
 def allowed_signals(system: SwitchedSystem) -> str:
     """Say under which switching a refuted claim would have been made."""
     return "arbitrary switching" if system.switching.is_arbitrary else "the declared switching"
+
+
+def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]:
+    """Say what the functions measure, where they are not simply a norm of all states.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    lost : bool
+        The functions cover the loss of contact.
+    each : bool
+        There is one for each mode, or for each step of a round.
+    """
+    if system.clock is not None:
+        yield _ROUNDS
+    elif lost and each:
+        yield "Each mode has a function; the largest of them decreases in every step."
+    if system.couplings:
+        yield _ALL_AXES
+    if lost:
+        yield _IN_THE_AIR
+
+
+def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
+    """Say what a proof with functions leaves open.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    lost : bool
+        The functions cover the loss of contact.
+    """
+    if lost or system.clock is not None or system.couplings:
+        yield _MOVED_REST
+    if system.clock is not None:
+        yield "Two loops whose periods drift against each other: they meet at every round."
+    if system.couplings:
+        on_trust = any(ON_TRUST in text for text in system.assumptions)
+        yield f"{_BEYOND} {_OF_ROBOT if on_trust else _DECLARED}"
 
 
 NO_FORECAST = (

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import ast
 import re
-from pathlib import Path
 
 import pytest
 
 from nrs_design.proof import evidence as proof
-from nrs_design.reporting import kinds
 from nrs_design.reporting.document import Illustration
-from nrs_design.reporting.kinds import KINDS, page_of
+from nrs_design.reporting.evidence import offers, page_of
 from tests.package import FILES, PACKAGE, nodes_of
 from tests.proof.systems import SYSTEMS, genuine
 
-CLASSES = tuple(map(proof.class_of, proof.KINDS))
 NAMES = frozenset(proof.KINDS.values())
 TEXTS = frozenset(proof.KINDS)
 # What says the most, or takes long to prove, is left to the slow tests.
@@ -34,29 +31,18 @@ LONG = frozenset(
 )
 
 
-def test_every_kind_has_one_page_of_its_own():
-    assert set(KINDS) == set(CLASSES)
-    assert len(set(KINDS.values())) == len(KINDS)
+def test_every_kind_has_a_row_in_the_table_of_what_it_offers():
+    assert set(offers._OFFERS) == TEXTS
 
 
-def test_a_page_is_in_a_file_that_is_named_like_that_of_its_evidence():
-    for kind, page in KINDS.items():
-        assert page.__module__.rpartition(".")[2] == kind.__module__.rpartition(".")[2]
-    files = {path.stem for path in Path(kinds.__file__).parent.glob("*.py")}
-    assert files - {"__init__", "abstract"} == {kind.kind.replace("-", "_") for kind in KINDS}
-
-
-def test_outside_proof_and_search_only_the_page_names_its_kind():
+def test_outside_proof_and_search_only_the_table_names_a_kind():
     files = {path.relative_to(PACKAGE): path.read_text("utf-8") for path in PACKAGE.rglob("*.py")}
-    words = {
-        path.as_posix(): set(re.findall(r"\w+", text))
-        for path, text in files.items()
-        if path.parts[0] not in ("proof", "search")
-    }
-    for kind in CLASSES:
-        file = kind.kind.replace("-", "_")
-        named = {path for path, said in words.items() if kind.__name__ in said}
-        assert named == {"reporting/kinds/__init__.py", f"reporting/kinds/{file}.py"}
+    for path, text in files.items():
+        if path.parts[0] in ("proof", "search"):
+            continue
+        assert not NAMES & set(re.findall(r"\w+", text)), path
+        quoted = TEXTS & set(re.findall(r'"([\w-]+)"', text))
+        assert not quoted or path.as_posix() == "reporting/evidence/offers.py", path
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """`nrs-design simulate --worst-case` and `--monte-carlo`, as a user types them."""
 
-import json
 import os
 import signal
 import subprocess
@@ -10,7 +9,7 @@ import time
 import pytest
 
 from tests.simulation.interactions import text_of
-from tests.support import run
+from tests.support import document_of, run
 
 LAW = {"insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}"}
 SOFT = {
@@ -29,9 +28,7 @@ def spec(tmp_path):
 
 @pytest.mark.slow
 def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
-    result = run("simulate", spec, "--worst-case", "--json", "--out", "runs", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = document_of("simulate", spec, "--worst-case", "--out", "runs", cwd=tmp_path, code=0)
     assert document["schema"] == "nrs-design/simulate/1"
     found = {item["output"]: item for item in document["worst_case"]["found"]}
     assert found.keys() == {"force", "velocity", "deflection"}
@@ -49,10 +46,9 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
 
 @pytest.mark.slow
 def test_shares_are_printed_with_their_intervals(spec, tmp_path):
-    result = run("simulate", spec, "--monte-carlo", "8", "--no-bound", "--json", "--out", ".",
-                 cwd=tmp_path)  # fmt: skip
-    assert result.returncode == 0, result.stderr
-    study = json.loads(result.stdout)["monte_carlo"]
+    study = document_of(
+        "simulate", spec, "--monte-carlo", "8", "--no-bound", "--out", ".", cwd=tmp_path, code=0
+    )["monte_carlo"]
     assert (study["runs"], study["seed"], study["stopped"]) == (8, 0, 0)
     share = study["above_limit"]["torque"]
     assert share["low"] <= share["share"] <= share["high"]
@@ -85,11 +81,8 @@ def test_an_interrupted_study_goes_on_as_if_nothing_had_been(spec, tmp_path):
     assert "goes on from there" in said
     kept = file.read_bytes().count(b"\n") - 1
     assert 6 <= kept < 200
-    again = run(*command[3:], cwd=tmp_path)
-    assert again.returncode == 0, again.stderr
-    at_once = run(*command[3:-1], "other.jsonl", cwd=tmp_path)
-    assert at_once.returncode == 0
-    assert again.stdout == at_once.stdout
+    again = run(*command[3:], cwd=tmp_path, code=0)
+    assert again.stdout == run(*command[3:-1], "other.jsonl", cwd=tmp_path, code=0).stdout
     assert file.read_bytes() == (tmp_path / "other.jsonl").read_bytes()
 
 
@@ -97,15 +90,13 @@ def test_runs_are_kept_behind_no_link(spec, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "led").symlink_to("elsewhere")
     command = ("simulate", spec, "--monte-carlo", "2", "--no-bound", "--resume")
-    result = run(*command, "led/runs.jsonl", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run(*command, "led/runs.jsonl", cwd=tmp_path, code=2)
     assert "lies behind the symbolic link led" in result.stderr
     assert not list((tmp_path / "elsewhere").iterdir())
 
 
 def test_options_that_nothing_would_heed_are_refused(spec, tmp_path):
-    result = run("simulate", spec, "--worst-case", "--scenario", "run", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", spec, "--worst-case", "--scenario", "run", cwd=tmp_path, code=2)
     assert not result.stdout
     assert "not within a scenario" in result.stderr
 
@@ -113,8 +104,7 @@ def test_options_that_nothing_would_heed_are_refused(spec, tmp_path):
 def test_what_no_adversary_plays_against_is_said(tmp_path):
     path = tmp_path / "small.nrs.yaml"
     path.write_text(text_of({"position": "{type: position}"}, SOFT))
-    result = run("simulate", path, "--worst-case", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", path, "--worst-case", cwd=tmp_path, code=2)
     assert "position is given a position" in result.stderr
     assert "--monte-carlo" in result.stderr
 
@@ -125,9 +115,7 @@ def test_other_commands_in_a_file_of_the_spec_are_another_study(tmp_path):
     command = ("simulate", path, "--monte-carlo", "2", "--resume", "runs.jsonl", "--no-bound")
     for speed, code in ((4, 0), (5, 2), (4, 0)):
         (tmp_path / "hand.csv").write_text(f"time_s,velocity_deg_s\n0,0\n0.1,{speed}\n0.2,0\n")
-        result = run(*command, cwd=tmp_path)
-        assert result.returncode == code, result.stderr
+        run(*command, cwd=tmp_path, code=code)
     assert (tmp_path / "runs.jsonl").read_bytes().count(b"\n") == 3
-    other = run(*command, "--engine", "sampled", cwd=tmp_path)
-    assert other.returncode == 2
+    other = run(*command, "--engine", "sampled", cwd=tmp_path, code=2)
     assert "was begun with no --engine, not --engine sampled" in other.stderr

@@ -20,7 +20,6 @@ from tests.support import ROOT
 KNOWN_CYCLES = {
     ("nrs_design.proof.evidence", "nrs_design.proof.evidence.block_triangular"),
     ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.block_triangular"),
-    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.unstable_value"),
     # The root names for type checkers what it loads when it is asked, and holds the version.
     ("nrs_design.api", "nrs_design"),
 }

@@ -15,6 +15,7 @@ from nrs_design.proof.evidence import (
     ConewiseQuadratic,
     ConstantForce,
     CoupledAxes,
+    GrowingSequence,
     InvariantEllipsoid,
     ModePolynomial,
     ModeQuadratic,
@@ -22,11 +23,6 @@ from nrs_design.proof.evidence import (
     ParameterQuadratic,
     PeriodicQuadratic,
     SaturatedEllipsoid,
-    UnstableContact,
-    UnstableMixture,
-    UnstableMode,
-    UnstablePeriod,
-    UnstableValue,
 )
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.kinds.abstract import AbstractKindPage
@@ -38,6 +34,7 @@ from nrs_design.reporting.kinds.conewise_polynomial import ConewisePolynomialPag
 from nrs_design.reporting.kinds.conewise_quadratic import ConewiseQuadraticPage
 from nrs_design.reporting.kinds.constant_force import ConstantForcePage
 from nrs_design.reporting.kinds.coupled_axes import CoupledAxesPage
+from nrs_design.reporting.kinds.growing_sequence import GrowingSequencePage
 from nrs_design.reporting.kinds.invariant_ellipsoid import InvariantEllipsoidPage
 from nrs_design.reporting.kinds.mode_polynomial import ModePolynomialPage
 from nrs_design.reporting.kinds.mode_quadratic import ModeQuadraticPage
@@ -45,11 +42,6 @@ from nrs_design.reporting.kinds.no_common_quadratic import NoCommonQuadraticPage
 from nrs_design.reporting.kinds.parameter_quadratic import ParameterQuadraticPage
 from nrs_design.reporting.kinds.periodic_quadratic import PeriodicQuadraticPage
 from nrs_design.reporting.kinds.saturated_ellipsoid import SaturatedEllipsoidPage
-from nrs_design.reporting.kinds.unstable_contact import UnstableContactPage
-from nrs_design.reporting.kinds.unstable_mixture import UnstableMixturePage
-from nrs_design.reporting.kinds.unstable_mode import UnstableModePage
-from nrs_design.reporting.kinds.unstable_period import UnstablePeriodPage
-from nrs_design.reporting.kinds.unstable_value import UnstableValuePage
 
 KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     BlockTriangular: BlockTriangularPage,
@@ -60,6 +52,7 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     ConewiseQuadratic: ConewiseQuadraticPage,
     ConstantForce: ConstantForcePage,
     CoupledAxes: CoupledAxesPage,
+    GrowingSequence: GrowingSequencePage,
     InvariantEllipsoid: InvariantEllipsoidPage,
     ModePolynomial: ModePolynomialPage,
     ModeQuadratic: ModeQuadraticPage,
@@ -67,11 +60,6 @@ KINDS: Mapping[type[AbstractEvidence], type[AbstractKindPage[Any]]] = {
     ParameterQuadratic: ParameterQuadraticPage,
     PeriodicQuadratic: PeriodicQuadraticPage,
     SaturatedEllipsoid: SaturatedEllipsoidPage,
-    UnstableContact: UnstableContactPage,
-    UnstableMixture: UnstableMixturePage,
-    UnstableMode: UnstableModePage,
-    UnstablePeriod: UnstablePeriodPage,
-    UnstableValue: UnstableValuePage,
 }
 
 

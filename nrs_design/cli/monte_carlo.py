@@ -2,36 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from functools import partial
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.command import Answer, spec_facts
+from nrs_design.cli.printing import insist, note, say
+from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.output import Beginning
     from nrs_design.pipeline.monte_carlo import MonteCarlo
     from nrs_design.simulation.monte_carlo import Outcome, Share
 
-
-@dataclass(frozen=True, slots=True)
-class MonteCarloSummary:
-    """Runs, and what is told of them."""
-
-    asked: MonteCarlo  # What was simulated
-    outcomes: Sequence[Outcome]  # Of all runs
-    shares: Mapping[str, Share]  # Runs above the limits
-    # Certified, in SI, and why it is not about these runs.
-    bounds: Mapping[str, tuple[float, tuple[str, ...]]]
-    files: Sequence[Path]  # That were written
+# By quantity: a certified bound, in SI, and why it is not about these runs.
+Bounds = Mapping[str, tuple[float, tuple[str, ...]]]
 
 
 def monte_carlo(
@@ -41,8 +32,8 @@ def monte_carlo(
     proof: Certificate | None,
     out: Path | None,
     step: Progress,
-) -> Callable[..., int]:
-    """Simulate, and write the figure and the table; return what prints the result.
+) -> Answer:
+    """Simulate, and write the figure and the table.
 
     Parameters
     ----------
@@ -59,15 +50,17 @@ def monte_carlo(
     step : callable
         Told how far it is.
     """
-    from nrs_design.output import check_place
+    from nrs_design.output import OUTCOMES, check_place
     from nrs_design.simulation.monte_carlo import held_against, shares
 
-    for path, beginning in _places(asked, out):
-        check_place(path, beginning)
+    files = None
+    if out is not None:
+        files = RunFiles(out, f"{asked.designed.spec.name}.monte-carlo", OUTCOMES, has_arrays=False)
+        files.check()
     if resume is not None:
         # What a file there holds is looked at as it is read.
         check_place(resume)
-    written = {} if proof is None else _bounds(asked, proof)
+    certified = {} if proof is None else _bounds(asked, proof)
     outcomes: list[Outcome] = []
     try:
         _simulate(asked, jobs, resume, outcomes, step)
@@ -75,13 +68,18 @@ def monte_carlo(
         kept = "nothing is kept, for want of --resume FILE"
         if resume is not None:
             kept = f"the same command with --resume {resume} goes on from there"
-        note(f"interrupted after {len(outcomes)} of {asked.runs} runs: {kept}")
+        insist(f"interrupted after {len(outcomes)} of {asked.runs} runs: {kept}")
         raise typer.Exit(exit_codes.INTERRUPTED) from None
     step("figures")
     found = shares(outcomes, asked.limits)
-    bounds = {name: held_against(bound, outcomes) for name, bound in written.items()}
-    study = MonteCarloSummary(asked, outcomes, found, bounds, _write(asked, out, outcomes, bounds))
-    return partial(_show, study)
+    bounds = {name: held_against(bound, outcomes) for name, bound in certified.items()}
+    written = [] if files is None else _write(asked, files, outcomes, bounds)
+    stopped = sum(one.stopped is not None for one in outcomes)
+    return Answer(
+        lambda: _facts(asked, outcomes, found, bounds) | {"files": written},
+        lambda: _show(asked, outcomes, found, bounds, stopped),
+        exit_codes.INCONCLUSIVE if stopped else exit_codes.PROVED,
+    )
 
 
 def _simulate(
@@ -117,8 +115,7 @@ def _head(asked: MonteCarlo) -> dict[str, Any]:
     # A spec names files of commands, which its hash does not hold.
     commands = repr([one.profile for one in asked.scenarios])
     return {
-        "spec": loaded.spec.name,
-        "spec_sha256": loaded.sha256,
+        **spec_facts(loaded),
         "options": asdict(asked.wanted) | {"names": list(asked.wanted.names)},
         "commands_sha256": sha256(commands.encode()).hexdigest(),
         "version": __version__,
@@ -142,80 +139,53 @@ def _bounds(asked: MonteCarlo, proof: Certificate) -> dict[str, tuple[float, tup
     return found
 
 
-def _places(asked: MonteCarlo, out: Path | None) -> list[tuple[Path, Beginning]]:
-    from nrs_design.output import OUTCOMES, PNG, SVG
-
-    if out is None:
-        return []
-    beginnings: dict[str, Beginning] = {"csv": OUTCOMES, "svg": SVG, "png": PNG}
-    stem = f"{asked.designed.spec.name}.monte-carlo"
-    return [(out / f"{stem}.{suffix}", beginning) for suffix, beginning in beginnings.items()]
-
-
 def _write(
-    asked: MonteCarlo,
-    out: Path | None,
-    outcomes: Sequence[Outcome],
-    bounds: Mapping[str, tuple[float, tuple[str, ...]]],
-) -> list[Path]:
-    if out is None:
-        return []
-    from nrs_design.output import write_outputs
-    from nrs_design.reporting.images import to_png, to_svg_file
+    asked: MonteCarlo, files: RunFiles, outcomes: Sequence[Outcome], bounds: Bounds
+) -> list[str]:
     from nrs_design.reporting.monte_carlo import draw_outcomes, outcomes_table
 
     levels = {name: (level, not reasons) for name, (level, reasons) in bounds.items()}
     figure = draw_outcomes(outcomes, asked.limits, levels)
-    contents: tuple[str | bytes, ...] = (
-        outcomes_table(outcomes),
-        to_svg_file(figure),
-        to_png(figure),
-    )
-    places = _places(asked, out)
-    write_outputs(
-        [(path, content, ours) for content, (path, ours) in zip(contents, places, strict=True)]
-    )
-    return [path for path, _ in places]
+    written = write_runs(files.outputs(outcomes_table(outcomes), figure))
+    note(f"written to {files.folder}")
+    return written
 
 
-def _show(study: MonteCarloSummary, *, as_json: bool, quiet: bool) -> int:
+def _show(
+    asked: MonteCarlo,
+    outcomes: Sequence[Outcome],
+    found: Mapping[str, Share],
+    bounds: Bounds,
+    stopped: int,
+) -> None:
     from nrs_design.reporting.monte_carlo import COLUMNS, MEANING, share_rows
 
-    asked, outcomes = study.asked, study.outcomes
-    if study.files:
-        note(f"written to {study.files[0].parent}", quiet=quiet)
-    stopped = sum(one.stopped is not None for one in outcomes)
-    code = exit_codes.INCONCLUSIVE if stopped else exit_codes.PROVED
-    if as_json:
-        print_json("simulate", _document(study))
-    elif not quiet:
-        title = f"{asked.designed.spec.name}: {asked.runs} runs, seed {asked.seed}"
-        print_table(title, COLUMNS, share_rows(outcomes, asked.limits, study.shares))
-        _say_bounds(study)
-        if stopped:
-            say(f"  STOPPED: {stopped} runs ended early; they count as above every limit")
-        say(MEANING)
-    return code
+    title = f"{asked.designed.spec.name}: {asked.runs} runs, seed {asked.seed}"
+    print_table(title, COLUMNS, share_rows(outcomes, asked.limits, found))
+    _say_bounds(bounds)
+    if stopped:
+        say(f"  STOPPED: {stopped} runs ended early; they count as above every limit")
+    say(MEANING)
 
 
-def _say_bounds(study: MonteCarloSummary) -> None:
+def _say_bounds(bounds: Bounds) -> None:
     from fractions import Fraction
 
     from nrs_design.proof.bounds import upper
 
-    for name, (level, reasons) in study.bounds.items():
+    for name, (level, reasons) in bounds.items():
         unit = "N*m" if name == "torque" else "rad/s"
         say(f"  certified bound on the {name}: {upper(Fraction(level))} {unit}")
         for reason in reasons:
             say(f"    it is not about these runs: {reason}")
 
 
-def _document(study: MonteCarloSummary) -> dict[str, Any]:
-    asked, outcomes = study.asked, study.outcomes
+def _facts(
+    asked: MonteCarlo, outcomes: Sequence[Outcome], found: Mapping[str, Share], bounds: Bounds
+) -> dict[str, Any]:
     names = dict.fromkeys(one.scenario for one in outcomes)
     return {
-        "spec": asked.designed.spec.name,
-        "spec_sha256": asked.designed.loaded.sha256,
+        **spec_facts(asked.designed.loaded),
         "monte_carlo": {
             "runs": asked.runs,
             "seed": asked.seed,
@@ -223,15 +193,14 @@ def _document(study: MonteCarloSummary) -> dict[str, Any]:
             "scenarios": {name: sum(one.scenario == name for one in outcomes) for name in names},
             "limits": {name: dict(asked.limits[name]) for name in names},
             "above_limit": {
-                name: asdict(share) | {"share": share.value} for name, share in study.shares.items()
+                name: asdict(share) | {"share": share.value} for name, share in found.items()
             },
             "largest": {
                 name: max(one.peaks[name] for one in outcomes) for name in outcomes[0].peaks
             },
             "certified_bounds": {
                 name: {"level": level, "holds_for_these_runs": not reasons, "uncovered": reasons}
-                for name, (level, reasons) in study.bounds.items()
+                for name, (level, reasons) in bounds.items()
             },
         },
-        "files": [str(path) for path in study.files],
     }

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
 from nrs_design.cli.simulate_options import (
     Bound,
@@ -31,14 +32,13 @@ from nrs_design.cli.simulate_options import (
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed
     from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import LoadedSpec
 
 
+@command("simulate")
 def simulate(
     spec: SpecFile,
     scenario: Scenarios = None,
@@ -55,9 +55,7 @@ def simulate(
     jobs: Jobs = 1,
     seed: Seed = 0,
     resume: Resume = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Simulate the interaction of robot, tissue and surgeon, and measure safety and agility.
 
     Scenarios are in the spec; without any, the command of thesis fig. 6.7 moves into the first
@@ -78,25 +76,12 @@ def simulate(
     many = Many(worst, monte_carlo, seed, jobs, resume)
     many.check((scenario, engine, period, delay, outer_period, max_steps))
     loaded = read_spec(spec)
-    _check_kind(loaded)
     if engine is None and timed:
         engine = EngineOption.SAMPLED
     how = None if engine is None else str(engine)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
-    with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
-        show = _simulate(loaded, wanted, many, certificate, out, step, bound=bound)
-    raise typer.Exit(show(as_json=as_json, quiet=quiet))
-
-
-def _check_kind(loaded: LoadedSpec) -> None:
-    from nrs_design.pipeline import wrong_kind
-
-    if loaded.spec.kind != "interaction-design":
-        raise wrong_kind(
-            loaded,
-            f"a spec of kind {loaded.spec.kind} describes no interaction",
-            "name a spec of kind interaction-design; see also `nrs-design robot track`",
-        )
+    with progress(f"simulating {loaded.spec.name}") as step:
+        return _simulate(loaded, wanted, many, certificate, out, step, bound=bound)
 
 
 def _simulate(
@@ -108,15 +93,14 @@ def _simulate(
     step: Progress,
     *,
     bound: bool,
-) -> Callable[..., int]:
-    """Run the scenarios, let an adversary search, or chance draw; return what prints the result."""
+) -> Answer:
+    """Run the scenarios, let an adversary search, or chance draw."""
     from nrs_design.cli.monte_carlo import monte_carlo
     from nrs_design.cli.simulate_scenarios import simulate_scenarios
     from nrs_design.cli.worst_case import worst_case
-    from nrs_design.pipeline import run_design
+    from nrs_design.pipeline import run_interaction
 
-    designed = run_design(loaded)
-    assert designed is not None
+    designed = run_interaction(loaded, "describes no interaction")
     prove = partial(_proof, designed, certificate, step, bound=bound)
     if many.worst:
         return worst_case(designed, prove(), many.seed, out, step)

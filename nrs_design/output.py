@@ -19,7 +19,6 @@ EXPORT = b'{\n  "schema": "nrs-design/export/'
 MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
 C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
 C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a test\n"
-C_AXES, C_AXES_HEADER = b"/* nrs-design C axes\n", b"/* nrs-design C header of axes\n"
 C_MONITOR, C_MONITOR_HEADER = (
     b"/* nrs-design C monitor\n",
     b"/* nrs-design C header of a monitor\n",

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from nrs_design.output import (
-    C_AXES,
-    C_AXES_HEADER,
     C_HEADER,
     C_MONITOR,
     C_MONITOR_HEADER,
@@ -47,8 +45,6 @@ class Format:
         Whether a processor runs it, so that the proof must be about the sampled loop.
     remarks : bool
         Whether the module also has ``remarks``, which says what rendered files lack.
-    provable : bool
-        Whether a proof of the sampled loop is about these files.
     """
 
     module: str
@@ -57,7 +53,6 @@ class Format:
     files: Mapping[str, bytes]
     executable: bool = False
     remarks: bool = False
-    provable: bool = True
 
 
 DESIGN = "a proof of the design"
@@ -77,15 +72,6 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             SAMPLED,
             {".h": C_HEADER, ".c": C_SOURCE},
             executable=True,
-        ),
-        "axes": Format(
-            "axes",
-            "C99: the admittances of three axes in one step, without the motor loop",
-            "--unproved: no proof is about this step",
-            {"_axes.h": C_AXES_HEADER, "_axes.c": C_AXES},
-            executable=True,
-            remarks=True,
-            provable=False,
         ),
         "vectors": Format(
             "vectors",

@@ -43,10 +43,6 @@ SCHEMA = (
 RESPONSE = re.compile(
     rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
 )
-OUTCOMES = (
-    b"run,scenario,seed,peak_torque_Nm,peak_deflection_rad,peak_velocity_rad_s,stopped,",
-    b"run,scenario,seed,peak_torque_Nm,peak_deflection_rad,peak_velocity_rad_s,stopped\n",
-)
 WORST_RUN = re.compile(
     rb"time_s,(?:torque_Nm,)?(?:velocity_rad_s,)?(?:deflection_rad,)?(?:[\w-]+,)*?state-[^\n]*,mode\n"
 )

@@ -23,23 +23,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Destinations:
-    """Where a result goes: into a spec, onto a page, to stdout.
+    """Where a result goes: into a spec, onto a page, to stdout."""
 
-    Parameters
-    ----------
-    spec : LoadedSpec or None
-        What it is merged into.
-    report : Path or None
-        The page: ends in .html or .pdf.
-    date : datetime or None
-        What the user wants to read as the date of the page.
-    as_json, quiet : bool
-        Print JSON instead of text; print no text.
-    """
-
-    spec: LoadedSpec | None
-    report: Path | None
-    date: datetime | None
+    spec: LoadedSpec | None  # What it is merged into
+    report: Path | None  # The page: ends in .html or .pdf
+    date: datetime | None  # What the user wants to read as the date of the page
+    # as_json, quiet: print JSON instead of text; print no text.
     as_json: bool
     quiet: bool
 

@@ -51,24 +51,12 @@ NOT_COMPUTED = "not computed: the force is sampled more often than the motion lo
 
 @dataclass(frozen=True, slots=True)
 class Achieved:
-    """The worst value of one measure.
+    """The worst value of one measure."""
 
-    Parameters
-    ----------
-    measure : Measure
-        What is measured.
-    value : float
-        The worst value, in SI units.
-    where : str
-        The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``.
-    goal : float or None
-        What the spec asks for, in SI units.
-    """
-
-    measure: Measure
-    value: float
-    where: str
-    goal: float | None = None
+    measure: Measure  # What is measured
+    value: float  # The worst value, in SI units
+    where: str  # The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``
+    goal: float | None = None  # What the spec asks for, in SI units
 
     @property
     def met(self) -> bool:
@@ -78,66 +66,32 @@ class Achieved:
 
 @dataclass(frozen=True, slots=True)
 class ContactCorner:
-    """One contact that a controller is measured in, and where gains and motor are then.
+    """One contact that a controller is measured in, and where gains and motor are then."""
 
-    Parameters
-    ----------
-    label : str
-        For people.
-    environment : str
-        Its name.
-    contact : AbstractLinearLaw
-        The environment there.
-    place : Place
-        Of the motor, and the age of the force sample.
-    designed : bool
-        Whether the gains are the designed ones.
-    home : bool
-        Whether they are, and this is the environment that the controller is designed for.
-    Mt, Bt : float or None
-        End of a declared range of the gain; None is the designed gain.
-    Kt : Fraction
-        Spring of the admittance, N m/rad; zero is none.
-    """
-
-    label: str
-    environment: str
-    contact: AbstractLinearLaw
-    place: Place
-    designed: bool
-    home: bool
+    label: str  # For people
+    environment: str  # Its name
+    contact: AbstractLinearLaw  # The environment there
+    place: Place  # Of the motor, and the age of the force sample
+    designed: bool  # Whether the gains are the designed ones
+    home: bool  # Whether they are, and this is the environment that the controller is designed for
+    # Mt, Bt: end of a declared range of the gain; None is the designed gain.
     Mt: float | None = None
     Bt: float | None = None
-    Kt: Fraction = Fraction(0)
+    Kt: Fraction = Fraction(0)  # Spring of the admittance, N m/rad; zero is none
 
 
 @dataclass(frozen=True)
 class Requirement:
-    """Goals of one impedance controller, and all that is needed to measure it.
+    """Goals of one impedance controller, and all that is needed to measure it."""
 
-    Parameters
-    ----------
-    axis : AbstractAxis or None
-        From which the modes follow; None where no loop is cut at one place. What takes a loop is
-        then not computed: NaN.
-    corners : tuple of ContactCorner
-        As `corners_of` gives them.
-    goals : tuple of (Measure, float)
-        Goals in SI units.
-    desired : float
-        Desired impedance, N m s/rad.
-    bandwidth : float
-        Highest frequency of the command, rad/s.
-    force_error : float
-        Bound on the lasting error of the force signal, N m.
-    """
-
+    # From which the modes follow; None where no loop is cut at one place. What takes a loop is then
+    # not computed: NaN.
     axis: AbstractAxis | None
-    corners: tuple[ContactCorner, ...]
-    goals: tuple[tuple[Measure, float], ...] = ()
-    desired: float = 0.0
-    bandwidth: float = 0.0
-    force_error: float = 0.0
+    corners: tuple[ContactCorner, ...]  # As `corners_of` gives them
+    goals: tuple[tuple[Measure, float], ...] = ()  # Goals in SI units
+    desired: float = 0.0  # Desired impedance, N m s/rad
+    bandwidth: float = 0.0  # Highest frequency of the command, rad/s
+    force_error: float = 0.0  # Bound on the lasting error of the force signal, N m
 
     @cached_property
     def nominal(self) -> tuple[ContactCorner, ...]:

@@ -34,24 +34,12 @@ _LEAST = 1e-12
 
 @dataclass(frozen=True)
 class LoopFamily:
-    """The loops of all admittances with one spring, in contacts that differ in stiffness alone.
+    """The loops of all admittances with one spring, in contacts that differ in stiffness alone."""
 
-    Parameters
-    ----------
-    axis : AbstractAxis
-        Whose modes they are.
-    contact : AbstractLinearLaw
-        Its own stiffness is not used.
-    spring : Fraction
-        Kt in N m/rad; zero is none.
-    place : Place
-        Of the motor, and the age of the force.
-    """
-
-    axis: AbstractAxis
-    contact: AbstractLinearLaw
-    spring: Fraction
-    place: Place
+    axis: AbstractAxis  # Whose modes they are
+    contact: AbstractLinearLaw  # Its own stiffness is not used
+    spring: Fraction  # Kt in N m/rad; zero is none
+    place: Place  # Of the motor, and the age of the force
 
     def loops(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
         """Return the open loops, cut where the law takes the force.

@@ -24,22 +24,18 @@ _REAL = 1e-7
 class Loops:
     """Many open loops ``N/D``.
 
-    Parameters
-    ----------
-    numerator, denominator : ndarray, shape (n, m + 1)
-        One polynomial in s per row, highest power first, padded to one length.
-    period : float or None
-        Sampled: the time between two samples in s, and the polynomials are in
-        ``(2/T) (z - 1)/(z + 1)`` instead of s.
-
     Notes
     -----
     Every margin of a loop that is not stable when it is closed is the worst possible: infinite
     where it should be small, 0 where it should be large. A margin that nothing limits is infinite.
     """
 
+    # numerator, denominator: shape (n, m + 1). One polynomial in s per row, highest power first,
+    # padded to one length.
     numerator: FloatArray
     denominator: FloatArray
+    # Sampled: the time between two samples in s, and the polynomials are in ``(2/T) (z - 1)/(z +
+    # 1)`` instead of s.
     period: float | None = None
 
     @property

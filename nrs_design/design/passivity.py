@@ -41,19 +41,13 @@ Polynomial = list[Fraction]
 
 @dataclass(frozen=True)
 class PassiveBand:
-    """Where a displayed admittance is passive.
+    """Where a displayed admittance is passive."""
 
-    Parameters
-    ----------
-    passive : Fraction or None
-        Wherever the parameters are in their ranges, it is passive at every frequency up to this
-        one, in rad/s; None for all frequencies, zero where nothing is shown.
-    broken : Fraction or None
-        At this one it is not, with parameters at a corner of the ranges: an exact refutation of
-        passivity. None where none was found.
-    """
-
+    # Wherever the parameters are in their ranges, it is passive at every frequency up to this one,
+    # in rad/s; None for all frequencies, zero where nothing is shown.
     passive: Fraction | None
+    # At this one it is not, with parameters at a corner of the ranges: an exact refutation of
+    # passivity. None where none was found.
     broken: Fraction | None
 
 

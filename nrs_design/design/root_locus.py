@@ -32,51 +32,24 @@ _LOCUS_DECADES = 9
 
 @dataclass(frozen=True)
 class PdDesign:
-    """PD controller ``Kd (s + zero)`` that puts the closed-loop poles where they are wanted.
+    """PD controller ``Kd (s + zero)`` that puts the closed-loop poles where they are wanted."""
 
-    Parameters
-    ----------
-    zero : float
-        Distance of the zero from the origin, 1/s.
-    derivative_gain : float
-        ``Kd``, in commands per rad/s.
-    zero_angle : float
-        Angle of the upper wanted pole seen from the zero, rad (thesis 4.28).
-    wanted_poles : tuple of complex
-        Upper and lower wanted pole, rad/s.
-    natural_frequency : float
-        Their distance from the origin, rad/s.
-    """
-
-    zero: float
-    derivative_gain: float
-    zero_angle: float
-    wanted_poles: tuple[complex, complex]
-    natural_frequency: float
+    zero: float  # Distance of the zero from the origin, 1/s
+    derivative_gain: float  # ``Kd``, in commands per rad/s
+    zero_angle: float  # Angle of the upper wanted pole seen from the zero, rad (thesis 4.28)
+    wanted_poles: tuple[complex, complex]  # Upper and lower wanted pole, rad/s
+    natural_frequency: float  # Their distance from the origin, rad/s
 
 
 @dataclass(frozen=True)
 class MotionLoopResponse:
-    """What a closed motion loop really does.
+    """What a closed motion loop really does."""
 
-    Parameters
-    ----------
-    poles : tuple of complex
-        Closed-loop poles, rad/s, rightmost first.
-    damping_ratio : float
-        Of the dominant pair.
-    natural_frequency : float
-        Of the dominant pair, rad/s.
-    overshoot : float
-        Of the unit step response, as a fraction of its final value, zeros included.
-    bandwidth : float
-        Lowest frequency where the gain has fallen by ``sqrt(2)``, rad/s; infinite if none.
-    """
-
-    poles: tuple[complex, ...]
-    damping_ratio: float
-    natural_frequency: float
-    overshoot: float
+    poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
+    damping_ratio: float  # Of the dominant pair
+    natural_frequency: float  # Of the dominant pair, rad/s
+    overshoot: float  # Of the unit step response, as a fraction of its final value, zeros included
+    # Lowest frequency where the gain has fallen by ``sqrt(2)``, rad/s; infinite if none.
     bandwidth: float
 
 

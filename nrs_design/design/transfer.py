@@ -26,11 +26,6 @@ BoolArray = NDArray[np.bool_]
 class TransferFunction:
     """A proper continuous-time transfer function.
 
-    Parameters
-    ----------
-    numerator, denominator : tuple of float
-        Coefficients, highest power of s first.
-
     Raises
     ------
     DesignError
@@ -38,6 +33,7 @@ class TransferFunction:
         numerator is zero, or the numerator has the higher degree.
     """
 
+    # numerator, denominator: coefficients, highest power of s first.
     numerator: tuple[float, ...]
     denominator: tuple[float, ...]
 

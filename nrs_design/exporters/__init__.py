@@ -28,30 +28,17 @@ from nrs_design.output import (
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """What a format is for, and which files it has.
+    """What a format is for, and which files it has."""
 
-    Parameters
-    ----------
-    module : str
-        Of this package; it has ``render``.
-    purpose : str
-        What the files are for, in a few words.
-    needs : str
-        What there must be before they are written.
-    files : mapping of str to bytes
-        What follows the name of the spec in the name of each file, and how that file begins: one
-        that begins otherwise is another's, and is not overwritten.
-    executable : bool
-        Whether a processor runs it, so that the proof must be about the sampled loop.
-    remarks : bool
-        Whether the module also has ``remarks``, which says what rendered files lack.
-    """
-
-    module: str
-    purpose: str
-    needs: str
+    module: str  # Of this package; it has ``render``
+    purpose: str  # What the files are for, in a few words
+    needs: str  # What there must be before they are written
+    # What follows the name of the spec in the name of each file, and how that file begins: one that
+    # begins otherwise is another's, and is not overwritten.
     files: Mapping[str, bytes]
+    # Whether a processor runs it, so that the proof must be about the sampled loop.
     executable: bool = False
+    # Whether the module also has ``remarks``, which says what rendered files lack.
     remarks: bool = False
 
 

@@ -18,15 +18,9 @@ WIDTH = 100
 
 @dataclass(frozen=True, slots=True)
 class CNames:
-    """What belongs to one law begins with its name.
+    """What belongs to one law begins with its name."""
 
-    Parameters
-    ----------
-    spec : str
-        Name of the spec.
-    """
-
-    spec: str
+    spec: str  # Name of the spec
 
     @property
     def lower(self) -> str:

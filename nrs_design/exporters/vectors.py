@@ -33,18 +33,11 @@ SPECIAL = (0, 1, 0x007FFFFF, 0x00800000, 0x7F7FFFFF, 0x3F800000, 0x7F800000, 0x7
 
 @dataclass(frozen=True, slots=True)
 class Vectors:
-    """Cases as bits.
+    """Cases as bits."""
 
-    Parameters
-    ----------
-    columns : tuple of str
-        Mode, inputs, states before, outputs, whether the step is valid, states after.
-    rows : ndarray of uint32
-        Shape (n, columns).
-    """
-
+    # Mode, inputs, states before, outputs, whether the step is valid, states after.
     columns: tuple[str, ...]
-    rows: NDArray[np.uint32]
+    rows: NDArray[np.uint32]  # Shape (n, columns)
 
 
 def render(export: Export) -> dict[str, bytes]:

@@ -60,18 +60,10 @@ _NO_NUMBERS = frozenset({"settles", "largest"})
 
 @dataclass(frozen=True)
 class Examiner:
-    """Makes obligations about one spec, each with its place.
+    """Makes obligations about one spec, each with its place."""
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    places : Places
-        Its lines and columns.
-    """
-
-    loaded: LoadedSpec
-    places: Places
+    loaded: LoadedSpec  # The spec
+    places: Places  # Its lines and columns
 
     @classmethod
     def of(cls, loaded: LoadedSpec) -> Examiner:

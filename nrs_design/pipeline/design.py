@@ -20,24 +20,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Designed:
-    """An interaction design with all that follows from its spec alone.
+    """An interaction design with all that follows from its spec alone."""
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec and where it came from.
-    spec : InteractionDesignSpec
-        What it says.
-    plant : Plant
-        That it describes; the later stages take this one.
-    design : ControllerDesign
-        The gains that ship.
-    """
-
-    loaded: LoadedSpec
-    spec: InteractionDesignSpec
-    plant: Plant
-    design: ControllerDesign
+    loaded: LoadedSpec  # The spec and where it came from
+    spec: InteractionDesignSpec  # What it says
+    plant: Plant  # That it describes; the later stages take this one
+    design: ControllerDesign  # The gains that ship
 
 
 @contextmanager

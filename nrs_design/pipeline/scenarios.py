@@ -23,54 +23,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Simulated:
-    """A scenario that has been simulated.
+    """A scenario that has been simulated."""
 
-    Parameters
-    ----------
-    scenario : Scenario
-        In SI.
-    run : Run
-        As far as it came.
-    metrics : mapping
-        Of the run, in SI.
-    parameters : mapping of str to float
-        What was drawn from its range, in SI.
-    """
-
-    scenario: Scenario
-    run: Run
-    metrics: Mapping[str, Any]
+    scenario: Scenario  # In SI
+    run: Run  # As far as it came
+    metrics: Mapping[str, Any]  # Of the run, in SI
+    # What was drawn from its range, in SI.
     parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """How scenarios are run; None leaves what the spec says.
+    """How scenarios are run; None leaves what the spec says."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Which; empty for all.
-    engine : {"exact", "sampled", "mujoco"} or None
-        By default sampled where the spec has sampling or tissue is not linear, else exact.
-    period : float or None
-        Of the sampled engine, in s; 2 ms where nothing says it.
-    delay : int or None
-        Age of its force samples, in samples; none where nothing says it.
-    outer_period : float or None
-        Of force, filter and admittance, in s; that of the motion loop where nothing says it.
-    draw : int or None
-        Seed with which parameters are drawn from their ranges; None for those of the scenario.
-    max_steps : int or None
-        Of each run.
-    """
-
-    names: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()  # Which; empty for all
+    # By default sampled where the spec has sampling or tissue is not linear, else exact.
     engine: str | None = None
-    period: float | None = None
-    delay: int | None = None
-    max_steps: int | None = None
+    period: float | None = None  # Of the sampled engine, in s; 2 ms where nothing says it
+    delay: int | None = None  # Age of its force samples, in samples; none where nothing says it
+    max_steps: int | None = None  # Of each run
+    # Of force, filter and admittance, in s; that of the motion loop where nothing says it.
     outer_period: float | None = None
+    # Seed with which parameters are drawn from their ranges; None for those of the scenario.
     draw: int | None = None
 
 

@@ -22,26 +22,13 @@ _REMEDY = "use `simulate` without --worst-case, which runs every controller"
 
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """The worst runs that an adversary found, beside limits and certified bounds.
+    """The worst runs that an adversary found, beside limits and certified bounds."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That he played against.
-    runs : tuple of WorstRun
-        One for each quantity: force, velocity and deflection.
-    limits : mapping of str to float
-        Of these quantities, as far as the spec has any; SI.
-    bounds : mapping of str to float
-        Not below what is certified; SI.
-    declared : bool
-        Whether the spec says what disturbs; otherwise it is any command up to its limit.
-    """
-
-    system: SwitchedSystem
-    runs: tuple[WorstRun, ...]
-    limits: Mapping[str, float]
-    bounds: Mapping[str, float]
+    system: SwitchedSystem  # That he played against
+    runs: tuple[WorstRun, ...]  # One for each quantity: force, velocity and deflection
+    limits: Mapping[str, float]  # Of these quantities, as far as the spec has any; SI
+    bounds: Mapping[str, float]  # Not below what is certified; SI
+    # Whether the spec says what disturbs; otherwise it is any command up to its limit.
     declared: bool
 
 

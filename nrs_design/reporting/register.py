@@ -22,23 +22,12 @@ _UNKNOWN = AssumptionKind("taken for granted", "as the sentence says", _LOST, _L
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One thing that a certificate takes for granted.
+    """One thing that a certificate takes for granted."""
 
-    Parameters
-    ----------
-    statement : str
-        As the certificate says it.
-    kind : AssumptionKind
-        What breaks if it is false, and how to test it.
-    bound : str
-        Within what it must hold.
-    standing : Standing
-        Tested by records that the spec names, argued from how the product is made, or open.
-    """
-
-    statement: str
-    kind: AssumptionKind
-    bound: str
+    statement: str  # As the certificate says it
+    kind: AssumptionKind  # What breaks if it is false, and how to test it
+    bound: str  # Within what it must hold
+    # Tested by records that the spec names, argued from how the product is made, or open.
     standing: Standing
 
 

@@ -75,31 +75,16 @@ def search_contact(family: Family) -> Candidates[UnstableContact]:
 
 @dataclass(frozen=True, slots=True)
 class _Loop:
-    """The modes in floating point, where each may be in force, and the forces.
+    """The modes in floating point, where each may be in force, and the forces."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The exact one.
-    names : tuple of str
-        Of the modes that differ.
-    matrices : ndarray, shape (m, n, n)
-        Scaled.
-    touching, flying : ndarray of bool, shape (m,)
-        Modes in which the environment acts, and those without it.
-    pulls : ndarray, shape (p, n)
-        Forces.
-    turns : ndarray of bool, shape (length of a round, m)
-        Which modes are on turn at each step.
-    """
-
-    system: SwitchedSystem
-    names: tuple[str, ...]
-    matrices: Array
+    system: SwitchedSystem  # The exact one
+    names: tuple[str, ...]  # Of the modes that differ
+    matrices: Array  # Shape (m, n, n). Scaled.
+    # touching, flying: shape (m,). Modes in which the environment acts, and those without it.
     touching: NDArray[np.bool_]
     flying: NDArray[np.bool_]
-    pulls: Array
-    turns: NDArray[np.bool_]
+    pulls: Array  # Shape (p, n). Forces.
+    turns: NDArray[np.bool_]  # Shape (length of a round, m). Which modes are on turn at each step.
 
     @classmethod
     def of(cls, family: Family) -> _Loop:

@@ -158,21 +158,11 @@ def gain_in_time(before: float, after: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """Human effort: what a hand applies to the robot, or the robot to what it touches.
+    """Human effort: what a hand applies to the robot, or the robot to what it touches."""
 
-    Parameters
-    ----------
-    total : float
-        ``int |F| dt`` in N m s: the total applied torque of thesis 5.1.4.
-    rms : float
-        ``sqrt(1/T int F^2 dt)`` in N m.
-    energy : float
-        ``int |F v| dt`` in J.
-    """
-
-    total: float
-    rms: float
-    energy: float
+    total: float  # ``int |F| dt`` in N m s: the total applied torque of thesis 5.1.4
+    rms: float  # ``sqrt(1/T int F^2 dt)`` in N m
+    energy: float  # ``int |F v| dt`` in J
 
 
 def effort(t: Array, torque: Array, velocity: Array) -> Effort:

@@ -32,34 +32,18 @@ _LARGE = 10.0
 
 @dataclass(frozen=True, eq=False)
 class Outputs:
-    """What is watched, as rows over the state, and within which limits.
+    """What is watched, as rows over the state, and within which limits."""
 
-    Parameters
-    ----------
-    force : ndarray, shape (r, n)
-        Torque in N m, at every corner of the contacts.
-    velocity : ndarray, shape (1, n) or (m, n)
-        In rad/s; a row for each mode where a command moves the axis at once.
-    deflection : ndarray, shape (n,), or None
-        In rad; None where the state does not tell it.
-    pressed : ndarray, shape (n,)
-        A state at rest in which the contacts are pressed in.
-    largest_force, largest_velocity : float
-        Limits of the spec.
-    sensed : tuple of int
-        States that hold a torque which was measured before, in N m.
-    free : tuple of int
-        Modes in which nothing is touched, whatever the deflection.
-    """
-
-    force: Array
+    force: Array  # Shape (r, n). Torque in N m, at every corner of the contacts.
+    # Shape (1, n). In rad/s; a row for each mode where a command moves the axis at once.
     velocity: Array
-    deflection: Array | None
-    pressed: Array
+    deflection: Array | None  # Shape (n,). In rad; None where the state does not tell it.
+    pressed: Array  # Shape (n,). A state at rest in which the contacts are pressed in.
+    # largest_force, largest_velocity: limits of the spec.
     largest_force: float
     largest_velocity: float
-    sensed: tuple[int, ...] = ()
-    free: tuple[int, ...] = ()
+    sensed: tuple[int, ...] = ()  # States that hold a torque which was measured before, in N m
+    free: tuple[int, ...] = ()  # Modes in which nothing is touched, whatever the deflection
 
     @property
     def start(self) -> Array:

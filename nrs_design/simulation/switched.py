@@ -24,22 +24,13 @@ _DIRECTIONS = 500
 
 @dataclass(frozen=True)
 class SwitchedRun:
-    """A sampled solution.
+    """A sampled solution."""
 
-    Parameters
-    ----------
-    time : ndarray, shape (N + 1,)
-        In s, or step numbers in discrete time.
-    state : ndarray, shape (N + 1, n)
-        The state at these times, after the switch if there is one; where modes differ in size, a
-        smaller state is filled up with zeros.
-    mode : ndarray of int, shape (N,)
-        Index of the mode that was active in each interval.
-    """
-
-    time: Array
+    time: Array  # Shape (N + 1,). In s, or step numbers in discrete time.
+    # Shape (N + 1, n). The state at these times, after the switch if there is one; where modes
+    # differ in size, a smaller state is filled up with zeros.
     state: Array
-    mode: NDArray[np.int64]
+    mode: NDArray[np.int64]  # Shape (N,). Index of the mode that was active in each interval.
 
 
 def transition_matrices(system: SwitchedSystem, step: float) -> Array:

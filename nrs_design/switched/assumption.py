@@ -17,26 +17,13 @@ class Standing(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AssumptionKind:
-    """What is common to the sentences that take one thing for granted.
+    """What is common to the sentences that take one thing for granted."""
 
-    Parameters
-    ----------
-    name : str
-        In a few words.
-    bound : str
-        Within what it must hold, where the sentence has no numbers of its own.
-    breaks : str
-        What no longer follows if it is false.
-    test : str
-        How to test it on the robot.
-    standing : Standing
-        Argued from how the product is made, or open; that it was tested, a spec says.
-    """
-
-    name: str
-    bound: str
-    breaks: str
-    test: str
+    name: str  # In a few words
+    bound: str  # Within what it must hold, where the sentence has no numbers of its own
+    breaks: str  # What no longer follows if it is false
+    test: str  # How to test it on the robot
+    # Argued from how the product is made, or open; that it was tested, a spec says.
     standing: Standing = Standing.OPEN
 
     def says(self, sentence: str, bound: str | None = None) -> Assumption:

@@ -39,38 +39,22 @@ Row = list[Fraction]
 
 @dataclass(frozen=True, slots=True)
 class AxesCoupling:
-    """What is known about the links of a robot, in SI units.
+    """What is known about the links of a robot, in SI units."""
 
-    Parameters
-    ----------
-    drive : Fraction
-        J, the inertia of each drive at its joint.
-    lightest, heaviest : Fraction
-        Every eigenvalue of the matrix of inertia M(q) of the links is between them.
-    coriolis : Fraction or None
-        Coriolis and centrifugal torques are at most this times the speed; None leaves them out.
-    speed : str or None
-        As long as the speed is at most this, with its unit.
-    gravity_gradient : Fraction or None
-        The torque of gravity changes by at most this times the way from the pose of rest; None
-        leaves it out.
-    source : str
-        Where the numbers come from, for the assumptions.
-    poses : str
-        In which poses they hold.
-    count : int or None
-        How many axes there are, if that is known.
-    """
-
-    drive: Fraction
+    drive: Fraction  # J, the inertia of each drive at its joint
+    # lightest, heaviest: every eigenvalue of the matrix of inertia M(q) of the links is between
+    # them.
     lightest: Fraction
     heaviest: Fraction
+    # Coriolis and centrifugal torques are at most this times the speed; None leaves them out.
     coriolis: Fraction | None = None
-    speed: str | None = None
+    speed: str | None = None  # As long as the speed is at most this, with its unit
+    # The torque of gravity changes by at most this times the way from the pose of rest; None leaves
+    # it out.
     gravity_gradient: Fraction | None = None
-    source: str = DECLARED
-    poses: str = "all poses that are used"
-    count: int | None = None
+    source: str = DECLARED  # Where the numbers come from, for the assumptions
+    poses: str = "all poses that are used"  # In which poses they hold
+    count: int | None = None  # How many axes there are, if that is known
 
     @classmethod
     def of(cls, spec: CouplingSpec, drive: Fraction) -> AxesCoupling:

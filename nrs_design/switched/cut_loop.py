@@ -46,40 +46,20 @@ _CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a loop is looked at, beside its contact and its gains.
+    """Where a loop is looked at, beside its contact and its gains."""
 
-    Parameters
-    ----------
-    motor : Actuator
-        A corner of its ranges, or the nominal one.
-    age : int
-        Of the force sample, always the same; zero in continuous time.
-    texts : tuple of str
-        What is not nominal, and the age where there are several.
-    """
-
-    motor: Actuator
-    age: int = 0
-    texts: tuple[str, ...] = ()
+    motor: Actuator  # A corner of its ranges, or the nominal one
+    age: int = 0  # Of the force sample, always the same; zero in continuous time
+    texts: tuple[str, ...] = ()  # What is not nominal, and the age where there are several
 
 
 @dataclass(frozen=True, slots=True)
 class CutLoop:
-    """Characteristic polynomials of one mode, highest power first, of one length.
+    """Characteristic polynomials of one mode, highest power first, of one length."""
 
-    Parameters
-    ----------
-    opened : tuple of Fraction
-        Where the law takes no force; a motor with a load carries it all the same.
-    closed : tuple of Fraction
-        Of the mode as it is proved.
-    free : tuple of Fraction
-        Where the force does not act at all.
-    """
-
-    opened: Polynomial
-    closed: Polynomial
-    free: Polynomial
+    opened: Polynomial  # Where the law takes no force; a motor with a load carries it all the same
+    closed: Polynomial  # Of the mode as it is proved
+    free: Polynomial  # Where the force does not act at all
 
 
 @dataclass(frozen=True, slots=True)

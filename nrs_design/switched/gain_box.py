@@ -21,18 +21,10 @@ from nrs_design.switched.parameter_box import Box
 
 @dataclass(frozen=True, slots=True)
 class GainBox:
-    """The gains of one controller.
+    """The gains of one controller."""
 
-    Parameters
-    ----------
-    law : CompliantLaw
-        With the gains that ship.
-    ranges : mapping of str to Interval
-        Of every gain, around what ships.
-    """
-
-    law: CompliantLaw
-    ranges: Mapping[str, Interval]
+    law: CompliantLaw  # With the gains that ship
+    ranges: Mapping[str, Interval]  # Of every gain, around what ships
 
     @classmethod
     def point(cls, law: CompliantLaw) -> GainBox:

@@ -19,21 +19,11 @@ from nrs_design.switched.parameter_box import Box
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """The motion loop in its physical state, wherever gain and time constant of the motor are.
+    """The motion loop in its physical state, wherever gain and time constant of the motor are."""
 
-    Parameters
-    ----------
-    motion : ProportionalDerivative
-        The PD gains that ship.
-    ranges : ActuatorRanges
-        Where the motor may be.
-    load_inertia : Fraction or None
-        The J of `nrs_design.models.motion_loop.JointMotionLoop`.
-    """
-
-    motion: ProportionalDerivative
-    ranges: ActuatorRanges
-    load_inertia: Fraction | None
+    motion: ProportionalDerivative  # The PD gains that ship
+    ranges: ActuatorRanges  # Where the motor may be
+    load_inertia: Fraction | None  # The J of `nrs_design.models.motion_loop.JointMotionLoop`
 
     @classmethod
     def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:

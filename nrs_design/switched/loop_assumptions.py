@@ -98,48 +98,21 @@ NOT_MODELLED_BUT_LIMITS = kinds.NOT_SAMPLED_BUT_LIMITED.says(
 
 @dataclass(frozen=True, slots=True)
 class Assumed:
-    """The closed loop, as far as its assumptions depend on it.
+    """The closed loop, as far as its assumptions depend on it."""
 
-    Parameters
-    ----------
-    design : ControllerDesign
-        All controllers.
-    touched : tuple of Environment
-        What they touch.
-    boxes : mapping of str to GainBox
-        Where the gains of each controller may be.
-    coordinates : {"deflection", "force"}
-        Of an impedance mode.
-    rules : SwitchingSpec
-        For the change of controllers.
-    idle : IdleStatesSpec or None
-        What idle states do, where there are any.
-    law : CompliantLaw
-        A law that has the states that all modes share.
-    given : bool
-        Whether the spec states the motion loop itself.
-    losable : bool
-        Whether the system says how contact is lost; then a statement says whether it is kept.
-    offset : {"none", "reference", "measured"}
-        Where force controllers take their offset from.
-    free : bool
-        Whether free motion is one of the modes.
-    joint : Joint or None
-        The motor, where it has ranges or is loaded by the environment.
-    """
-
-    design: ControllerDesign
-    touched: tuple[Environment, ...]
-    boxes: Mapping[str, GainBox]
-    coordinates: str
-    rules: SwitchingSpec
-    idle: IdleStatesSpec | None
-    law: CompliantLaw
-    given: bool
+    design: ControllerDesign  # All controllers
+    touched: tuple[Environment, ...]  # What they touch
+    boxes: Mapping[str, GainBox]  # Where the gains of each controller may be
+    coordinates: str  # Of an impedance mode
+    rules: SwitchingSpec  # For the change of controllers
+    idle: IdleStatesSpec | None  # What idle states do, where there are any
+    law: CompliantLaw  # A law that has the states that all modes share
+    given: bool  # Whether the spec states the motion loop itself
+    # Whether the system says how contact is lost; then a statement says whether it is kept.
     losable: bool = False
-    offset: Offset = "none"
-    free: bool = False
-    joint: Joint | None = None
+    offset: Offset = "none"  # Where force controllers take their offset from
+    free: bool = False  # Whether free motion is one of the modes
+    joint: Joint | None = None  # The motor, where it has ranges or is loaded by the environment
 
 
 def assume_loop(loop: Assumed) -> tuple[Assumption, ...]:

@@ -26,18 +26,10 @@ Rows = list[LinearForm]
 
 @dataclass(frozen=True, slots=True)
 class ForceShare:
-    """How much of the force of a contact acts, where the loop is cut to look at what it is made of.
+    """How much of the force of a contact acts, where the loop is cut to look at its parts."""
 
-    Parameters
-    ----------
-    sensed : Fraction
-        Share that reaches the law.
-    carried : Fraction
-        Share that slows a motor with a load.
-    """
-
-    sensed: Fraction = Fraction(1)
-    carried: Fraction = Fraction(1)
+    sensed: Fraction = Fraction(1)  # Share that reaches the law
+    carried: Fraction = Fraction(1)  # Share that slows a motor with a load
 
 
 # Nothing is cut: the loop of a proof.

@@ -27,21 +27,12 @@ from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 @dataclass(frozen=True, slots=True)
 class MotorCommand:
-    """The command as an output, and what it leaves out.
+    """The command as an output, and what it leaves out."""
 
-    Parameters
-    ----------
-    output : Output
-        What the states make of the command, with all that is rounded in it.
-    at_once : Fraction
-        By how much more the disturbances of a sample change the command of the same sample.
-    limit : Fraction
-        Of the driver, as a single-precision number.
-    """
-
-    output: Output
+    output: Output  # What the states make of the command, with all that is rounded in it
+    # By how much more the disturbances of a sample change the command of the same sample.
     at_once: Fraction
-    limit: Fraction
+    limit: Fraction  # Of the driver, as a single-precision number
 
     @property
     def text(self) -> Assumption:

@@ -34,39 +34,25 @@ _ANYWHERE = (Fraction(0), Fraction(1))
 
 @dataclass(frozen=True, slots=True)
 class Triangle:
-    """Where two parameters with ranges lie together.
+    """Where two parameters with ranges lie together."""
 
-    Parameters
-    ----------
-    x, y : str
-        In which matrices are affine together. Two corners are the lower ends of both ranges, and
-        the upper ends of both.
-    between : tuple of Fraction
-        The third one, which is called the lower end of x and the upper end of y.
-    """
-
+    # x, y: in which matrices are affine together. Two corners are the lower ends of both ranges,
+    # and the upper ends of both.
     x: str
     y: str
+    # The third one, which is called the lower end of x and the upper end of y.
     between: tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Where the parameters of a matrix lie.
+    """Where the parameters of a matrix lie."""
 
-    Parameters
-    ----------
-    ranges : mapping of str to Interval
-        By symbols such as ``k`` or ``Mt``; a point adds no corners.
-    inverse : frozenset of str
-        Parameters in one over which matrices are affine; they are positive. One over such a
-        parameter runs through the interval between the inverse ends, so the corners are the same.
-    triangle : Triangle, optional
-        Where two of the parameters are, instead of anywhere in their ranges.
-    """
-
-    ranges: Mapping[str, Interval]
+    ranges: Mapping[str, Interval]  # By symbols such as ``k`` or ``Mt``; a point adds no corners
+    # Parameters in one over which matrices are affine; they are positive. One over such a parameter
+    # runs through the interval between the inverse ends, so the corners are the same.
     inverse: frozenset[str] = frozenset()
+    # Where two of the parameters are, instead of anywhere in their ranges.
     triangle: Triangle | None = None
 
     def beside(self, other: Box) -> Box:

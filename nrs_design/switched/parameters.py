@@ -23,37 +23,19 @@ Rows = Sequence[Sequence[Fraction]]
 
 @dataclass(frozen=True, slots=True)
 class UncertainParameter:
-    """An uncertain number.
+    """An uncertain number."""
 
-    Parameters
-    ----------
-    name : str
-        As in the spec.
-    interval : Interval
-        Where it lies.
-    varies : bool
-        Whether it may change arbitrarily fast; otherwise it is unknown but constant.
-    """
-
-    name: str
-    interval: Interval
-    varies: bool
+    name: str  # As in the spec
+    interval: Interval  # Where it lies
+    varies: bool  # Whether it may change arbitrarily fast; otherwise it is unknown but constant
 
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """One assembled mode among those that stand for one mode of the spec.
+    """One assembled mode among those that stand for one mode of the spec."""
 
-    Parameters
-    ----------
-    mode : str
-        Name of the assembled mode, such as ``a/k-min``.
-    end : {"", "min", "max"}
-        End of the constant parameter, if there is one.
-    """
-
-    mode: str
-    end: str = ""
+    mode: str  # Name of the assembled mode, such as ``a/k-min``
+    end: str = ""  # End of the constant parameter, if there is one
 
 
 def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[UncertainParameter, ...]:

@@ -22,17 +22,10 @@ class SampledGains:
 
     Where Mt or Bt has a range, that is a and ``c = b/(1 - a)``, which is 1/Bt but for rounding;
     without inertia it is ``c = b`` alone. The map of a period is affine in each of them.
-
-    Parameters
-    ----------
-    law : SampledAdmittance or SampledForce
-        With the coefficients that ship.
-    box : Box
-        Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges.
     """
 
-    law: SampledLaw
-    box: Box
+    law: SampledLaw  # With the coefficients that ship
+    box: Box  # Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges
 
     @classmethod
     def of(cls, law: SampledLaw, gains: GainBox, period: Fraction, method: str) -> SampledGains:

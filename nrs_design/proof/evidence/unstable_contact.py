@@ -42,21 +42,16 @@ class UnstableContact(AbstractEvidence):
     factor would be one.
 
     In continuous time the sequence is one mode: along an eigenvector no sign ever changes.
-
-    Parameters
-    ----------
-    steps : tuple of (str, int)
-        Modes, of contact and free, each with its number of steps, in order. In continuous time one
-        mode, and the number one.
-    factor : (Fraction, Fraction)
-        Numbers between which the eigenvalue is; in continuous time in 1/s.
     """
 
     kind: ClassVar[str] = "unstable-contact"
     covers_lost_contact: ClassVar[bool] = True
     covers_clock: ClassVar[bool] = True
 
+    # Modes, of contact and free, each with its number of steps, in order. In continuous time one
+    # mode, and the number one.
     steps: tuple[tuple[str, int], ...]
+    # Numbers between which the eigenvalue is; in continuous time in 1/s.
     factor: tuple[Fraction, Fraction]
 
     @property

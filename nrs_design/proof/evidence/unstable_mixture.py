@@ -32,19 +32,12 @@ class UnstableMixture(AbstractEvidence):
     Uniform exponential stability under arbitrary switching carries over to all convex
     combinations of the modes (Molchanov and Pyatnitskiy 1989), so one unstable combination
     refutes it: periodic switching with these shares and a short period follows the average.
-
-    Parameters
-    ----------
-    weights : tuple of (str, Fraction)
-        Share of each mode.
-    eigenvalue : str
-        Worst eigenvalue of the combination, to six digits, for the reader.
     """
 
     kind: ClassVar[str] = "unstable-mixture"
 
-    weights: tuple[tuple[str, Fraction], ...]
-    eigenvalue: str
+    weights: tuple[tuple[str, Fraction], ...]  # Share of each mode
+    eigenvalue: str  # Worst eigenvalue of the combination, to six digits, for the reader
 
     @property
     def shows(self) -> Shows:

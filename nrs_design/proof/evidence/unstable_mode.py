@@ -31,20 +31,13 @@ class UnstableMode(AbstractEvidence):
     It is not where the mode has a longest dwell time: such a mode may be unstable. Where contact
     must be covered as it is lost, the mode may be one of free motion, without the deflection: far
     enough from the surface, such a motion goes on for as long as is wanted.
-
-    Parameters
-    ----------
-    mode : str
-        Its name.
-    eigenvalue : str
-        Its worst eigenvalue, to six digits, for the reader.
     """
 
     kind: ClassVar[str] = "unstable-mode"
     allows_unequal_modes: ClassVar[bool] = True
 
-    mode: str
-    eigenvalue: str
+    mode: str  # Its name
+    eigenvalue: str  # Its worst eigenvalue, to six digits, for the reader
 
     @property
     def shows(self) -> Shows:

@@ -31,23 +31,16 @@ class UnstablePeriod(AbstractEvidence):
     All eigenvalues at most one in modulus would give ``|tr M^k| <= n`` for every k. M is enclosed
     in balls (`nrs_design.proof.enclosure`), and ``|tr M^k| > n`` holds for the whole enclosure with
     the stated power of two k.
-
-    Parameters
-    ----------
-    steps : tuple of (str, Fraction)
-        Mode and dwell time in s (discrete time: number of steps), in order.
-    doublings : int
-        k is two to this power.
-    edges : tuple of int
-        For each step, which of the resets to the next mode is taken, counted from zero in the order
-        of the spec. Empty where there is no choice.
     """
 
     kind: ClassVar[str] = "unstable-period"
     covers_clock: ClassVar[bool] = True
 
+    # Mode and dwell time in s (discrete time: number of steps), in order.
     steps: tuple[tuple[str, Fraction], ...]
-    doublings: int
+    doublings: int  # k is two to this power
+    # For each step, which of the resets to the next mode is taken, counted from zero in the order
+    # of the spec. Empty where there is no choice.
     edges: tuple[int, ...] = ()
 
     @property

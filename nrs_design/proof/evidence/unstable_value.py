@@ -14,6 +14,7 @@ from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
 from nrs_design.proof.evidence.unstable_mode import UnstableMode
 from nrs_design.proof.evidence.unstable_period import UnstablePeriod
 from nrs_design.proof.exact import IntegerMatrix
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
@@ -31,19 +32,12 @@ class UnstableValue(AbstractEvidence):
     The mode in force is ``(1 - s) low + s high`` with one share s for all modes and all times.
     Each share from 0 to 1 is a value that the parameter may have, so instability of the system at
     one share refutes the claim for all of them.
-
-    Parameters
-    ----------
-    share : Fraction
-        The s.
-    part : UnstableMode, UnstableMixture or UnstablePeriod
-        Evidence of instability of the system at that share.
     """
 
     kind: ClassVar[str] = "unstable-value"
 
-    share: Fraction
-    part: Part
+    share: Fraction  # The s
+    part: Part  # Evidence of instability of the system at that share
 
     @property
     def shows(self) -> Shows:
@@ -55,6 +49,10 @@ class UnstableValue(AbstractEvidence):
         return bool(switching.fixed_ends) and (
             not switching.resets or self.part.names_unstable_mode
         )
+
+    def used_matrices(self, system: SwitchedSystem) -> list[RationalMatrix]:
+        """Return the matrices of the part, at that value."""
+        return self.part.used_matrices(system_at(system, self.share))
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check the share, and the part at that share."""

@@ -16,18 +16,10 @@ E = TypeVar("E", bound=AbstractEvidence)
 
 @dataclass(frozen=True)
 class AbstractKindPage(ABC, Generic[E]):
-    """One statement for the reader: in a few words, in sentences, in numbers and as a run.
+    """One statement for the reader: in a few words, in sentences, in numbers and as a run."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What it is about.
-    evidence : AbstractEvidence
-        The statement. Its claim is its own and is not repeated by a page.
-    """
-
-    system: SwitchedSystem
-    evidence: E
+    system: SwitchedSystem  # What it is about
+    evidence: E  # The statement. Its claim is its own and is not repeated by a page.
 
     @property
     @abstractmethod

@@ -2,15 +2,19 @@
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
 
 from nrs_design.proof.channels import Rounding
+from nrs_design.proof.contact import Flights
 from nrs_design.proof.evidence import (
     KINDS,
     AbstractEvidence,
     Shows,
+    UnstableMode,
+    UnstableValue,
 )
 from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_indefinite
 from nrs_design.proof.exact import MAX_WORK
@@ -115,6 +119,41 @@ def test_what_is_taken_for_granted_of_contact_is_said(what, words):
         assert Said(what=what).claim(system) == f"It is so.{words}"
         assert Said(what=what).claim(replace(system, contact=None)) == "It is so."
         assert SaidOfAllContact(what=what).claim(system) == "It is so."
+
+
+@dataclass(frozen=True)
+class SaidOfOneMode(Said):
+    mode: str = "m0"
+
+    @property
+    def used(self):
+        return frozenset((self.mode,))
+
+
+def test_where_the_environment_does_not_act_nothing_pulls():
+    """At zero stiffness a mode of contact is one of free motion."""
+    system = bouncing()
+    (free,) = system.contact.free
+    slack = replace(system, modes=(Mode("m0", free.A), *system.modes[1:]))
+    constant = replace(slack, switching=Switching(fixed_ends=(("m0", "m1"),)))
+    grown = partial(SaidOfOneMode, what=Shows.INSTABILITY)
+    kept = "It is so. This growth is that in kept contact"
+    pulling = ", the environment pulling as it pushes"
+    assert grown().claim(slack) == f"{kept}."
+    assert grown(mode="m1").claim(slack) == f"{kept}{pulling}."
+    assert Said().claim(slack).endswith(f"{pulling}.")
+    assert not Said().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
+    for share, tail in (("0", "."), ("1/2", f"{pulling}.")):
+        value = UnstableValue(Fraction(share), UnstableMode("m0 to m1", "0"))
+        assert value.claim(constant).endswith(f"in kept contact{tail}")
+    among = replace(
+        slack,
+        modes=(*slack.modes, Mode("free", free.A)),
+        contact=None,
+        flights=Flights(("m0", "m1"), ("free",)),
+    )
+    assert grown().claim(among).endswith("lost and made at any deflection.")
+    assert grown(mode="m1").claim(among).endswith(f"at any deflection{pulling}.")
 
 
 @dataclass(frozen=True)

@@ -103,8 +103,10 @@ def _print(found: ActuatorIdentification) -> None:
     print_table("", [*columns, "dead time s"], rows)
     say(f"chosen: {found.chosen.method}. {found.reason}")
     if found.chosen.dead_time and found.step:
+        from nrs_design.identification.actuator.model import FROM_THE_ROW
+
         samples = found.chosen.dead_time.scaled(1 / found.step)
-        say(f"dead time = {samples} samples of {found.step:.4g} s")
+        say(f"dead time = {samples} samples of {found.step:.4g} s, {FROM_THE_ROW}")
     motor = found.chosen.motor
     if motor is not None and motor.damping is not None:
         say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")

@@ -155,7 +155,7 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
             "\n".join(_parameters(model, parameter_units(model.law, found.rotational))),
             ", ".join(f"{value:.4g}" for value in model.rmse),
             f"{model.bic - least:.4g}",
-            "; ".join(model.doubts[:2]) + (" ..." if len(model.doubts) > 2 else ""),
+            doubts_of(model, chosen=model is found.chosen),
         ]
         for model in found.models
     ]
@@ -180,6 +180,12 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
     for item in series:
         say(item.text(rotational=found.rotational))
+
+
+def doubts_of(model: ModelFit, *, chosen: bool) -> str:
+    """Join the doubts about a law: all of the chosen one, the first two of others."""
+    shown = model.doubts if chosen else model.doubts[:2]
+    return "; ".join(shown) + (" ..." if len(model.doubts) > len(shown) else "")
 
 
 def _series(found: TissueIdentification) -> list[Series]:

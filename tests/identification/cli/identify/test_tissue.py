@@ -3,10 +3,12 @@
 import contextlib
 import json
 import shutil
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import pytest
 
+from nrs_design.identification.cli.identify.tissue import doubts_of
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import read_spec
 from tests.identification.cli.identify.records import NOSE, SOFT
@@ -295,3 +297,10 @@ def test_wrong_options_of_tissue(tmp_path, option, message):
     result = run("identify", "tissue", SOFT[0], *option, cwd=tmp_path)
     assert result.returncode == 2
     assert message in result.stderr
+
+
+def test_every_doubt_of_the_chosen_law_is_printed():
+    """The third and later ones were behind "..."."""
+    doubted = SimpleNamespace(doubts=("one", "two", "three"))
+    assert doubts_of(doubted, chosen=True) == "one; two; three"
+    assert doubts_of(doubted, chosen=False) == "one; two ..."

@@ -69,16 +69,10 @@ class Study:
         >>> float(round(-parts.controllers["insertion"].dcgain(), 4))  # 1/Bt
         0.4651
         """
-        designed = pipeline.run_design(self.loaded)
-        if designed is None:
-            raise pipeline.wrong_kind(
-                self.loaded,
-                f"a spec of kind {self.loaded.spec.kind} has no actuator and no controllers",
-                "use a spec of kind interaction-design; certify() has the state spaces of modes",
-            )
         from nrs_design.exporters.state_space import design_state_spaces
 
-        return design_state_spaces(designed)
+        lacks = "has no actuator and no controllers"
+        return design_state_spaces(pipeline.run_interaction(self.loaded, lacks))
 
     def certify(
         self,
@@ -210,14 +204,7 @@ class Study:
 
     def _interaction(self) -> pipeline.Designed:
         """Design what interacts; refuse another kind of spec."""
-        designed = pipeline.run_design(self.loaded)
-        if designed is None:
-            raise pipeline.wrong_kind(
-                self.loaded,
-                f"a spec of kind {self.loaded.spec.kind} describes no interaction",
-                "use a spec of kind interaction-design",
-            )
-        return designed
+        return pipeline.run_interaction(self.loaded, "describes no interaction")
 
 
 def _runs(

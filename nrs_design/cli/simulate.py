@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
 from nrs_design.cli.simulate_options import (
     Bound,
@@ -29,9 +30,9 @@ from nrs_design.progress import Progress
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed
-    from nrs_design.spec import LoadedSpec
 
 
+@command("simulate")
 def simulate(
     spec: SpecFile,
     scenario: Scenarios = None,
@@ -45,9 +46,7 @@ def simulate(
     max_steps: MaxSteps = None,
     worst: WorstCaseFlag = False,
     seed: Seed = 0,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Simulate the interaction of robot, tissue and surgeon, and measure safety and agility.
 
     Scenarios are in the spec; without any, the command of thesis fig. 6.7 moves into the first
@@ -59,7 +58,7 @@ def simulate(
     """
     from nrs_design.cli.simulate_scenarios import simulate_scenarios
     from nrs_design.cli.worst_case import worst_case
-    from nrs_design.pipeline import run_design
+    from nrs_design.pipeline import run_interaction
     from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import read_spec
 
@@ -73,31 +72,16 @@ def simulate(
         message = "needs --worst-case; a scenario has its own seed"
         raise typer.BadParameter(message, param_hint="--seed")
     loaded = read_spec(spec)
-    _check_kind(loaded)
     if engine is None and timed:
         engine = EngineOption.SAMPLED
     how = None if engine is None else str(engine)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
-    with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
-        designed = run_design(loaded)
-        assert designed is not None
+    with progress(f"simulating {loaded.spec.name}") as step:
+        designed = run_interaction(loaded, "describes no interaction")
         prove = partial(_proof, designed, certificate, step, bound=bound)
         if worst:
-            show = worst_case(designed, prove(), seed, out, step)
-        else:
-            show = simulate_scenarios(designed, wanted, prove, out, step)
-    raise typer.Exit(show(as_json=as_json, quiet=quiet))
-
-
-def _check_kind(loaded: LoadedSpec) -> None:
-    from nrs_design.pipeline import wrong_kind
-
-    if loaded.spec.kind != "interaction-design":
-        raise wrong_kind(
-            loaded,
-            f"a spec of kind {loaded.spec.kind} describes no interaction",
-            "name a spec of kind interaction-design; see also `nrs-design robot track`",
-        )
+            return worst_case(designed, prove(), seed, out, step)
+        return simulate_scenarios(designed, wanted, prove, out, step)
 
 
 def _proof(

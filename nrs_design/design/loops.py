@@ -83,10 +83,9 @@ class Loops:
         return np.where(self.stable, _smallest(np.abs(phase)), 0.0)
 
     def delay_margin(self) -> FloatArray:
-        """Return the smallest dead time that destabilizes, in s.
+        """Return the longest dead time up to which none destabilizes, in s.
 
-        Sampled, a dead time is a whole number of samples by which the force is older, and the
-        largest one up to which none destabilizes is returned.
+        Sampled, dead times are whole samples by which the force is older.
         """
         phase, omega = self._crossovers()
         dead = _smallest(phase % (2 * math.pi) / self._true(omega))

@@ -1,11 +1,11 @@
-"""What a run is held against its limits by."""
+"""The peaks of a run that a scenario may limit: name, metric and unit."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
 
-# Quantities, and how `nrs_design.simulation.summary` names their largest values.
+# Limited quantity to metric of `nrs_design.simulation.summary`.
 PEAKS: Mapping[str, str] = MappingProxyType(
     {"torque": "peak_torque", "deflection": "peak_depth", "velocity": "peak_velocity"}
 )

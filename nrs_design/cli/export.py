@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -119,11 +118,6 @@ def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Ex
     from nrs_design.exporters.export import Execution
 
     if chosen.executable:
-        if not (chosen.provable or unproved):
-            raise NrsDesignError(
-                "no proof is about what this format writes",
-                remedy="add --unproved, or take another",
-            )
         period = None if sample_time is None else _seconds(sample_time)
         return Execution(period, unproved)
     if unproved or sample_time is not None:
@@ -175,9 +169,6 @@ def _export_design(
         with placed(loaded):
             remarks = _write(result, chosen, files, None if certificate else proof, spec)
     written = list(files.values()) if result.record else []
-    if result.verdict == "proved" and not chosen.provable:
-        reason = "what is proved is the step of one axis"
-        result = replace(result, verdict="inconclusive", reason=reason)
     summary = _summary(name, result, written, proof)
     return Answer(
         lambda: summary | ({"remarks": remarks} if chosen.remarks else {}),

@@ -15,12 +15,9 @@ from nrs_design.wings import WINGS
 from tests.package import FILES, nodes_of
 from tests.support import ROOT
 
-# Evidence about a block, or at one value, holds evidence of any kind: the table of them all has its
-# reader and its page.
+# Evidence about a block holds evidence of any kind: the table of them all has its reader.
 KNOWN_CYCLES = {
     ("nrs_design.proof.evidence", "nrs_design.proof.evidence.block_triangular"),
-    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.block_triangular"),
-    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.unstable_value"),
     # The root names for type checkers what it loads when it is asked, and holds the version.
     ("nrs_design.api", "nrs_design"),
 }
@@ -317,7 +314,7 @@ def test_only_the_pipeline_calls_the_stages():
 # Functions that do one thing in several modules; a command is named like what it calls.
 SHARED = {
     # Modules of a table offer them all.
-    *("render", "remarks", "header_text", "source_text", "names_of"),
+    *("render", "header_text", "source_text"),
     *("rows", "counterparts", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),

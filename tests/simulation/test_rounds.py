@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from nrs_design.proof.switching import Clock
-from nrs_design.reporting.kinds.periodic_quadratic import step_norms
+from nrs_design.reporting.evidence.norms import step_norms
+from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.simulation.rounds import all_modes, norms_in_rounds, worst_rounds
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, genuine
 
@@ -34,7 +35,7 @@ def test_contact_decides_which_modes_are_possible():
 @pytest.mark.parametrize("kept", [False, True])
 def test_no_run_is_above_a_proved_bound(kept):
     system, evidence = genuine("periodic-quadratic, kept" if kept else "periodic-quadratic")
-    norms, rng = step_norms(evidence, system), np.random.default_rng(3)
+    norms, rng = step_norms(offer_of(evidence).forms, system), np.random.default_rng(3)
     for _ in range(20):
         run = worst_rounds(system, norms, rng.standard_normal(2), 60)
         allowed = float(evidence.rate) ** run.time * (1 + 1e-9)

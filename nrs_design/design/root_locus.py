@@ -343,8 +343,8 @@ def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
 def _breakaway(open_loop: TransferFunction, last: float) -> FloatArray:
     """Return the gains up to the last one where two real poles meet."""
     num, den = np.poly1d(open_loop.numerator), np.poly1d(open_loop.denominator)
-    points: ComplexArray = (den.deriv() * num - den * num.deriv()).roots.astype(np.complex128)
-    points = points.real[np.abs(points.imag) <= 1e-7 * np.abs(points)]
+    roots: ComplexArray = (den.deriv() * num - den * num.deriv()).roots.astype(np.complex128)
+    points = roots.real[np.abs(roots.imag) <= 1e-7 * np.abs(roots)]
     below = np.polyval(num, points)
     gains = -np.polyval(den, points[below != 0]) / below[below != 0]
     return np.asarray(gains[(gains > 0) & (gains < last)])

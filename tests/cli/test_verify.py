@@ -13,6 +13,7 @@ from tests.support import (
     COMMUTING,
     HARD,
     PRINT_ERROR,
+    ROBOT,
     ROOT,
     SOFT_TISSUE,
     document_of,
@@ -37,6 +38,16 @@ def test_proof_holds(certified):
     result = typed("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified, code=0)
     assert result.stdout.startswith("PROVED: the certificate holds, checked exactly.")
     assert "insertion: Mt = 0.00999999977648258209228515625 kg*m^2, Bt = 2.15" in result.stdout
+
+
+def test_the_derivative_gain_is_that_of_a_program(tmp_path):
+    """It multiplies by Kd/T, rounded to single precision; at 3 ms that is another Kd."""
+    text = (ROBOT / "force-limit-sampled.nrs.yaml").read_text().replace("2 ms", "3 ms")
+    (tmp_path / "slow.nrs.yaml").write_text(text)
+    run("certify-switching", "slow.nrs.yaml", "--out", "c.json", cwd=tmp_path, code=0)
+    shown = run("verify", "c.json", "slow.nrs.yaml", cwd=tmp_path, code=0).stdout
+    assert "Kd = 2060 rpm*s/rad" in shown
+    assert "multiplies by Kd/T = 686666.6875 rpm/rad, which makes its Kd about 2060.000062" in shown
 
 
 def test_refutation_holds(certified):

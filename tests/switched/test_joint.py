@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.evidence import ConewiseQuadratic, UnstablePeriod
+from nrs_design.proof.evidence import ConewiseQuadratic, GrowingSequence
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from nrs_design.switched.assumption_kinds import MOTOR
@@ -54,7 +54,7 @@ def test_a_tolerance_of_27_percent_is_proved_for_opposite_corners_and_false_for_
     # Found by the search for periods, with more digits.
     names = "c1/soft/k-max/Km-min/tau-max", "c1/soft/k-max/Km-max/tau-min"
     period = zip(names, (Fraction(241, 4096), Fraction(181, 8192)), strict=True)
-    assert UnstablePeriod(tuple(period), 12).find_fault(system) is None
+    assert GrowingSequence(tuple(period), 12).find_fault(system) is None
 
 
 def test_states_and_assumptions():

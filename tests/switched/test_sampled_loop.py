@@ -265,7 +265,7 @@ def test_two_periods_of_the_thesis_robot(tmp_path, sampling, verdict, least):
     evidence = result.evidence
     assert evidence.find_fault(system) is None
     if least is None:
-        assert evidence.kind == "unstable-period"
+        assert evidence.kind == "growing-sequence"
     else:
         assert evidence.kind == "periodic-quadratic"
         assert (1 - evidence.rate) / system.sample_time > Fraction(least)

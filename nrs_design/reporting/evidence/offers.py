@@ -6,7 +6,7 @@ This table is the only place in the reports that knows a kind by its name.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -90,9 +90,14 @@ def _traces(e: Any) -> Offer:
     return Offer(weights=tuple((name, Fraction(traces[name], total)) for name in heaviest))
 
 
-def _contact_sequence(e: Any) -> Offer:
-    steps = tuple((name, Fraction(count)) for name, count in e.steps)
-    return Offer(growth=Growth(steps, factor=e.factor[0]))
+def _sequence(e: Any) -> Offer:
+    if e.share is not None:
+        return Offer(growth=Growth(share=e.share), parts=((0, replace(e, share=None)),))
+    if e.names_unstable_mode:
+        return Offer(growth=Growth(((e.steps[0][0], Fraction(0)),)))
+    if e.is_average:
+        return Offer(weights=e.steps, growth=Growth())
+    return Offer(growth=Growth(e.steps, e.edges, None if e.factor is None else e.factor[0]))
 
 
 _OFFERS: Mapping[str, Callable[[Any], Offer]] = {
@@ -108,6 +113,7 @@ _OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "conewise-quadratic": _one,
     "constant-force": _constant_force,
     "coupled-axes": _coupled_axes,
+    "growing-sequence": _sequence,
     "invariant-ellipsoid": _one,
     "mode-polynomial": lambda e: Offer(
         _named(e.quadratic.functions, e.degree),
@@ -119,9 +125,4 @@ _OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "parameter-quadratic": _ends,
     "periodic-quadratic": _rounds,
     "saturated-ellipsoid": _one,
-    "unstable-contact": _contact_sequence,
-    "unstable-mixture": lambda e: Offer(weights=e.weights, growth=Growth()),
-    "unstable-mode": lambda e: Offer(growth=Growth(((e.mode, Fraction(0)),))),
-    "unstable-period": lambda e: Offer(growth=Growth(e.steps, e.edges)),
-    "unstable-value": lambda e: Offer(growth=Growth(share=e.share), parts=((0, e.part),)),
 }

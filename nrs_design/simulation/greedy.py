@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array, Norm
+from nrs_design.simulation.norms import Array, Indices, Norm
 from nrs_design.simulation.saturation import saturated_step
 from nrs_design.simulation.switched import SwitchedRun, sampling_instants, transition_matrices
 
@@ -83,13 +83,13 @@ def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
     return np.asarray(values / values[0])
 
 
-def _possible(system: SwitchedSystem) -> Callable[[int, Array], Array]:
+def _possible(system: SwitchedSystem) -> Callable[[int, Array], Indices]:
     """Return the function from a step and a state to the modes that may be taken."""
     modes, clock = all_modes(system).modes, system.clock
     free = np.arange(len(modes)) >= len(system.modes)
     begins = np.array([clock is None or mode.name in clock.first for mode in modes])
 
-    def possible(t: int, x: Array) -> Array:
+    def possible(t: int, x: Array) -> Indices:
         turn = clock is None or t % clock.length == 0
         lost = bool(free.any()) and x[-1] <= 0
         return np.flatnonzero((begins == turn) & (free == lost))
@@ -97,7 +97,7 @@ def _possible(system: SwitchedSystem) -> Callable[[int, Array], Array]:
     return possible
 
 
-def _advance(system: SwitchedSystem, step: float) -> Callable[[Array, Array], Array]:
+def _advance(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:
     """Return the function from a state and modes to the states after a step in each of them."""
     if system.saturation is not None:
         return saturated_step(system, step)

@@ -8,6 +8,7 @@ programming over the rules of switching. Where contact is kept, no sweep makes a
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -204,7 +205,8 @@ class _Policy:
         p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
         pull, reset = _Pull(game), len(rules.jumps) > 1
         taken = rules.jumps[rules.jump]
-        errors = 0.0 if rng is None else np.exp(rng.uniform(*np.log(_ERRORS), runs))
+        least, most = map(math.log, _ERRORS)
+        errors = 0.0 if rng is None else np.exp(rng.uniform(least, most, runs))
         column, row = np.arange(runs), np.arange(nodes)[:, None]
         for k in range(steps - 1, -1, -1):
             x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]

@@ -269,7 +269,6 @@ def test_a_report_assembles_and_searches_nothing():
         "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
         "nrs_design.switched.assumption",
-        "nrs_design.switched.assumption_kinds",
     }
 
 
@@ -314,8 +313,8 @@ def test_only_the_pipeline_calls_the_stages():
 # Functions that do one thing in several modules; a command is named like what it calls.
 SHARED = {
     # Modules of a table offer them all.
-    *("render", "remarks", "header_text", "source_text", "names_of"),
-    *("rows", "counterparts", "choose", "analyze"),
+    *("render", "header_text", "source_text"),
+    *("rows", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.

@@ -17,15 +17,11 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular
     from nrs_design.proof.evidence.constant_force import ConstantForce
     from nrs_design.proof.evidence.graph import FormsOnGraph
+    from nrs_design.proof.evidence.growing_sequence import GrowingSequence
     from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
     from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
     from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
     from nrs_design.proof.evidence.saturated_ellipsoid import SaturatedEllipsoid
-    from nrs_design.proof.evidence.unstable_contact import UnstableContact
-    from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
-    from nrs_design.proof.evidence.unstable_mode import UnstableMode
-    from nrs_design.proof.evidence.unstable_period import UnstablePeriod
-    from nrs_design.proof.evidence.unstable_value import UnstableValue
 
 __all__ = [
     "KINDS",
@@ -33,16 +29,12 @@ __all__ = [
     "BlockTriangular",
     "ConstantForce",
     "FormsOnGraph",
+    "GrowingSequence",
     "InvariantEllipsoid",
     "NoCommonQuadratic",
     "ParameterQuadratic",
     "SaturatedEllipsoid",
     "Shows",
-    "UnstableContact",
-    "UnstableMixture",
-    "UnstableMode",
-    "UnstablePeriod",
-    "UnstableValue",
     "class_of",
     "read_evidence",
 ]
@@ -52,15 +44,11 @@ KINDS: Mapping[str, str] = {
     "block-triangular": "BlockTriangular",
     "constant-force": "ConstantForce",
     "graph": "FormsOnGraph",
+    "growing-sequence": "GrowingSequence",
     "invariant-ellipsoid": "InvariantEllipsoid",
     "no-common-quadratic": "NoCommonQuadratic",
     "parameter-quadratic": "ParameterQuadratic",
     "saturated-ellipsoid": "SaturatedEllipsoid",
-    "unstable-contact": "UnstableContact",
-    "unstable-mixture": "UnstableMixture",
-    "unstable-mode": "UnstableMode",
-    "unstable-period": "UnstablePeriod",
-    "unstable-value": "UnstableValue",
 }
 
 __getattr__ = late_names(__name__, {name: kind.replace("-", "_") for kind, name in KINDS.items()})

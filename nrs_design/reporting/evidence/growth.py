@@ -11,8 +11,6 @@ import numpy as np
 
 from nrs_design.proof.bounds import lower, nearly
 from nrs_design.proof.constant import system_at
-from nrs_design.proof.evidence.unstable_contact import in_contact_and_free
-from nrs_design.proof.evidence.unstable_mode import free_motions
 from nrs_design.proof.switching import ARBITRARY
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
@@ -152,7 +150,7 @@ class GrowthPage(AbstractPage):
     def _in_a_mode(self) -> Iterator[Block]:
         """Stay in the mode, from the eigenvector of its worst eigenvalue."""
         ((name, _),) = self._growth.steps
-        modes = (*self.system.modes, *free_motions(self.system))
+        modes = (*self.system.modes, *self.system.free_motions())
         index = next(i for i, mode in enumerate(modes) if mode.name == name)
         single = alone(replace(self.system, modes=modes), index)
         response, (values,) = unstable_run(single, 0), mode_eigenvalues(single)
@@ -205,7 +203,7 @@ class GrowthPage(AbstractPage):
 
     def _through_contact(self, low: float) -> Iterator[Block]:
         """Repeat the sequence, along the motion that grows."""
-        modes = in_contact_and_free(self.system)
+        modes = self.system.every_mode
         system = self.system.with_modes(modes, self.system.states, ARBITRARY)
         # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
         time, factor = (1.0, low) if self.is_discrete else (1 / max(low, 1e-9), math.e)

@@ -6,7 +6,7 @@ This table is the only place in the reports that knows a kind by its name.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -95,22 +95,23 @@ def _traces(e: Any) -> Offer:
     return Offer(weights=tuple((name, Fraction(traces[name], total)) for name in heaviest))
 
 
-def _contact_sequence(e: Any) -> Offer:
-    steps = tuple((name, Fraction(count)) for name, count in e.steps)
-    return Offer(growth=Growth(steps, factor=e.factor[0]))
+def _sequence(e: Any) -> Offer:
+    if e.share is not None:
+        return Offer(growth=Growth(share=e.share), parts=((0, replace(e, share=None)),))
+    if e.names_unstable_mode:
+        return Offer(growth=Growth(((e.steps[0][0], Fraction(0)),)))
+    if e.is_average:
+        return Offer(weights=e.steps, growth=Growth())
+    return Offer(growth=Growth(e.steps, e.edges, None if e.factor is None else e.factor[0]))
 
 
 _OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
     "constant-force": _constant_force,
     "graph": _graph,
+    "growing-sequence": _sequence,
     "invariant-ellipsoid": _one,
     "no-common-quadratic": _traces,
     "parameter-quadratic": _ends,
     "saturated-ellipsoid": _one,
-    "unstable-contact": _contact_sequence,
-    "unstable-mixture": lambda e: Offer(weights=e.weights, growth=Growth()),
-    "unstable-mode": lambda e: Offer(growth=Growth(((e.mode, Fraction(0)),))),
-    "unstable-period": lambda e: Offer(growth=Growth(e.steps, e.edges)),
-    "unstable-value": lambda e: Offer(growth=Growth(share=e.share), parts=((0, e.part),)),
 }

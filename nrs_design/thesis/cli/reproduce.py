@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.printing import insist, note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.thesis.comparison import ReproducedValue
-    from nrs_design.thesis.gallery.counterpart import Counterpart
+    from nrs_design.thesis.figures import Counterpart
 
 _GALLERY = "figures.html"
 
 
+@command("reproduce")
 def reproduce(
     html: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the table as an HTML page, too.")
@@ -28,13 +29,11 @@ def reproduce(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Simulate and draw counterparts of figures 6.14 to 6.34, and write figures.html "
+            help="Simulate and draw the records of figures 6.14 to 6.34, and write figures.html "
             "and a CSV of each run there (some ten seconds).",
         ),
     ] = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Recompute the numbers that the thesis prints, and say which are printed differently.
 
     Exit code 0: every row is what it is on record to be. 1: a recomputed value has drifted.
@@ -51,30 +50,29 @@ def reproduce(
     for page in (html, figures and figures / _GALLERY):
         if page is not None:
             check_place(page, PAGE)
-    with progress("recomputing", quiet=quiet) as step:
+    with progress("recomputing") as step:
         table = recompute(step)
         gallery = None if figures is None else _draw(figures, step)
     if html is not None:
         link = None if figures is None else _link(html, figures / _GALLERY)
         write_output(html, render_page(table, link), replaces=PAGE)
-    if as_json:
-        print_json("reproduce", _summary(table, gallery))
-    elif not quiet:
-        _print(table, gallery)
     if html is not None:
-        note(f"page written to {html}", quiet=quiet)
+        note(f"page written to {html}")
     if figures is not None:
-        note(f"figures written to {figures / _GALLERY}", quiet=quiet)
+        note(f"figures written to {figures / _GALLERY}")
     for row in drifted(table):
-        note(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
-    raise typer.Exit(exit_codes.REFUTED if drifted(table) else exit_codes.PROVED)
+        insist(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
+    return Answer(
+        lambda: _summary(table, gallery),
+        lambda: _print(table),
+        exit_codes.unless(drifted(table)),
+    )
 
 
 def _draw(folder: Path, step: Progress) -> tuple[Counterpart, ...]:
     """Write the page of figures and the runs that they show."""
     from nrs_design.output import PAGE, RESPONSE, write_outputs
-    from nrs_design.thesis.gallery.figures import draw_counterparts
-    from nrs_design.thesis.gallery.page import gallery_page
+    from nrs_design.thesis.figures import draw_counterparts, gallery_page
 
     found = draw_counterparts(step)
     runs = {folder / f"{name}.csv": run for one in found for name, run in one.runs.items()}
@@ -126,13 +124,13 @@ def _summary(
         "source": CONVERTED,
     }
     if gallery is not None:
-        from nrs_design.thesis.gallery.page import summarize_gallery
+        from nrs_design.thesis.figures import summarize_gallery
 
         content["figures"] = summarize_gallery(gallery)
     return content
 
 
-def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
+def _print(table: tuple[ReproducedValue, ...]) -> None:
     from nrs_design.thesis.page import format_within
     from nrs_design.thesis.table import CONVERTED, counts_line, printed_errors
 
@@ -172,10 +170,4 @@ def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] 
     if errors:
         print_table("Errors of the print", ["error", "where", "what", "rows"], errors)
     say(CONVERTED)
-    if gallery is not None:
-        from nrs_design.thesis.gallery.page import count_outcomes
-
-        outcomes = count_outcomes(gallery)
-        told = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items())
-        say(f"figures, {sum(outcomes.values())} statements: {told}")
     say(counts_line(table))

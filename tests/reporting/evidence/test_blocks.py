@@ -7,8 +7,8 @@ import pytest
 
 from nrs_design.proof.evidence import (
     BlockTriangular,
-    UnstableMode,
 )
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.reporting.document import Table
@@ -39,7 +39,7 @@ def test_blocks_are_called_by_the_names_of_their_pages():
 
 
 def test_blocks_that_are_not_needed_have_no_rate():
-    page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, UnstableMode("m0", "1")),)))
+    page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, staying("m0")),)))
     assert table(page) == {
         "1": ("x1", "not needed", ""),
         "2": ("x2", "a mode that is not stable", ""),
@@ -54,7 +54,7 @@ def test_the_structure_is_drawn_once():
 
 
 def test_the_witness_of_a_block_runs_in_the_whole_family():
-    unstable = UnstableMode("m0", "1")
+    unstable = staying("m0")
     page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, unstable),)))
     assert page.meaning()[1:] == page_of(GROWING, unstable).meaning()
     assert page.limits() == page_of(GROWING, unstable).limits()

@@ -1,16 +1,15 @@
 from __future__ import annotations
 
-from nrs_design.proof.constant import system_at
 from nrs_design.reporting.document import Paragraph
 from nrs_design.reporting.evidence import page_of
 from tests.proof.systems import genuine
 
-SYSTEM, EVIDENCE = genuine("unstable-value")
+SYSTEM, EVIDENCE = genuine("growing-sequence, value")
 
 
 def test_it_is_the_page_of_its_part_at_one_value():
     page = page_of(SYSTEM, EVIDENCE)
-    part = page_of(system_at(SYSTEM, EVIDENCE.share), EVIDENCE.part)
+    part = page_of(*EVIDENCE.at_value(SYSTEM))
     assert page.meaning()[1:] == part.meaning()
     assert page.limits()[:-1] == part.limits()
     assert "a narrower range may be stable" in page.limits()[-1]

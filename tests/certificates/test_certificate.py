@@ -34,7 +34,7 @@ from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix, number_i
 Q = ((1, 0), (0, 1))
 EXAMPLES = ROOT / "specs" / "examples"
 OBSTRUCTION = "no-common-quadratic"
-POLYNOMIAL = ["common-polynomial", OBSTRUCTION]
+POLYNOMIAL = ["graph", OBSTRUCTION]
 PROOF = common_quadratic(Q, 0, Fraction(1, 2))
 IMPOSSIBLE = NoCommonQuadratic((("m0", ((1,), (0,))),))
 UNSTABLE = staying("m0")
@@ -118,16 +118,16 @@ def test_claims_in_words():
 @pytest.mark.parametrize(
     ("path", "verdict", "kinds"),
     [
-        (COMMUTING, "proved", ["common-quadratic"]),
+        (COMMUTING, "proved", ["graph"]),
         (PRINT_ERROR, "refuted", ["growing-sequence"]),
         (EXAMPLES / "dayawansa-martin-6.nrs.yaml", "proved", POLYNOMIAL),
-        (EXAMPLES / "geromel-colaneri.nrs.yaml", "proved", ["mode-quadratic", OBSTRUCTION]),
+        (EXAMPLES / "geromel-colaneri.nrs.yaml", "proved", ["graph", OBSTRUCTION]),
     ],
 )
 def test_file_and_id(path, verdict, kinds):
     certificate = run_certification(read_spec(path)).certificate
     document = json.loads(dump(certificate))
-    assert document["schema"] == SCHEMA == "nrs-design/certificate/5"
+    assert document["schema"] == SCHEMA == "nrs-design/certificate/6"
     assert [item["kind"] for item in document["statements"]] == kinds
     assert certificate.evidence is certificate.statements[0]
     assert document["verdict"] == certificate.verdict == verdict

@@ -613,7 +613,7 @@ class TestLyingSolvers:
 def test_slightly_wrong_answers_do_not_pass(monkeypatch):
     """A Q for a = 5.82 is not one for a = 5.9, however near."""
     below = certify(dayawansa_martin("5.82"), limits=ANY_RATE).evidence
-    Q = np.array(below.Q, dtype=float)
+    Q = np.array(below.nodes[0].form, dtype=float)
     monkeypatch.setattr(lmi, "solve_by_interior_point", lambda *arguments: Q)
     assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
     assert outcome(dayawansa_martin("5.9")) == ("proved", "impossible")
@@ -686,7 +686,7 @@ def one_rung(lies):
     return (ladder.Rung("lies", Method.LMI, lambda facts: True, search),)
 
 
-@pytest.mark.parametrize("lie", [WRONG, replace(GOOD, Q=((1, 0), (0, -1)))])
+@pytest.mark.parametrize("lie", [WRONG, common_quadratic(((1, 0), (0, -1)), 0, Fraction(1, 2))])
 @pytest.mark.parametrize("twice", [False, True])
 def test_a_search_that_lies_proves_nothing(monkeypatch, lie, twice):
     monkeypatch.setattr(ladder, "LADDER", one_rung([lie]))

@@ -41,7 +41,7 @@ def test_rates_while_contact_is_lost(k, Mt, degree, rate):
     system = thesis_robot(k, BOTH, Mt)
     evidence = found(search_conewise_polynomial, system, degree=degree // 2)
     assert shape_of(evidence) == "conewise-polynomial"
-    assert float(evidence.in_contact.rate) > 0.98 * rate
+    assert float(evidence.rate) > 0.98 * rate
     if degree > 4:
         lower = found(search_conewise_polynomial, system, degree=2, optimize_rate=False)
         assert lower is None

@@ -159,7 +159,7 @@ def test_motions_of_three_axes_by_their_equations(contact, seed):
     system = axes(BOTH, coupling, contact=contact)
     item = proof(contact)
     generator = np.random.default_rng(seed)
-    Q = np.array(item.Q, dtype=float) / 2.0**item.denominator_log2
+    Q = np.array(item.nodes[0].form, dtype=float) / 2.0**item.denominator_log2
     M = symmetric(generator, float(coupling.lightest), float(coupling.heaviest))
     C, G = (
         rotation(generator) * float(size or 0)

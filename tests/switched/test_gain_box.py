@@ -119,7 +119,7 @@ class TestCorners:
         for at in product((F(0), F(1, 3), F(1, 2), F(1)), repeat=4):
             k, b, m, d = (between(s, *ends) for s, ends in zip(at, BOX, strict=True))
             rows = loop_rows(False, Admittance(m, d), KelvinVoigt(k, b), "deflection")
-            assert is_definite(decrease(rows, evidence.Q, evidence.rate, system.time))
+            assert is_definite(decrease(rows, evidence.nodes[0].form, evidence.rate, system.time))
 
 
 def between(share, low, high):

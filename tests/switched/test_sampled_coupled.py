@@ -168,7 +168,7 @@ def test_ten_thousand_steps_of_three_axes(seed):
     """V falls at its rate at every step, whatever modes the axes are in, and what links do."""
     found, generator = proof("2.15", "1.5"), np.random.default_rng(seed)
     system, item = found.system, found.evidence
-    Q = np.array(item.Q, dtype=float) / 2.0**item.denominator_log2
+    Q = np.array(item.nodes[0].form, dtype=float) / 2.0**item.denominator_log2
     states, keeps = system.states, float(item.rate) ** 2 * (1 + 1e-9)
     omega, taus = states.index("omega [rad/s]"), np.full(3, float(TAU))
     contact, free = (

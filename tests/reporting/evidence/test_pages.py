@@ -118,11 +118,11 @@ def questions(nodes, known):
 @pytest.mark.parametrize(
     ("text", "count"),
     [
-        ("isinstance(e, CommonQuadratic)", 1),
-        ("isinstance(e, evidence.CommonQuadratic)", 1),
-        ("isinstance(e, ModeQuadratic | ModePolynomial)", 1),
-        ("RULED = (ModeQuadratic, ModePolynomial)\nisinstance(e, RULED)", 1),
-        ("Ruled = ModeQuadratic | ModePolynomial\nMORE = (Ruled, int)\nisinstance(e, MORE)", 1),
+        ("isinstance(e, FormsOnGraph)", 1),
+        ("isinstance(e, evidence.FormsOnGraph)", 1),
+        ("isinstance(e, FormsOnGraph | BlockTriangular)", 1),
+        ("RULED = (FormsOnGraph, BlockTriangular)\nisinstance(e, RULED)", 1),
+        ("Ruled = FormsOnGraph | BlockTriangular\nMORE = (Ruled, int)\nisinstance(e, MORE)", 1),
         ("type(e) is GrowingSequence", 1),
         ("e.kind == 'block-triangular'", 1),
         ("match e:\n  case GrowingSequence(steps=name): pass", 1),

@@ -269,7 +269,6 @@ def test_a_report_assembles_and_searches_nothing():
         "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
         "nrs_design.switched.assumption",
-        "nrs_design.switched.assumption_kinds",
     }
 
 
@@ -315,7 +314,7 @@ def test_only_the_pipeline_calls_the_stages():
 SHARED = {
     # Modules of a table offer them all.
     *("render", "header_text", "source_text"),
-    *("rows", "counterparts", "choose", "analyze"),
+    *("rows", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.

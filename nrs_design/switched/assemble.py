@@ -17,8 +17,10 @@ from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
     identified_texts,
+    logic_texts,
     preload_texts,
     scale_texts,
+    sensor_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import (
@@ -143,9 +145,6 @@ def assemble(
         If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
-    from nrs_design.switched.logic_assumptions import logic_texts
-    from nrs_design.switched.sensor_assumptions import sensor_texts
-
     _check_scale(scale)
     if spec.sampling is not None:
         system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)

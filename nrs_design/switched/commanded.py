@@ -15,14 +15,11 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.assumption_kinds import INPUTS
+from nrs_design.switched.assumption import say
 from nrs_design.switched.free_motion import force_rows
 from nrs_design.switched.shared_state import SharedState
 
-_ASSUMED = INPUTS.says(
-    "A velocity command acts where a statement names it; it may change arbitrarily fast within its "
-    "bound."
-)
+_ASSUMED = say("inputs.command")
 
 
 def with_command(

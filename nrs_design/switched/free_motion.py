@@ -16,7 +16,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.touched import FREE
-from nrs_design.switched.assumptions import LOST_CONTACT
+from nrs_design.switched.assumption import say
 from nrs_design.switched.modes import Rows, velocity_mode
 from nrs_design.switched.shared_state import SharedState
 
@@ -40,7 +40,10 @@ def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
         mode for controller in state.design.controllers for mode in free_modes(controller, state)
     ]
     return Contact(
-        tuple(free), tuple(_pulls(state)), required=contact == "losable", loss=LOST_CONTACT
+        tuple(free),
+        tuple(_pulls(state)),
+        required=contact == "losable",
+        loss=say("contact-lost.surface"),
     )
 
 

@@ -29,7 +29,8 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.touched import FREE
-from nrs_design.switched.assumptions import LOST_CONTACT, at_once_texts
+from nrs_design.switched.assumption import say
+from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.free_motion import could_pull
@@ -104,7 +105,9 @@ def close_sampled_loop(
     losable = None
     if free:
         flying = tuple(item.mode for item in free)
-        losable = Contact(flying, pulls, required=spec.contact == "losable", loss=LOST_CONTACT)
+        losable = Contact(
+            flying, pulls, required=spec.contact == "losable", loss=say("contact-lost.surface")
+        )
     flights = None
     if loss.startswith("anywhere"):
         flights = _flights(frame, plant, design, motions, pulls)

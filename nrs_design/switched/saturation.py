@@ -23,7 +23,7 @@ from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.assumption_kinds import LIMITED
+from nrs_design.switched.assumption import say
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
 from nrs_design.switched.shared_state import SharedState
 
@@ -94,15 +94,10 @@ def with_saturation(
         NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
     )
     filtered = "" if low_pass is None else _FILTERED
-    limited = LIMITED.says(
-        "Where signals saturate: the velocity command of the admittance is cut off at "
-        f"{rounded_up(velocity_limit, 'rad/s')} before the motion loop takes it, or at any "
-        "larger value on either side, or nowhere; the command of the motor likewise at "
-        f"{rounded_up(command_limit, spec.actuator.command)}; nothing else is. Nobody commands "
-        f"anything, and nothing disturbs, while the motion decays.{filtered}",
-        f"{rounded_up(velocity_limit, 'rad/s')} and "
-        f"{rounded_up(command_limit, spec.actuator.command)}, or more",
-    )
+    velocity = rounded_up(velocity_limit, "rad/s")
+    command = rounded_up(command_limit, spec.actuator.command)
+    bound = f"{velocity} and {command}, or more"
+    limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)
     return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
 
 

@@ -15,7 +15,6 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import ConewiseQuadratic, GrowingSequence
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
-from nrs_design.switched.assumption_kinds import MOTOR
 from tests.proof.truth import combine
 from tests.search.support import thesis_robot
 
@@ -66,7 +65,7 @@ def test_states_and_assumptions():
     assert "its gain stays in [0.0004744866, 0.0004938534] rad/s/rpm" in text
     assert "its time constant stays in [0.034398, 0.035802] s, and may change" in text
     assert "against an inertia of 1.213 kg*m^2" in text
-    assert system.assumptions[0].kind is MOTOR
+    assert system.assumptions[0].id == "motor.joint"
     unloaded = thesis_robot(SOFT, BOTH, "0.01", "0.02")
     assert "does not slow the motor" in " ".join(unloaded.assumptions)
 

@@ -16,7 +16,7 @@ from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
-from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement, achieve_impedance
+from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
@@ -167,7 +167,7 @@ def analyze(
     )
     asked = dict(requirement.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
-    achieved = achieve_impedance(requirement, measures, Mt, Bt)
+    achieved = requirement.achieved(measures, Mt, Bt)
     creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,

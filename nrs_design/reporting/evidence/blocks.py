@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -32,8 +32,9 @@ from nrs_design.reporting.figures.blocks import draw_blocks
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.simulation.greedy import greedy_run, relative_norms
 from nrs_design.simulation.norms import quadratic_norm
-from nrs_design.simulation.switched import norms, worst_direction, worst_switching
+from nrs_design.simulation.switched import worst_direction
 
 _LISTED = 32
 _STRUCTURE = (
@@ -122,14 +123,14 @@ class BlocksPage(AbstractPage):
         hardest = hardest_modes(system, None, trials_per_step(system))
         norm, (step, steps) = quadratic_norm(identity), horizon(hardest, rate)
         initial = worst_direction(hardest, identity)
-        response = worst_switching(hardest, norm, initial, step, steps)
-        response = until_small(response, norms(response, norm))
+        response = greedy_run(replace(hardest, contact=None), norm, initial, step, steps)
+        response = until_small(response, relative_norms(response, norm))
         line = bound_line(response, rate, system.time, "slope of the slowest block, ")
         run = Illustration(
             "run",
             BESIDE,
             f"{GREEDY} {_RUN}{freely(system)}{some_modes(system, hardest)}",
-            draw_run(response, norms(response, norm), line, hardest, EUCLIDEAN),
+            draw_run(response, relative_norms(response, norm), line, hardest, EUCLIDEAN),
         )
         return simulated(run, *phase_plane(hardest, response, None))
 

@@ -20,10 +20,9 @@ from nrs_design.reporting.evidence.runs import (
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.constant_force import pushed_in, pushed_norm
-from nrs_design.simulation.contact import with_free_modes, worst_contact
+from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
 from nrs_design.simulation.norms import scaled_matrices
 from nrs_design.simulation.rates import mode_rates
-from nrs_design.simulation.switched import norms
 
 _MEANING = (
     "In units of d, and counted from there, the deflection is e. The function is "
@@ -87,19 +86,19 @@ class ForcePage(AbstractPage):
         norm = pushed_norm(Q, float(slope / largest))
         hardest = hardest_modes(self.system, Q, trials_per_step(self.system))
         driven = pushed_in(hardest)
-        flying = with_free_modes(driven)
+        flying = all_modes(driven)
         initial = np.zeros(driven.order)
         initial[-2:] = 1.0, -1.0
         step, steps = horizon(flying, float(mode_rates(hardest, Q).min()))
-        response = worst_contact(driven, norm, initial, step, steps)
-        response = until_small(response, norms(response, norm))
+        response = greedy_run(driven, norm, initial, step, steps)
+        response = until_small(response, relative_norms(response, norm))
         label = "root of V over its first value [1]"
         return (
             Illustration(
                 "constant-force-run",
                 "Run under a constant force",
                 f"{_RUN}{freely(self.system)}{some_modes(self.system, hardest)}",
-                draw_run(response, norms(response, norm), None, flying, label),
+                draw_run(response, relative_norms(response, norm), None, flying, label),
             ),
             contact_figure(self.system, response, "constant-force-deflection"),
         )

@@ -11,10 +11,10 @@ from nrs_design.reporting.document import Block, Illustration, Table
 from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.figures.lyapunov import draw_quadratic, draw_quadratics
 from nrs_design.reporting.formatting import number
-from nrs_design.simulation.contact import clipped
 from nrs_design.simulation.norms import (
     Array,
     Norm,
+    clipped,
     polynomial_norm,
     quadratic_norm,
     scaled_matrices,

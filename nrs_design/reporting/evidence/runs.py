@@ -26,16 +26,9 @@ from nrs_design.reporting.figures.run import (
 )
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.admissible import active_norms, admissible_run
-from nrs_design.simulation.contact import with_free_modes, worst_contact
+from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
 from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
-from nrs_design.simulation.rounds import all_modes, norms_in_rounds, worst_rounds
-from nrs_design.simulation.switched import (
-    SwitchedRun,
-    fine_step,
-    norms,
-    worst_direction,
-    worst_switching,
-)
+from nrs_design.simulation.switched import SwitchedRun, fine_step, worst_direction
 
 if TYPE_CHECKING:
     from nrs_design.simulation.norms import Array, Norm
@@ -139,15 +132,15 @@ def bounded_run(
         Contact is lost and made as the run says.
     """
     if lost:
-        drawn, simulate = with_free_modes(hardest), worst_contact
+        played, drawn = hardest, all_modes(hardest)
         initial = initial if initial[-1] > 0 else -initial
         how, holds, letter = _BOUNCING, f"{_HOLDS} and any loss of contact.", "w"
     else:
-        drawn, simulate = hardest, worst_switching
+        played = drawn = replace(hardest, contact=None)
         how, holds, letter = GREEDY, f"{_HOLDS}.", "x"
     step, steps = horizon(drawn, rate)
-    response = simulate(hardest, norm, initial, step, steps)
-    response = until_small(response, norms(response, norm))
+    response = greedy_run(played, norm, initial, step, steps)
+    response = until_small(response, relative_norms(response, norm))
     said = " ".join(text for text in (how, note, holds) if text)
     run = Illustration(
         "run",
@@ -155,7 +148,7 @@ def bounded_run(
         f"{said}{freely(system)}{some_modes(system, hardest)}",
         draw_run(
             response,
-            norms(response, norm),
+            relative_norms(response, norm),
             bound_line(response, rate, system.time, "proved bound, "),
             drawn,
             f"|{letter}(t)| / |{letter}(0)| {label} [1]",
@@ -204,15 +197,15 @@ def rounds_run(system: SwitchedSystem, forms: Sequence[Form], rate: float) -> Se
     """
     each = step_norms(forms, system)
     _, steps = horizon(system, rate)
-    response = worst_rounds(system, each, _slowest(system, each), steps)
-    response = until_small(response, norms_in_rounds(response, each))
+    response = greedy_run(system, each, _slowest(system, each), 1.0, steps)
+    response = until_small(response, relative_norms(response, each))
     run = Illustration(
         "run",
         AGAINST,
         f"{_ROUNDS} {_HOLDS}.",
         draw_run(
             response,
-            norms_in_rounds(response, each),
+            relative_norms(response, each),
             bound_line(response, rate, Time.DISCRETE, "proved bound, "),
             all_modes(system),
             "|w(t)| / |w(0)| in the norm of its step [1]",
@@ -228,7 +221,7 @@ def _slowest(system: SwitchedSystem, each: list[Norm]) -> Array:
     directions[:, -1] = np.abs(directions[:, -1])
 
     def kept(x: Array) -> float:
-        return float(norms_in_rounds(worst_rounds(system, each, x, size), each)[-1])
+        return float(relative_norms(greedy_run(system, each, x, 1.0, size), each)[-1])
 
     return max(directions, key=kept)
 
@@ -307,7 +300,8 @@ def unbounded_run(system: SwitchedSystem) -> Section:
     if arbitrary:
         norm, identity = quadratic_norm(np.eye(system.order)), np.eye(system.order)
         initial = worst_direction(hardest, identity)
-        response = worst_switching(hardest, norm, initial, step, _UNKNOWN_STEPS)
+        kept = replace(hardest, contact=None)
+        response = greedy_run(kept, norm, initial, step, _UNKNOWN_STEPS)
     else:
         response = admissible_run(hardest, functions, step, _UNKNOWN_STEPS)
     run = Illustration(
@@ -325,14 +319,14 @@ def _unbounded_rounds(system: SwitchedSystem) -> Section:
     """Draw a bad run in kept contact of modes that take turns."""
     kept, norm = replace(system, contact=None), quadratic_norm(np.eye(system.order))
     norms = [norm] * (1 if system.clock is None else system.clock.length)
-    response = worst_rounds(kept, norms, np.eye(system.order)[-1], _UNKNOWN_STEPS)
+    response = greedy_run(kept, norms, np.eye(system.order)[-1], 1.0, _UNKNOWN_STEPS)
     run = Illustration(
         "run",
         "One bad run",
         "Simulated run in kept contact from a deflection: at every step the adversary takes the "
         "mode, of those whose turn it is, after which the Euclidean norm is largest. There is no "
         "bound: nothing is proved.",
-        draw_run(response, norms_in_rounds(response, norms), None, kept, EUCLIDEAN),
+        draw_run(response, relative_norms(response, norms), None, kept, EUCLIDEAN),
     )
     return simulated(run)
 

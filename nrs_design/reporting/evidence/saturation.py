@@ -17,10 +17,9 @@ from nrs_design.reporting.evidence.runs import simulated
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.titles import SATURATION
-from nrs_design.simulation.contact import clipped, with_free_modes
-from nrs_design.simulation.norms import quadratic_norm
-from nrs_design.simulation.saturation import share_cut_off, worst_saturated
-from nrs_design.simulation.switched import norms
+from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
+from nrs_design.simulation.norms import clipped, quadratic_norm
+from nrs_design.simulation.saturation import share_cut_off
 
 _MEANING = (
     "Wherever V = w' Q w <= 1, each signal is a mixture of its argument and of h w, which keeps "
@@ -106,11 +105,11 @@ class SaturationPage(AbstractPage):
         Q = np.ldexp(np.array(form.Q, dtype=float), -self.offer.denominator_log2)
         norm, drawn = quadratic_norm(Q), system
         if system.contact is not None:
-            norm, drawn = clipped(norm), with_free_modes(system)
+            norm, drawn = clipped(norm), all_modes(system)
         states = [np.array(x.floats())[:, 0] for x in self._saturation.start.states]
         initial = float(level) * max(states, key=lambda x: float(x @ Q @ x))
         fastest = max(np.abs(np.linalg.eigvals(mode.A.floats())).max() for mode in system.modes)
-        response = worst_saturated(system, norm, initial, _SHARE / float(fastest), _STEPS)
+        response = greedy_run(system, norm, initial, _SHARE / float(fastest), _STEPS)
         bound = (f"exp(-{lower(rate)} t)", np.exp(-float(rate) * response.time))
         cut = _cut_off(share_cut_off(system, response))
         label = "root of V over its first value [1]"
@@ -118,7 +117,7 @@ class SaturationPage(AbstractPage):
             "saturated-run",
             "Run with signals that saturate",
             _RUN.format(start=self._saturation.start.name, cut=cut),
-            draw_run(response, norms(response, norm), bound, drawn, label),
+            draw_run(response, relative_norms(response, norm), bound, drawn, label),
         )
 
 

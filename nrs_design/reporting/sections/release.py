@@ -17,8 +17,8 @@ from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.places import linked
+from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.release import certified, simulate_release
-from nrs_design.simulation.rounds import all_modes
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result

@@ -7,7 +7,7 @@ from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
-from nrs_design.switched.sensor_assumptions import sensor_texts
+from nrs_design.switched.assumptions import sensor_texts
 from tests.support import SOFT_TISSUE
 
 SENSOR = Sensor({"bias": Fraction(1, 3), "drift": Fraction(1, 2)}, LowPass(2, Fraction(200)), 1e-8)

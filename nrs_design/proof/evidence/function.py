@@ -36,7 +36,17 @@ class AbstractFunction(AbstractEvidence):
 
 
 def find_odd_form(Q: IntegerMatrix, denominator_log2: int, order: int) -> str | None:
-    """Say why numerators and a denominator are not those of a form on so many states, or None."""
+    """Say why a form does not have its shape, or None.
+
+    Parameters
+    ----------
+    Q : integer matrix
+        Its numerators.
+    denominator_log2 : int
+        They are over two to this power.
+    order : int
+        Number of states.
+    """
     if not is_square(Q, order):
         return f"Q is not a {order} x {order} matrix"
     if not 0 <= denominator_log2 <= MAX_INTEGER_BITS:

@@ -6,6 +6,7 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 
 from benchmarks.measure import Finding, Size
 from nrs_design.certificates.bounds import bound_on
@@ -13,7 +14,6 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.pipeline import Designed, Overrides, run_certification, search_limits
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 from nrs_design.simulation.worst_case import worst_against
 from nrs_design.spec import LoadedSpec, parse_spec
 

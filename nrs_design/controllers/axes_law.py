@@ -8,8 +8,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.step_analysis import check_range
-from nrs_design.controllers.step_parts import BEYOND
 
 AXES = (1, 2, 3)
 # What a law has beside an admittance with inertia, by its coefficients.

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.operations import Operation, StepLaw, Value
-from nrs_design.controllers.step_parts import BEYOND
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.exporters.c_names import CNames, literal
 
 SIGN = {

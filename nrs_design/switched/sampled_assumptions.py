@@ -157,7 +157,7 @@ def assume_sampled(
         ),
         *(_DISTURBED if spec.disturbances is not None else ()),
         kinds.INPUTS.says(_beside(spec, inputs + REST[loss == "on the surface"])),
-        *_spring_texts(frame),
+        *_spring_texts(frame, design),
         *_placed_texts(frame, design, reset=reset),
         UNCOUPLED,
         *contact_texts(design),
@@ -207,8 +207,8 @@ def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[
     )
 
 
-def _spring_texts(frame: Frame) -> tuple[Assumption, ...]:
-    if not frame.sprung:
+def _spring_texts(frame: Frame, design: ControllerDesign) -> tuple[Assumption, ...]:
+    if not any(c.law.spring for c in design.controllers):
         return ()
     return SPRING if frame.idle is None else SPRING_BESIDE, _AT_SAMPLE
 
@@ -220,11 +220,12 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     yield _PLACED
     if not all(c.contacts for c in design.controllers):
         yield _IN_POSITION
-    if frame.gathers:
+    if any(c.law.bleeds for c in design.controllers):
         yield from _integral_texts(frame, design)
-    if frame.idle is None or not frame.integrates:
+    moving = [c.law for c in design.controllers if c.law.commands == "velocity"]
+    if frame.idle is None or not moving:
         return
-    what = "velocity vm and reference" if frame.has_inertia else "the reference"
+    what = "velocity vm and reference" if any(law.states for law in moving) else "the reference"
     yield kinds.IDLE.says(
         f"While a position or force controller is active, {what} of the impedance controllers act "
         f"on nothing, and a sample leaves d = {exact_decimal(frame.idle)} of them."
@@ -317,8 +318,7 @@ def _actuator_text(ranges: ActuatorRanges) -> str:
 
 
 def _coefficients(frame: Frame, gains: Mapping[str, SampledGains]) -> str:
-    motion = frame.motion
-    texts = [f"Kp = {exact_decimal(motion.Kp)}", f"Kd/T = {exact_decimal(motion.D)}"]
+    texts = [f"Kp = {exact_decimal(frame.step.Kp)}", f"Kd/T = {exact_decimal(frame.step.D)}"]
     for name, item in gains.items():
         coefficients = item.law.coefficients.items()
         texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in coefficients]

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from nrs_design.controllers.sampled import SampledMotion
 from scipy.signal import cont2discrete
 
 from nrs_design.controllers.float32 import is_float32, to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.sampled import SampledMotion
 
 PERIOD = Fraction(1, 500)
 LAW = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))

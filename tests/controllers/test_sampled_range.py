@@ -5,10 +5,10 @@ from fractions import Fraction
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from nrs_design.controllers.sampled_range import coefficient_ranges
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.sampled_range import coefficient_ranges
 from nrs_design.errors import DesignError
 from nrs_design.spec.interval import Interval
 

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
+from nrs_design.controllers.step_parts import StepFrame
 from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from nrs_design.controllers.float32 import is_float32
-from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import (
     LowPass,
     Sensor,
@@ -19,7 +20,6 @@ from nrs_design.controllers.sensor import (
 )
 from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_law import build_placed_law
-from nrs_design.controllers.step_parts import StepFrame
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.spec.sensor import SensorSpec

@@ -4,6 +4,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from nrs_design.controllers.step_parts import BEYOND
 
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.gains import idle_share
@@ -11,7 +12,6 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.shipped import shipped_law, step_limits
 from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_logic import StepLogic
-from nrs_design.controllers.step_parts import BEYOND
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline import run_design

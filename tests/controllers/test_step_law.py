@@ -8,16 +8,16 @@ holds the same loop against simulations step by step.
 from fractions import Fraction
 
 import numpy as np
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
+from nrs_design.controllers.step_parts import StepFrame, StepLimits
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
-from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_analysis import (
     linear_forms,
 )
 from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
-from nrs_design.controllers.step_parts import StepFrame, StepLimits
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 from tests.controllers.roundings import term_counts

@@ -3,9 +3,7 @@
 from fractions import Fraction
 
 import pytest
-
 from nrs_design.controllers.sampled import SampledMotion
-from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_parts import (
     BEYOND,
     StepFrame,
@@ -17,6 +15,8 @@ from nrs_design.controllers.step_parts import (
     lags,
     motion,
 )
+
+from nrs_design.controllers.sensor import LowPass
 
 MOTION = SampledMotion(Fraction(1000), Fraction(2000))
 

@@ -5,13 +5,14 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+from nrs_design.controllers.sampled import SampledForce
+from nrs_design.controllers.step_parts import StepFrame, StepLimits
+
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sampled import SampledForce
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import build_mixed_law, build_placed_law, build_step_law
-from nrs_design.controllers.step_parts import StepFrame, StepLimits
 from tests.support import program_named
 
 PERIOD = Fraction(1, 500)

@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-
-from benchmarks.bounded_runs import CASES, hold_against_bound
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.simulation.single_precision import Choices, simulate_single_precision
+
+from benchmarks.bounded_runs import CASES, hold_against_bound
 from nrs_design.switched.sampled_frame import Frame
 
 TAU, KM, PERIOD = Fraction("0.0351"), Fraction("4.8417e-4"), Fraction(1, 500)

@@ -5,8 +5,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-
 from nrs_design.controllers.sampled import (
     UNIT,
     SampledAdmittance,
@@ -14,6 +12,8 @@ from nrs_design.controllers.sampled import (
     SampledMotion,
     rounding_share,
 )
+from scipy.linalg import expm
+
 from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.switched.sampled_frame import Frame, Turn
 

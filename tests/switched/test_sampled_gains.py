@@ -3,9 +3,9 @@
 from fractions import Fraction
 
 import pytest
+from nrs_design.controllers.sampled import SampledForce, SampledMotion
 
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.sampled import SampledForce, SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.gain_box import GainBox

@@ -4,11 +4,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from nrs_design.controllers.sampled import SampledForce
 
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers import step_law, step_parts
 from nrs_design.controllers.operations import Operation
-from nrs_design.controllers.sampled import SampledForce
 from nrs_design.errors import InternalError
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec

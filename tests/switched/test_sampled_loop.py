@@ -5,18 +5,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from nrs_design.controllers.sampled import SampledMotion
+from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.sampled import SampledMotion
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
-from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.assumption_kinds import MOTOR, NOMINAL_MOTOR

@@ -4,8 +4,8 @@ from fractions import Fraction
 
 from hypothesis import given
 from hypothesis import strategies as st
-
 from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+
 from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_step import short
 

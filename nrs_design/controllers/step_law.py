@@ -129,6 +129,7 @@ def build_law(
     """
     limits, parts = frame.limits, parts_of(laws.values())
     places = [part.place for part in parts if part.place is not None]
+    states = [state for part in reversed(parts) for state in part.states]
     inputs = {value.name: value for part in parts for value in part.inputs}
     placed = POSITION.name in inputs
     takes_hand = HAND.name in inputs
@@ -157,8 +158,9 @@ def build_law(
         (
             *map(limits.within, places),
             error,
-            *(limits.within(state) for part in reversed(parts) for state in part.states),
+            *(limits.within(state) for state in states if state.stored),
             *_lags(frame.order),
+            *(limits.within(state) for state in states if not state.stored),
         ),
         (
             *frame.coefficients,

@@ -35,9 +35,8 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
 
     def find_fault(self, given: ForceControllerSpec) -> str | None:
         """Say if the gain is negative, or another one than the spec fixes."""
-        if self.Kp < 0:
-            return "gain Kp is negative"
-        return AbstractCompliantLaw.find_fault(self, given)
+        negative = "gain Kp is negative" if self.Kp < 0 else None
+        return AbstractCompliantLaw.find_fault(self, given) or negative
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:

@@ -21,7 +21,7 @@ import typer
 from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
-from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
+from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic
 from nrs_design.proof.evidence.function import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -158,11 +158,12 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     those of the package; the others are left to `tests.proof.truth`.
     """
     discrete = system.time is Time.DISCRETE
-    if not isinstance(evidence, (CommonQuadratic, UnstableMode)):
+    if not (isinstance(evidence, CommonQuadratic) or evidence.names_unstable_mode):
         return truth.holds(system, evidence)
-    if isinstance(evidence, UnstableMode):
-        (mode,) = [mode for mode in system.modes if mode.name == evidence.mode]
-        may_stay = truth.bounds_of(system, evidence.mode)[1] is None
+    if evidence.names_unstable_mode:
+        ((name, _),) = evidence.steps
+        (mode,) = [mode for mode in system.modes if mode.name == name]
+        may_stay = truth.bounds_of(system, name)[1] is None
         return may_stay and not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
     Q, rate = exact(evidence.Q), evidence.rate
     if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):

@@ -15,7 +15,7 @@ from nrs_design import __version__
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.groups import CommandGroup
-from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.printing import insist, print_json
 from nrs_design.cli.streams import lasting
 from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
@@ -154,15 +154,15 @@ def main() -> None:
         failed = "the output cannot be written"
         if error.filename is not None:
             failed = f"{printable(error.filename)} cannot be read or written"
-        note(f"error: {failed} ({error.strerror})")
+        insist(f"error: {failed} ({error.strerror})")
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:
             import traceback
 
             for line in traceback.format_exc().split("\n"):
-                note(line)
-        note(
+                insist(line)
+        insist(
             f"internal error: {type(error).__name__}: {error} (a defect of nrs-design, not a "
             "verdict; run it again as `nrs-design -v ...` and report what that prints)"
         )

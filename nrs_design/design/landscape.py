@@ -158,7 +158,7 @@ def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alter
 def delay_borne(
     requirement: Requirement, Mt: float, Bt: float, stiffness: FloatArray
 ) -> FloatArray:
-    """Return the smallest dead time in s that destabilizes, over the stiffness of the contact.
+    """Return the delay margin in s over the stiffness of the contact.
 
     At the worst corner of all other ranges, with the designed gains in the environment that they
     are designed for. Zero where the loop is unstable without any; infinite where no dead time

@@ -16,13 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.design.loops import Loops
-from nrs_design.design.transfer import (
-    FloatArray,
-    hurwitz,
-    positive_roots,
-    product_parts,
-    squared_magnitude,
-)
+from nrs_design.design.polynomials import frequencies, product_parts, ratio
+from nrs_design.design.transfer import FloatArray, hurwitz
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.switched.cut_loop import AbstractAxis, Place, ProcessorAxis
 
@@ -83,9 +78,8 @@ class LoopFamily:
         """
         one = np.array([Mt]), np.array([Bt])
         free, contact = (self._polynomials(_CLOSED, *one)[i][0] for i in (0, 1))
-        real, imaginary = product_parts(free.tolist(), contact.tolist())
-        x = positive_roots(imaginary)
-        critical = -np.polyval(real, x) / np.polyval(squared_magnitude(contact.tolist()), x)
+        rows = free[None], contact[None]
+        critical = -ratio(*rows, frequencies(product_parts(*rows)[1]))[0].real
         ends = [-free[0] / contact[0]] if contact[0] else []
         limit = min((float(k) for k in (*critical, *ends) if k > 0), default=math.inf)
         probe = limit / 2 if math.isfinite(limit) else 1.0

@@ -9,15 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.design.polynomials import frequencies, squared
 from nrs_design.design.transfer import (
     ComplexArray,
     FloatArray,
     TransferFunction,
     hurwitz,
     poles,
-    positive_roots,
-    ratio_slope,
-    squared_magnitude,
     static_gain,
     to_control,
 )
@@ -236,10 +234,11 @@ class _StepResponse:
 
 def _bandwidth(tf: TransferFunction) -> float:
     # By hand: python-control looks on a grid, and finds none where the magnitude rises first.
-    half = 0.5 * static_gain(tf) ** 2
-    excess = np.polysub(squared_magnitude(tf.numerator), half * squared_magnitude(tf.denominator))
-    crossings = np.sqrt(positive_roots(excess))
-    return float(crossings[0]) if len(crossings) else math.inf
+    rows = np.zeros((2, tf.order + 1))
+    rows[0, tf.order + 1 - len(tf.numerator) :], rows[1] = tf.numerator, tf.denominator
+    above, below = squared(rows)
+    crossings = frequencies((above - 0.5 * static_gain(tf) ** 2 * below)[None])
+    return float(np.fmin.reduce(crossings[0], initial=math.inf))
 
 
 def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
@@ -343,9 +342,9 @@ def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
 
 def _breakaway(open_loop: TransferFunction, last: float) -> FloatArray:
     """Return the gains up to the last one where two real poles meet."""
-    num, den = open_loop.numerator, open_loop.denominator
-    points = np.roots(ratio_slope(den, num))
-    points = points.real[np.abs(points.imag) <= 1e-7 * np.abs(points)]
+    num, den = np.poly1d(open_loop.numerator), np.poly1d(open_loop.denominator)
+    roots: ComplexArray = (den.deriv() * num - den * num.deriv()).roots.astype(np.complex128)
+    points = roots.real[np.abs(roots.imag) <= 1e-7 * np.abs(roots)]
     below = np.polyval(num, points)
     gains = -np.polyval(den, points[below != 0]) / below[below != 0]
     return np.asarray(gains[(gains > 0) & (gains < last)])

@@ -21,8 +21,8 @@ With ``z = (1 + w)/(1 - w)`` and ``w = j t``, ``t = tan(omega T/2)``, the sign o
 which is a polynomial in ``x = t^2``, but for ``omega t = (2/T) x h`` with ``h = atan(t)/t``. It is
 affine in h, so its sign is shown for a number below h and one above: convergents of Gauss's
 continued fraction of atan. ``exp(-T/tau)`` is enclosed, too. So every coefficient lies between
-rational numbers, and since x is positive, the polynomial lies between two rational ones. Sturm's
-theorem decides those.
+rational numbers, and since x is positive, the polynomial lies between two rational ones, whose
+roots are isolated rigorously.
 """
 
 from __future__ import annotations

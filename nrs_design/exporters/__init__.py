@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from nrs_design.output import (
-    C_AXES,
-    C_AXES_HEADER,
     C_HEADER,
     C_MONITOR,
     C_MONITOR_HEADER,
@@ -42,7 +40,6 @@ class Format:
     executable: bool = False
     # Whether the module also has ``remarks``, which says what rendered files lack.
     remarks: bool = False
-    provable: bool = True  # Whether a proof of the sampled loop is about these files
 
 
 DESIGN = "a proof of the design"
@@ -62,15 +59,6 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             SAMPLED,
             {".h": C_HEADER, ".c": C_SOURCE},
             executable=True,
-        ),
-        "axes": Format(
-            "axes",
-            "C99: the admittances of three axes in one step, without the motor loop",
-            "--unproved: no proof is about this step",
-            {"_axes.h": C_AXES_HEADER, "_axes.c": C_AXES},
-            executable=True,
-            remarks=True,
-            provable=False,
         ),
         "vectors": Format(
             "vectors",

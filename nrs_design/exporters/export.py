@@ -12,7 +12,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline import Designed, run_certification, run_design, wrong_kind
+from nrs_design.pipeline import Designed, interaction_of, run_certification, run_design
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -80,20 +80,15 @@ def export_design(
     CertificateError
         If the given file is not a certificate at all.
     """
-    if not isinstance(loaded.spec, InteractionDesignSpec):
-        raise wrong_kind(
-            loaded,
-            f"a spec of kind {loaded.spec.kind} has no gains to export",
-            "use a spec of kind interaction-design",
-        )
-    _check_one_period(loaded, loaded.spec)
-    period = None if execution is None else _period(loaded, loaded.spec, execution.sample_time)
+    spec = interaction_of(loaded, "has no gains to export")
+    _check_one_period(loaded, spec)
+    period = None if execution is None else _period(loaded, spec, execution.sample_time)
     export = (
         _certified_afresh(loaded, progress)
         if certificate is None
         else _certified_by(loaded, certificate, progress)
     )
-    export = replace(export, spec=loaded.spec)
+    export = replace(export, spec=spec)
     if execution is None or period is None or export.verdict == "rejected":
         return export
     return _executable(loaded, export, period, unproved=execution.unproved)

@@ -20,6 +20,11 @@ class Rule:
     explanation: str  # What the rule means and how it is decided
     remedy: str  # What to do if it is broken
 
+    @property
+    def heading(self) -> str:
+        """Its id and title."""
+        return f"{self.id}: {self.title}"
+
 
 @dataclass(frozen=True, slots=True)
 class Word:
@@ -28,6 +33,11 @@ class Word:
     word: str
     explanation: str
     remedy: str
+
+    @property
+    def heading(self) -> str:
+        """The word itself."""
+        return self.word
 
 
 COMMAND = Rule(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
+from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
 
@@ -69,6 +70,29 @@ class SwitchedSystem:
     def is_losable(self) -> bool:
         """Whether a statement must cover the loss of contact."""
         return self.flights is not None or (self.contact is not None and self.contact.required)
+
+    @property
+    def free(self) -> tuple[Mode, ...]:
+        """Modes of free motion beside the modes."""
+        return () if self.contact is None else self.contact.free
+
+    @property
+    def every_mode(self) -> tuple[Mode, ...]:
+        """Modes in contact and free."""
+        return (*self.modes, *self.free)
+
+    def free_motions(self) -> tuple[Mode, ...]:
+        """TRUSTED: return the modes of free motion without the deflection, where they count.
+
+        That is where the loss of contact must be covered; where modes take turns, none of them is
+        in force for long.
+        """
+        if self.contact is None or not self.contact.required or self.clock is not None:
+            return ()
+        return tuple(
+            Mode(mode.name, RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator))
+            for mode in self.free
+        )
 
     @property
     def order(self) -> int:

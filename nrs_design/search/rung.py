@@ -8,8 +8,8 @@ from functools import partial
 from math import inf
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.mode import Time
+from nrs_design.proof.spectrum import affordable, is_stable
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.channels import Channel
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rules import Indices, Rules
+from nrs_design.simulation.norms import Array, Indices
+from nrs_design.simulation.rules import Rules
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,14 +13,12 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.contact import clipped, worst_contact
-from nrs_design.simulation.norms import Array, Norm, quadratic_norm
-from nrs_design.simulation.rounds import worst_rounds
+from nrs_design.simulation.greedy import greedy_run
+from nrs_design.simulation.norms import Array, Norm, clipped, quadratic_norm
 from nrs_design.simulation.switched import (
     SwitchedRun,
     fine_step,
     simulate_switching,
-    worst_switching,
 )
 
 _STEPS = 1500
@@ -128,13 +126,8 @@ def _runs(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> Iterator
         return
     sizes = [_size(outputs.velocity), _size(outputs.force)]
     for norm in ([] if Q is None else [quadratic_norm(Q)]) + sizes:
-        if system.clock is not None:
-            kept = norm if system.contact is None else clipped(norm)
-            yield worst_rounds(system, [kept] * system.clock.length, start, _STEPS)
-        elif system.contact is None:
-            yield worst_switching(system, norm, start, step, _STEPS)
-        else:
-            yield worst_contact(system, clipped(norm), start, step, _STEPS)
+        kept = norm if system.contact is None else clipped(norm)
+        yield greedy_run(system, kept, start, step, _STEPS)
 
 
 def _size(rows: Array) -> Norm:

@@ -8,14 +8,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array
-
-Indices = NDArray[np.int64]
+from nrs_design.simulation.norms import Array, Indices
 
 # Most steps of a dwell time, and most nodes of the graph: beyond them the grid is coarser.
 _STAY, _NODES = 40, 4000

@@ -25,8 +25,8 @@ from nrs_design.simulation.adversary import (
     random_signals,
 )
 from nrs_design.simulation.game import Aim, Game, Signals, free_counterparts, play
-from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rules import Indices, fitting_step
+from nrs_design.simulation.norms import Array, Indices
+from nrs_design.simulation.rules import fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 from nrs_design.simulation.worst_outputs import pushes_only
 

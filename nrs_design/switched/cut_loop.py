@@ -34,7 +34,8 @@ from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
-from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
@@ -273,7 +274,7 @@ class ProcessorAxis(AbstractAxis):
         if self.sampling.round > 1:
             between = [row[:n] for row in frame.rows(law, 0, values, Turn.MOTION)[:n]]
             for _ in range(self.sampling.round - 1):
-                rows = [*multiply(between, rows)]
+                rows = [*multiply_matrices(between, rows)]
         return rows
 
     def _frame(self, law: DiscreteLaw, place: Place) -> Frame:
@@ -365,13 +366,14 @@ def _on_the_axis(polynomial: Polynomial, period: Fraction) -> Polynomial:
     half = period / 2
     total, power = [polynomial[0]], [ONE]
     for c in polynomial[1:]:
-        power = _product(power, [-half, ONE])
-        risen = _product(total, [half, ONE])
+        power = multiply(power, [-half, ONE])
+        risen = multiply(total, [half, ONE])
         total = [a + c * b for a, b in zip(risen, power, strict=True)]
     return tuple(total)
 
 
-def _product(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+def multiply(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    """Multiply two polynomials."""
     found = [ZERO] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
         for j, y in enumerate(b):

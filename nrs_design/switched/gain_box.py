@@ -14,8 +14,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import RANGE
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 
 
@@ -69,9 +68,11 @@ class GainBox:
     def range_texts(self, name: str) -> tuple[Assumption, ...]:
         """Say where the gains of a controller of that name may be, if they have ranges."""
         return tuple(
-            RANGE.says(
-                f"{gain} of {name} stays in [{_text(interval.low)}, {_text(interval.high)}] "
-                f"{self.law.units[gain]} and may change arbitrarily fast."
+            say(
+                "range.gain",
+                gain=gain,
+                name=name,
+                ends=f"[{_text(interval.low)}, {_text(interval.high)}] {self.law.units[gain]}",
             )
             for gain, interval in self.ranges.items()
             if interval.low != interval.high

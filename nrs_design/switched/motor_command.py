@@ -19,8 +19,7 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.motion import MOTOR_COMMAND
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import NOT_QUANTIZED
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 
@@ -43,12 +42,8 @@ class MotorCommand:
                 f", less {rounded_up(self.at_once, unit)} that errors of a sample may add to its "
                 "own command"
             )
-        return NOT_QUANTIZED.says(
-            f"The driver takes commands up to {rounded_down(self.limit, unit)}{less}. Where a "
-            f"statement bounds the {self.output.name} by no more than that, it does not saturate "
-            "from rest under the disturbances of that statement; of other motions, saturation is "
-            "left out."
-        )
+        limit = rounded_down(self.limit, unit)
+        return say("not-quantized.command", limit=limit, less=less, output=self.output.name)
 
 
 def motor_command(

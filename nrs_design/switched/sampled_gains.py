@@ -9,8 +9,7 @@ from fractions import Fraction
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import RANGE
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.parameter_box import Box
 
@@ -65,6 +64,4 @@ class SampledGains:
         said = {"a": "a", "c": "b/(1 - a)" if "a" in self.box.ranges else "b", "Kt": "Kt"}
         for symbol, interval in self.box.ranges.items():
             ends = f"[{rounded_down(interval.low)}, {rounded_up(interval.high)}]"
-            yield RANGE.says(
-                f"{said[symbol]} of {name} stays in {ends} and may change at every sample."
-            )
+            yield say("range.sampled-gain", gain=said[symbol], name=name, ends=ends)

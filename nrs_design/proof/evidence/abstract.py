@@ -286,11 +286,10 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
-        good = self.shows.is_good
         loses = system.contact is not None and system.contact.required
-        if loses and good and not self.covers_lost_contact:
+        if loses and self.shows.is_good and not self.covers_lost_contact:
             return f"evidence of kind {self.kind} does not cover the loss of contact"
-        if system.couplings and good and not self.covers_coupling:
+        if system.couplings and self.shows.is_good and not self.covers_coupling:
             return f"evidence of kind {self.kind} does not cover what axes do to each other"
         if system.clock is not None and not self.covers_clock:
             return f"evidence of kind {self.kind} does not know that modes take turns"

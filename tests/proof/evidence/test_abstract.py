@@ -13,10 +13,9 @@ from nrs_design.proof.evidence import (
     KINDS,
     AbstractEvidence,
     Shows,
-    UnstableMode,
-    UnstableValue,
 )
 from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_indefinite
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -144,7 +143,7 @@ def test_where_the_environment_does_not_act_nothing_pulls():
     assert Said().claim(slack).endswith(f"{pulling}.")
     assert not Said().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
     for share, tail in (("0", "."), ("1/2", f"{pulling}.")):
-        value = UnstableValue(Fraction(share), UnstableMode("m0 to m1", "0"))
+        value = replace(staying("m0 to m1"), share=Fraction(share))
         assert value.claim(constant).endswith(f"in kept contact{tail}")
     among = replace(
         slack,
@@ -366,21 +365,20 @@ SETS |= {"periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 FACTS = {
     # The careful answer is no; these kinds show more.
-    "allows_unequal_modes": RULED | {"unstable-mode"},
+    "allows_unequal_modes": RULED | {"growing-sequence"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
-    "covers_clock": {"periodic-quadratic", "unstable-contact", "unstable-period"},
+    "covers_clock": {"periodic-quadratic", "growing-sequence"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
-    | {"unstable-contact"},
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"},
     "covers_mixtures": SETS
     | BOUNCING
     | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,
-    "names_unstable_mode": {"unstable-mode"},
+    "names_unstable_mode": {"growing-sequence"},
 }
 
 

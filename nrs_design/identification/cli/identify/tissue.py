@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from nrs_design.reporting import Report
 
 
+@command("identify-tissue")
 def tissue(
     data: DataFiles,
     model: Model = ModelOption.AUTO,
@@ -67,9 +69,7 @@ def tissue(
     environment: EnvironmentName = None,
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Fit five tissue laws to one or several records, compare them and choose one.
 
     Columns: time_s, deflection_m, force_N, or time_s, angle_rad, torque_Nm (mm, mN, deg, ms and
@@ -87,8 +87,8 @@ def tissue(
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
-    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
-    records = read_all(data, read_tissue, columns or [], quiet=quiet)
+    outputs = Destinations.checked(write, report, date)
+    records = read_all(data, read_tissue, columns or [])
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)
     preparation = Preparation(
@@ -114,7 +114,7 @@ def tissue(
         )
     elif environment is not None:
         raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
-    with progress("fitting", quiet=quiet) as step:
+    with progress("fitting") as step:
         found = identify_tissue(
             records,
             law,
@@ -125,10 +125,8 @@ def tissue(
             declared=asked is None,
         )
         series = _series(found) if prony else None
-    outputs.deliver(
-        "identify-tissue",
-        summary=lambda: _summary(found, arm, series),
-        show=lambda: _print(found, arm, series or []),
+    return outputs.deliver(
+        Answer(lambda: _summary(found, arm, series), lambda: _print(found, arm, series or [])),
         page=lambda: _page(found, arm, series or []),
         merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
         caveats=found.caveats,

@@ -24,7 +24,7 @@ WANTED = Value("wanted_torque", "Fd", "N*m", BEYOND, "wanted torque of the conta
 
 
 @dataclass(frozen=True, slots=True)
-class Gain:
+class StepGain:
     """A number of a part, by mode."""
 
     # As the exported code, and as formulas call it.
@@ -41,11 +41,11 @@ class Gain:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class StepPart:
     """Operations that laws share."""
 
     name: str
-    gains: tuple[Gain, ...] = ()
+    gains: tuple[StepGain, ...] = ()
     inputs: tuple[Value, ...] = ()
     # The reference that the part moves, where it has one, and all other states.
     place: Value | None = None
@@ -61,9 +61,9 @@ class Part:
 
 
 # Position and force control share their place in a program: a correction of the commanded position.
-PROPORTIONAL = Part(
+PROPORTIONAL = StepPart(
     "proportional",
-    (Gain("Kf", "Kp", "rad/(N*m)"),),
+    (StepGain("Kf", "Kp", "rad/(N*m)"),),
     (POSITION, WANTED),
     before=(
         Operation("lack", "subtract", "wanted_torque", FORCE),

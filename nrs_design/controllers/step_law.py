@@ -20,7 +20,7 @@ from fractions import Fraction
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.parts import BEYOND, FORCE, HAND, POSITION, Part
+from nrs_design.controllers.parts import BEYOND, FORCE, HAND, POSITION, StepPart
 from nrs_design.controllers.sensor import SampledLowPass
 
 UNITS = {"command": "rpm"}
@@ -76,7 +76,7 @@ class StepFrame:
             yield Coefficient(name, *said.get(name, (name, "1")), (number,))
 
 
-def parts_of(laws: Collection[DiscreteLaw]) -> tuple[Part, ...]:
+def step_parts(laws: Collection[DiscreteLaw]) -> tuple[StepPart, ...]:
     """Return the parts of some laws, each once: first of those that are given a position."""
     placed = [law for law in laws if law.law.commands == "position"]
     ordered = (*placed, *(law for law in laws if law not in placed))
@@ -86,7 +86,7 @@ def parts_of(laws: Collection[DiscreteLaw]) -> tuple[Part, ...]:
 
 
 def numbers_in_force(
-    law: DiscreteLaw, parts: Iterable[Part], idle: Fraction | None
+    law: DiscreteLaw, parts: Iterable[StepPart], idle: Fraction | None
 ) -> dict[str, Fraction]:
     """Return the numbers of all parts while one law is active, by name.
 
@@ -94,7 +94,7 @@ def numbers_in_force(
     ----------
     law : DiscreteLaw
         The active one; its numbers need not be those of single precision.
-    parts : iterable of Part
+    parts : iterable of StepPart
         Of all laws of the program.
     idle : Fraction or None
         What a sample leaves of the states of laws that are not active.
@@ -108,7 +108,7 @@ def numbers_in_force(
     return found
 
 
-def _has(law: DiscreteLaw, part: Part) -> bool:
+def _has(law: DiscreteLaw, part: StepPart) -> bool:
     """Tell whether a part is one of a law's own."""
     return part.name in {own.name for own in law.law.parts(law.numbers, beside=False)}
 
@@ -127,7 +127,7 @@ def build_law(
     idle : Fraction, optional
         What a sample leaves of the states of laws that are not active.
     """
-    limits, parts = frame.limits, parts_of(laws.values())
+    limits, parts = frame.limits, step_parts(laws.values())
     places = [part.place for part in parts if part.place is not None]
     states = [state for part in reversed(parts) for state in part.states]
     inputs = {value.name: value for part in parts for value in part.inputs}
@@ -149,7 +149,7 @@ def build_law(
     operations = (
         *_filtered(frame.order),
         *_referred(parts, placed=placed),
-        *_motion(limits),
+        *motion_operations(limits),
         *(operation for part in reversed(parts) for operation in part.after),
     )
     return StepLaw(
@@ -175,7 +175,7 @@ def build_law(
 
 
 def _coefficients(
-    laws: Collection[DiscreteLaw], parts: Iterable[Part], idle: Fraction | None
+    laws: Collection[DiscreteLaw], parts: Iterable[StepPart], idle: Fraction | None
 ) -> Iterator[Coefficient]:
     beside = len({law.law.commands for law in laws}) > 1
     for part in parts:
@@ -198,7 +198,7 @@ def _measured(limits: StepLimits) -> tuple[Value, ...]:
     return limits.within(angle), torque
 
 
-def _referred(parts: Iterable[Part], *, placed: bool) -> Iterator[Operation]:
+def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]:
     """Yield the reference: the commanded position, and what the parts add to it."""
     total = ""
     for part in parts:
@@ -210,7 +210,7 @@ def _referred(parts: Iterable[Part], *, placed: bool) -> Iterator[Operation]:
         yield Operation("reference", "add", "position", total, "angle")
 
 
-def _motion(limits: StepLimits) -> Iterator[Operation]:
+def motion_operations(limits: StepLimits) -> Iterator[Operation]:
     """Yield the PD controller, from ``reference`` and ``angle`` to ``command``."""
     yield Operation("error", "subtract", "reference", "angle", "own", "e")
     yield Operation("proportional", "multiply", "Kp", "error")

@@ -22,9 +22,9 @@ from itertools import takewhile
 from typing import TypeVar
 
 from nrs_design.controllers.laws import DiscreteLaw
-from nrs_design.controllers.parts import Part
+from nrs_design.controllers.parts import StepPart
 from nrs_design.controllers.step_analysis import rounding_share
-from nrs_design.controllers.step_law import StepFrame, numbers_in_force, parts_of
+from nrs_design.controllers.step_law import StepFrame, numbers_in_force, step_parts
 from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
 from nrs_design.switched.sampled_law import (
     ERROR,
@@ -352,7 +352,7 @@ class _Signals:
 @lru_cache(maxsize=8)
 def _beginning(
     frame: Frame,
-) -> tuple[Mapping[str, Fraction], _Signals, tuple[Part, ...]]:
+) -> tuple[Mapping[str, Fraction], _Signals, tuple[StepPart, ...]]:
     """Return roundings, signals and parts of a frame, which all its corners and delays share."""
     shares = frame.roundings
-    return shares, _Signals.of(frame, tuple(shares)), parts_of(frame.laws)
+    return shares, _Signals.of(frame, tuple(shares)), step_parts(frame.laws)

@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.certificates.verify import verify
 from nrs_design.controllers import step_law
-from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce, impedance
+from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
 from nrs_design.controllers.operations import Operation
 from nrs_design.errors import InternalError
 from nrs_design.pipeline import run_design
@@ -24,12 +24,18 @@ POSITION = PositionControl().discretize(Fraction(1), "exact")
 
 @pytest.fixture
 def alter(monkeypatch):
-    """Put other operations in the place of those of a part of the law."""
+    """Put other operations in the place of those of the motion controller, or of an admittance."""
+    given, parts = step_law.motion_operations, Admittance.parts
 
-    def put(module, part, change):
-        given = getattr(module, part)
-        monkeypatch.setattr(module, part, lambda *a, **b: change([*given(*a, **b)]))
+    def put(where, change):
+        if where == "motion":
+            monkeypatch.setattr(step_law, "motion_operations", lambda x: change([*given(x)]))
+        else:
+            monkeypatch.setattr(Admittance, "parts", lambda *a, **b: altered(parts(*a, **b)))
         list_law.cache_clear()
+
+        def altered(found):
+            return tuple(replace(part, after=tuple(change([*part.after]))) for part in found)
 
     yield put
     monkeypatch.undo()
@@ -47,11 +53,11 @@ def velocity_first(found):
 
 
 ALTERED = {
-    "as it is": (step_law, "_motion", lambda found: found),
-    "a sign": (step_law, "_motion", one("command", kind="subtract")),
-    "a coefficient": (step_law, "_motion", one("proportional", left="Kd_over_T")),
-    "an order": (impedance, "_moving", velocity_first),
-    "a rounding": (impedance, "_moving", one("next_velocity", rounding="own", symbol="w")),
+    "as it is": ("motion", lambda found: found),
+    "a sign": ("motion", one("command", kind="subtract")),
+    "a coefficient": ("motion", one("proportional", left="Kd_over_T")),
+    "an order": ("admittance", velocity_first),
+    "a rounding": ("admittance", one("next_velocity", rounding="own", symbol="w")),
 }
 
 
@@ -71,12 +77,11 @@ def test_a_certificate_is_rejected_where_the_law_was_altered(alter, what):
 
 def test_a_rounded_number_taken_somewhere_new_is_refused(alter):
     """What that adds to the roundings there would be left out of the bounds."""
-    alter(
-        step_law, "_motion", lambda found: [*found, Operation("again", "multiply", "Kp", "error")]
-    )
+    again = Operation("again", "multiply", "Kp", "error")
+    alter("motion", lambda found: [*found, again])
     list_law(0, kinds_of([MOVING]))
     # Not used any further, it is nothing.
-    alter(step_law, "_motion", one("derivative", right="error"))
+    alter("motion", one("derivative", right="error"))
     with pytest.raises(InternalError, match="second order of D e is not bounded"):
         list_law(0, kinds_of([MOVING]))
 

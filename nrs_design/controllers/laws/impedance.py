@@ -12,7 +12,7 @@ from typing import ClassVar
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
-from nrs_design.controllers.parts import BEYOND, FORCE, HAND, Gain, Part
+from nrs_design.controllers.parts import BEYOND, FORCE, HAND, StepGain, StepPart
 from nrs_design.controllers.step_analysis import UNIT
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
@@ -136,7 +136,7 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         return DiscreteLaw(cls, numbers | ({"Kt": Kt} if Kt else {}))
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[Part, ...]:
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
         """Return ``xref = xref + T (v - vm)``; the reference of after the error is formed.
 
         Beside controllers that are given a position, the reference is counted from that position;
@@ -271,11 +271,11 @@ _COMMANDED = Value(
 )
 
 
-def _admittance(*, sprung: bool, inert: bool, beside: bool) -> Part:
+def _admittance(*, sprung: bool, inert: bool, beside: bool) -> StepPart:
     place, follows = (_OFFSET, "next_offset") if beside else (_REFERENCE, "next_reference")
     commanded = sprung and not beside
     following = {place.name: follows} | ({"velocity": "next_velocity"} if inert else {})
-    return Part(
+    return StepPart(
         "admittance",
         tuple(_gains(sprung=sprung, inert=inert, beside=beside)),
         (HAND,),
@@ -289,17 +289,17 @@ def _admittance(*, sprung: bool, inert: bool, beside: bool) -> Part:
     )
 
 
-def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Gain]:
+def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[StepGain]:
     if beside:
-        yield Gain("takes_offset", "", "1", ONE)
-        yield Gain("d", "d", "1", ONE, "d")
+        yield StepGain("takes_offset", "", "1", ONE)
+        yield StepGain("d", "d", "1", ONE, "d")
     if sprung:
-        yield Gain("Kt", "Kt", "N*m/rad")
+        yield StepGain("Kt", "Kt", "N*m/rad")
     if inert:
         # Of both states of an idle admittance, the same is left.
-        yield Gain("a", "a", "1", idle="d")
-    yield Gain("b", "b", "rad/(s*N*m)")
-    yield Gain("T", "T", "s", common=True)
+        yield StepGain("a", "a", "1", idle="d")
+    yield StepGain("b", "b", "rad/(s*N*m)")
+    yield StepGain("T", "T", "s", common=True)
 
 
 def _moving(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Operation]:

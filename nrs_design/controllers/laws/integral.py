@@ -18,17 +18,17 @@ from typing import ClassVar
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.operations import Operation, Value
-from nrs_design.controllers.parts import BEYOND, PROPORTIONAL, Gain, Part
+from nrs_design.controllers.parts import BEYOND, PROPORTIONAL, StepGain, StepPart
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, IntegralControllerSpec
 
 # The integral w of the force error is in the reference of every mode. It goes on where the force is
 # controlled with it, w = w + Ki_T (Fd - F), and bleeds in all other modes, w = g w.
-INTEGRAL = Part(
+INTEGRAL = StepPart(
     "integral",
     (
-        Gain("Ki_T", "Ki_T", "rad/(N*m)"),
-        Gain("bled", "g", "1", fixed=Fraction(1), idle="g"),
+        StepGain("Ki_T", "Ki_T", "rad/(N*m)"),
+        StepGain("bled", "g", "1", fixed=Fraction(1), idle="g"),
     ),
     states=(
         Value(
@@ -83,7 +83,7 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         return DiscreteLaw(type(self), {name: number for name, number in numbers.items() if number})
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[Part, ...]:
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
         """Return the correction by the force error, and that by its integral."""
         return PROPORTIONAL, INTEGRAL
 

@@ -16,7 +16,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.parts import PROPORTIONAL, Part
+from nrs_design.controllers.parts import PROPORTIONAL, StepPart
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
@@ -115,7 +115,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return None
 
     @classmethod
-    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[Part, ...]:
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
         """Return the operations of the law: by default, those of a position controller.
 
         Parameters
@@ -199,7 +199,7 @@ class DiscreteLaw:
     """A law as a processor computes it once a period: its operations, with their numbers."""
 
     law: type[AbstractCompliantLaw[Any]]
-    # Single-precision numbers by the names of `Gain`, or what they are at a corner of a range;
+    # Single-precision numbers by the names of `StepGain`, or what they are at a corner of a range;
     # those that are missing are zero.
     numbers: Mapping[str, Fraction]
 

@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import io
+import json
 import os
 import shutil
 import subprocess
@@ -111,11 +112,25 @@ def thinned(values: Iterable[Any], kept: int) -> list[Any]:
     ]
 
 
-def run(*arguments: str | Path | int, cwd: Path) -> subprocess.CompletedProcess[str]:
+def run(
+    *arguments: str | Path | int, cwd: Path, code: int | None = None
+) -> subprocess.CompletedProcess[str]:
     """Run the command line in this process, which takes a tenth of the time of a new one.
 
-    What the start of Python, its streams or its environment decide is seen by `typed` only.
+    What the start of Python, its streams or its environment decide is seen by `typed` only. A test
+    fails unless the exit code is the one that is named.
     """
+    done = _run(arguments, cwd)
+    assert code in (None, done.returncode), f"{done.returncode}: {done.stderr}{done.stdout}"
+    return done
+
+
+def document_of(*arguments: str | Path | int, cwd: Path, code: int | None = None) -> Any:
+    """Return the document that a command prints with ``--json``."""
+    return json.loads(run(*arguments, "--json", cwd=cwd, code=code).stdout)
+
+
+def _run(arguments: Sequence[str | Path | int], cwd: Path) -> subprocess.CompletedProcess[str]:
     command, code = ["nrs-design", *map(str, arguments)], 0
     threshold, settings = gc.get_threshold(), dict(os.environ)
     with (
@@ -138,12 +153,17 @@ def run(*arguments: str | Path | int, cwd: Path) -> subprocess.CompletedProcess[
 
 
 def typed(
-    *arguments: str | Path | int, cwd: Path, environment: dict[str, str] | None = None
+    *arguments: str | Path | int,
+    cwd: Path,
+    environment: dict[str, str] | None = None,
+    code: int | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """Run the command line as a user types it, in a process of its own."""
+    """Run the command line as a user types it, in a process of its own; see `run`."""
     command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
     env = {**os.environ, **(environment or {})}
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
+    assert code in (None, done.returncode), f"{done.returncode}: {done.stderr}{done.stdout}"
+    return done
 
 
 def number_in(text: str) -> Fraction:

@@ -20,13 +20,10 @@ class RunFiles:
     folder: Path
     name: str
     table: Beginning  # How a table begins that may be replaced
-    has_arrays: bool = True  # Whether there is an archive of arrays
 
     def places(self) -> list[tuple[Path, Beginning]]:
         """Return the files, and how one that may be replaced begins."""
         kinds: dict[str, Beginning] = {"csv": self.table, "npz": ARCHIVE, "svg": SVG, "png": PNG}
-        if not self.has_arrays:
-            del kinds["npz"]
         return [(self.folder / f"{self.name}.{ending}", kind) for ending, kind in kinds.items()]
 
     def check(self) -> None:
@@ -34,22 +31,21 @@ class RunFiles:
         for place, kind in self.places():
             check_place(place, kind)
 
-    def outputs(self, table: str, figure: Figure, arrays: bytes = b"") -> list[Output]:
+    def outputs(self, table: str, arrays: bytes, figure: Figure) -> list[Output]:
         """Return what is written.
 
         Parameters
         ----------
         table : str
             The run as CSV.
-        figure : Figure
-            Drawn as SVG and as PNG.
         arrays : bytes
             The run as a NumPy archive.
+        figure : Figure
+            Drawn as SVG and as PNG.
         """
         from nrs_design.reporting.images import to_png, to_svg_file
 
-        held = [arrays] if self.has_arrays else []
-        contents: list[str | bytes] = [table, *held, to_svg_file(figure), to_png(figure)]
+        contents: list[str | bytes] = [table, arrays, to_svg_file(figure), to_png(figure)]
         places = zip(self.places(), contents, strict=True)
         return [(place, content, kind) for (place, kind), content in places]
 

@@ -15,6 +15,8 @@ from nrs_design.cli.printing import is_quiet, progress, say
 from nrs_design.errors import CertificateError
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.certificates.verify import Verification
     from nrs_design.spec import LoadedSpec, Spec
@@ -278,6 +280,27 @@ def _print_gains(certificate: Certificate, spec: Spec) -> None:
             say(f"  {name}: {', '.join(said)}")
             for gain, low, high in _ranges(spec, name):
                 say(f"  {name}: {gain} anywhere in [{low}, {high}]")
+    if spec.kind == "interaction-design" and spec.sampling is not None:
+        _print_sampled_derivative(certificate, spec.sampling.period.exact)
+
+
+def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> None:
+    """Say which Kd a program has that multiplies by Kd/T, where that is another one."""
+    from nrs_design.certificates.units import gain_units
+    from nrs_design.controllers.float32 import exact_decimal
+    from nrs_design.controllers.gains import MOTION
+    from nrs_design.controllers.laws import ProportionalDerivative
+    from nrs_design.spec import parse_exact
+
+    gains = {name: parse_exact(text) for name, text in certificate.gains[MOTION].items()}
+    motion = ProportionalDerivative.of(gains)
+    factor = motion.sampled(period).D
+    if factor * period != motion.Kd:
+        units = gain_units(certificate)[MOTION]
+        say(
+            f"  {MOTION}: a program multiplies by Kd/T = {exact_decimal(factor)} {units['Kp']}, "
+            f"which makes its Kd about {float(factor * period):.10g} {units['Kd']}"
+        )
 
 
 def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:

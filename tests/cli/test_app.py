@@ -27,14 +27,13 @@ def test_help_lists_every_command_and_exit_code(tmp_path):
 
 @pytest.mark.parametrize("command", [c.name for c in make_app().registered_commands])
 def test_every_command_has_an_example(tmp_path, command):
-    result = run(command, "--help", cwd=tmp_path)
-    assert result.returncode == 0
+    result = run(command, "--help", cwd=tmp_path, code=0)
     assert f"nrs-design {command}" in " ".join(result.stdout.split()), result.stdout
 
 
 @pytest.mark.parametrize("arguments", [["nonsense"], ["--nonsense"], ["verify"]])
 def test_wrong_usage(tmp_path, arguments):
-    assert run(*arguments, cwd=tmp_path).returncode == 2
+    run(*arguments, cwd=tmp_path, code=2)
 
 
 def loaded_by(tmp_path, *arguments, **environment):

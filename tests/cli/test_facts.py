@@ -1,6 +1,5 @@
 """What `--margin` says of delay, period and disturbances, beside the box of ranges."""
 
-import json
 import re
 from dataclasses import replace
 from fractions import Fraction
@@ -13,7 +12,7 @@ from nrs_design.reporting.document import Linked, parts_of
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.search.loop_margin import Bracket, CommandMargin, MarginBrackets
 from nrs_design.spec import read_spec
-from tests.support import ROOT, SOFT_TISSUE, run
+from tests.support import ROOT, SOFT_TISSUE, document_of, run
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 THIRD = Fraction(1, 3)
@@ -73,9 +72,9 @@ def test_numbers_of_margins_lead_to_their_lines():
 def test_what_keeps_the_limit_in_json(tmp_path):
     text = f"{TEXT}\ndisturbances: {{command: 8 deg/s}}\n"
     (tmp_path / "commanded.nrs.yaml").write_text(text)
-    result = run("certify-switching", "commanded.nrs.yaml", "--json", "--margin", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    printed = json.loads(result.stdout)
+    printed = document_of(
+        "certify-switching", "commanded.nrs.yaml", "--margin", cwd=tmp_path, code=0
+    )
     force, _ = printed["bounds"]
     (kept,) = printed["loop_margins"]["force_limit"]["disturbances"]
     assert kept["kept_up_to"] == pytest.approx(0.1396263 * 0.3 / force["level"])
@@ -89,8 +88,7 @@ def test_margins_of_a_sampled_loop(tmp_path):
     path = tmp_path / "late.nrs.yaml"
     head, _, _ = TEXT.partition("  withdrawal:")
     path.write_text(f"{head}switching: arbitrary\nsampling: {{period: 10 ms, delay: 0}}\n")
-    result = run("certify-switching", path.name, "--margin", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("certify-switching", path.name, "--margin", cwd=tmp_path, code=0)
     told = result.stderr.splitlines()
     written = next(i for i, line in enumerate(told) if "certificate written to" in line)
     assert written < next(i for i, line in enumerate(told) if "delay 1" in line)

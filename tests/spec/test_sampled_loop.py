@@ -144,7 +144,6 @@ def test_ranges_of_gains_and_force_control_are_read():
 def test_check_says_it_as_a_user_types_it(tmp_path):
     path = tmp_path / "offset.nrs.yaml"
     path.write_text(OFFSET + SAMPLED, encoding="utf-8")
-    done = typed("check", path, cwd=tmp_path)
-    assert done.returncode == 2
+    done = typed("check", path, cwd=tmp_path, code=2)
     assert "controllers.force.offset: in the sampled loop" in done.stderr
     assert "offset.nrs.yaml:42" in done.stderr

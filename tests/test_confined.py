@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from nrs_design import confined
+from nrs_design.arrays.files import unpack_npz
 from nrs_design.confined import encoded, read_confined
 from nrs_design.errors import DataError
 from nrs_design.exporters.deployed_archive import read_archive, unpack_archive
 from nrs_design.foreign import read_npz, unpack_sheet
-from nrs_design.given.files import unpack_npz
 from tests import foreign_readers
 from tests.support import ROOT
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from nrs_design import confined
+from nrs_design.arrays.files import unpack_npz
 from nrs_design.confined import encoded, read_confined
 from nrs_design.errors import DataError
 from nrs_design.exporters.deployed_archive import read_archive, unpack_archive
-from nrs_design.given.files import unpack_npz
 from nrs_design.identification.foreign import read_npz, unpack_sheet
 from tests import foreign_readers
 from tests.support import ROOT

@@ -17,7 +17,7 @@ from nrs_design.given.matrices import is_state_space, read_number, read_rows, ti
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
 from nrs_design.spec.document import parse_document
-from nrs_design.spec.faults import file_faults
+from nrs_design.spec.places import file_faults
 from nrs_design.spec.meaning import hash_meaning
 
 Document = dict[str, Any]

@@ -17,7 +17,7 @@ from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
-from nrs_design.spec.touched import FREE
+from nrs_design.spec.interaction_parts import FREE
 from nrs_design.switched.assumptions import LOST_CONTACT
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import Rows, velocity_mode

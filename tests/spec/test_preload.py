@@ -124,7 +124,7 @@ def test_degrees_cancel():
         ("preload: [2 mm, 8 mm]", "preload: [8 mm, 2 mm]", "not within the preload"),
         ("preload: [2 mm, 8 mm]", "preload: 2 mm", "preload"),
         ("range: [1.1, 1.3]", "range: [0.9, 1.3]", "not between 1 and 3"),
-        ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "not within the range"),
+        ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "outside the range"),
         ("nominal: 1.2,", "nominal: 1.2001,", "finer than 1/1000"),
         ("    exponent: {nominal: 1.2, range: [1.1, 1.3]}\n", "", "exponent"),
         ("switching: arbitrary", "switching: {dwell_time: 1 s}", "its parameters may move"),

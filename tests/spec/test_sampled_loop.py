@@ -110,7 +110,6 @@ def test_periods_that_meet(outer, round_, step):
     sampling = read(TEXT + OUTER.replace("0.1 ms", outer)).sampling
     assert (sampling.round, sampling.step) == (round_, Fraction(step))
     assert sampling.outer == sampling.outer_period.exact
-    assert sampling.find_odd_periods() is None
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,7 @@ class Feature(Generic[S]):
 
 
 @dataclass(frozen=True)
-class Check(Generic[S]):
+class Row(Generic[S]):
     """A row: at a place, a condition that must not hold, the message, and the remedy.
 
     What the condition finds fills the places ``{0}``, ``{1}`` of the texts; ``{s}`` is the part of
@@ -80,22 +80,20 @@ class Check(Generic[S]):
                 yield fault(*texts, *place, *at)
 
 
-def each(
-    parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Check[T]
-) -> tuple[Check[S], ...]:
+def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) -> tuple[Row[S], ...]:
     """Return checks of every part of a spec as checks of the whole.
 
     Parameters
     ----------
     parts : callable
         Takes the whole and yields its parts, each with its place.
-    *checks : Check
+    *checks : Row
         Of one part.
     """
     return tuple(replace(check, parts=parts) for check in checks)  # type: ignore[misc]
 
 
-def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Check[S]:
+def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Row[S]:
     """Return the row that refuses features which are not modelled together.
 
     Parameters
@@ -119,17 +117,17 @@ def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Check
     together = f"{first} beside {' and '.join(beside)}" if beside else first
     together = together.removesuffix(",")
     message, remedy = form.replace("{}", together), ", or ".join(ways)
-    return Check(features[0].at, find, message, remedy, features=features)
+    return Row(features[0].at, find, message, remedy, features=features)
 
 
 def find_faults(
-    checks: Sequence[Check[Any]], said: object, *, partial: bool = False
+    checks: Sequence[Row[Any]], said: object, *, partial: bool = False
 ) -> list[dict[str, Any]]:
     """Return the faults that a table of checks finds.
 
     Parameters
     ----------
-    checks : sequence of Check
+    checks : sequence of Row
         The table.
     said : object
         What the spec says.
@@ -149,7 +147,7 @@ def find_faults(
     return found
 
 
-def run_checks(checks: Sequence[Check[Any]], said: object) -> None:
+def run_checks(checks: Sequence[Row[Any]], said: object) -> None:
     """Raise the faults that a table of checks finds, all of them as one error."""
     if found := find_faults(checks, said):
         raise as_error(found)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nrs_design.spec.check import Check, Feature, not_together
+from nrs_design.spec.check import Feature, Row, not_together
 from nrs_design.spec.features import (
     ANGLE,
     AT_ONCE,
@@ -50,7 +50,7 @@ from nrs_design.spec.features import (
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 
 
-def _beside(first: Feature[Spec], *others: Feature[Spec]) -> Iterator[Check[Spec]]:
+def _beside(first: Feature[Spec], *others: Feature[Spec]) -> Iterator[Row[Spec]]:
     """Yield a row for the first feature beside each of the others."""
     return (not_together(first, other) for other in others)
 
@@ -66,11 +66,11 @@ CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
     (TISSUE_RANGE,),
 )
 
-COMBINATIONS: tuple[Check[Spec], ...] = (
-    *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, COUPLED, IDLE, FORCE_COORDINATES, LOADED),
-    *_beside(PRELOADED, LOSABLE, DISTURBED, FORCE_COORDINATES),
-    *_beside(MEMORY, SAMPLED, IDLE, FORCE_COORDINATES),
-    *_beside(FORCE_COORDINATES, IDLE, COUPLED, SAMPLED),
+COMBINATIONS: tuple[Row[Spec], ...] = (
+    *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, COUPLED, IDLE, LOADED),
+    *_beside(PRELOADED, LOSABLE, DISTURBED),
+    *_beside(MEMORY, SAMPLED, IDLE),
+    *_beside(FORCE_COORDINATES, HAND, PRELOADED, MEMORY, IDLE, COUPLED, SAMPLED),
     not_together(DAMPED_FORCE),
     not_together(HEAVY_AT_ONCE),
     not_together(LOSABLE, LAGGING_AT_ONCE),

@@ -13,7 +13,7 @@ from pydantic import (
     Field,
 )
 
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
@@ -89,10 +89,10 @@ _TOUCHED = (
 )
 
 
-def exclusive(one: str, other: str) -> tuple[Check[Any], ...]:
+def exclusive(one: str, other: str) -> tuple[Row[Any], ...]:
     """Return the check that at most one of two keys is given."""
     return (
-        Check(
+        Row(
             other,
             lambda s: getattr(s, one) is not None and getattr(s, other) is not None,
             f"{one} and {other} exclude each other",
@@ -101,7 +101,7 @@ def exclusive(one: str, other: str) -> tuple[Check[Any], ...]:
     )
 
 
-def exactly_one(ways: dict[str, str]) -> tuple[Check[Any], ...]:
+def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
     """Return the checks that just one of two keys is given.
 
     Parameters
@@ -111,7 +111,7 @@ def exactly_one(ways: dict[str, str]) -> tuple[Check[Any], ...]:
     """
     one, other = ways
     return (
-        Check(
+        Row(
             "",
             lambda s: getattr(s, one) is None and getattr(s, other) is None,
             f"neither {one} nor {other} is given",
@@ -132,7 +132,7 @@ class CostWeights(SpecModel):
     )
 
     checks = (
-        Check(
+        Row(
             "",
             lambda s: s.displayed == 0 and s.sensitivity == 0,
             "both weights are zero",
@@ -224,7 +224,7 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         return self.desired_impedance or (Fraction(1) if ratio is None else ratio)
 
     checks = (
-        Check(
+        Row(
             "Kt.min",
             lambda s: s.Kt is not None and not s.Kt.fixed,
             "the design chooses Mt and Bt only",

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import Field, PrivateAttr
 
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.fields import AxisCount, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import is_less
@@ -89,31 +89,31 @@ class CouplingSpec(SpecModel):
         return "speed" if self.speed is None else "coriolis"
 
     checks = (
-        Check(
+        Row(
             "{0}",
             _doubly,
             "{0} is that of the robot, and declared as well",
             "remove {0} or robot",
         ),
-        Check(
+        Row(
             "gravity_compensated",
             lambda s: s.robot is None and s.gravity_compensated,
             "gravity_compensated is for the bounds of a robot",
             "add robot, or remove gravity_compensated",
         ),
-        Check(
+        Row(
             "",
             lambda s: s.robot is None and s.inertia is None and s.gravity_compensated is None,
             "neither robot nor inertia is given",
             "write `robot: arm.nrs.yaml`, or `inertia: [0.003 kg*m^2, 0.3 kg*m^2]`",
         ),
-        Check(
+        Row(
             "inertia",
             _reversed,
             "the range of inertia ends at {0!r}, below its start {1!r}",
             "write [lowest, highest]",
         ),
-        Check(
+        Row(
             "{0}",
             _half,
             "coriolis and speed belong together: Coriolis torques grow with the speed",

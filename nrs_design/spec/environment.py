@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 from pydantic import Discriminator, Field
 
 from nrs_design.spec import kinds
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
 from nrs_design.spec.interval import Interval
@@ -74,18 +74,18 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         for name, quantity in self.parameters().items():
             yield (name,), (quantity, self.lever_arm)
 
-    checks: ClassVar[tuple[Check[Any], ...]] = (
+    checks: ClassVar[tuple[Row[Any], ...]] = (
         *IdentifiedRangesSpec.checks,
         *each(
             _quantities,
-            Check[Any](
+            Row[Any](
                 "",
                 lambda x: x[1] is None and is_translational(x[0].nominal) and x[0].nominal.text,
                 "{0!r} is linear, and there is no lever_arm",
                 "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or "
                 "write the rotational value at the pivot",
             ),
-            Check[Any](
+            Row[Any](
                 "",
                 lambda x: x[1] and not is_translational(x[0].nominal) and x[0].nominal.text,
                 "{0!r} is rotational, and a lever_arm is given",
@@ -293,9 +293,9 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
 
     checks = (
         *AbstractEnvironmentSpec.checks,
-        Check("about", _of_other_kind, "{0!r} is {1}, and {2}", _LENGTHS),
-        Check("preload", _units, "about and preload have different units", "use one unit"),
-        Check(
+        Row("about", _of_other_kind, "{0!r} is {1}, and {2}", _LENGTHS),
+        Row("preload", _units, "about and preload have different units", "use one unit"),
+        Row(
             "preload",
             _off_preload,
             "about {0!r} is not within the preload [{1}, {2}]",

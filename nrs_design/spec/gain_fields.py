@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity, QuantityKind, is_less
@@ -62,13 +62,13 @@ class GainSpec(SpecModel):
     checks = (
         *BOUND_CHECKS,
         ORDERED_RANGE,
-        Check(
+        Row(
             "range",
             _outside,
             "{0} is outside the range [{s.range[0].text}, {s.range[1].text}]",
             "widen the range or correct the gain",
         ),
-        Check(
+        Row(
             "range",
             _apart,
             "the range [{s.range[0].text}, {s.range[1].text}] and the bounds [{s.min.text}, "

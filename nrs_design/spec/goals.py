@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel
@@ -122,7 +122,7 @@ class GoalsSpec(SpecModel):
     )
 
     checks = (
-        Check(
+        Row(
             "",
             lambda s: not dict(s.given()),
             "no goal is given",

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import partial
 
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.combinations import COMBINATIONS
 from nrs_design.spec.controllers import ControllerSpec, names_in, touched_in
 from nrs_design.spec.faults import Location
@@ -145,7 +145,7 @@ def _creeps(spec: Spec) -> bool:
 
 
 _GOALS = (
-    Check[_Goals](
+    Row[_Goals](
         "{0}",
         lambda g: (
             g.own and next((key for key in sorted(g.keys) if key in OF_THE_CERTIFICATE), None)
@@ -153,16 +153,16 @@ _GOALS = (
         "{0} is a goal for all controllers together",
         "move it to the goals of the spec",
     ),
-    Check[_Goals](
+    Row[_Goals](
         "",
         lambda g: not g.types and set(g.keys) - OF_THE_CERTIFICATE,
         "there is no controller that a goal applies to: they are for impedance and force control",
         "remove goals",
     ),
-    Check[_Goals](
+    Row[_Goals](
         "{0}", lambda g: g.types and g.misplaced(), "{0} is for {1} controllers", "remove it"
     ),
-    Check[_Goals](
+    Row[_Goals](
         "",
         lambda g: g.it.wants_creep and not g.creeps,
         "a goal for the creep, and no errors of a sensor that the robot creeps by",
@@ -207,16 +207,16 @@ def _contacts(spec: Spec) -> set[object]:
     return {contact for c in spec.controllers.values() for contact in c.contacts}
 
 
-INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
+INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Names.
     *each(_named_environments, NO_SUCH),
-    Check(
+    Row(
         "environments.free",
         lambda s: FREE in s.environments,
         "an environment cannot be called 'free': so are the modes without contact",
         "call it by what it is, such as `tissue`",
     ),
-    Check(
+    Row(
         "controllers.motion",
         lambda s: MOTION in s.controllers,
         "a controller cannot be called 'motion': so is the motion loop among the gains and the "
@@ -231,7 +231,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
     # Controllers.
     *each(
         _controllers,
-        Check[_Of](
+        Row[_Of](
             "contacts",
             _Of.misses_its_own,
             "{s.name!r} is designed for {s.it.environment!r}, but that is not among its contacts: "
@@ -239,34 +239,34 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
             "add {s.it.environment} to contacts, or design it for one of them",
         ),
     ),
-    Check(
+    Row(
         "controllers.{0}.type",
         lambda s: s.idle_states is None and _contact_mix(s),
         "{1} is mixed with {2} ({3!r}), and it is not said what the states of {4} controllers do "
         "meanwhile",
         "add `idle_states: {{decay: 20 1/s}}`, or use one kind of controller",
     ),
-    Check(
+    Row(
         "idle_states",
         lambda s: IDLE.find(s) and not _contact_mix(s),
         "idle_states without impedance controllers beside position or force controllers, or "
         "pi-force controllers beside others",
         "remove idle_states",
     ),
-    Check(
+    Row(
         "controllers.{0}.offset",
         _other_offset,
         "{0!r} has offset {1}, {2!r} has {3}: one state cannot hold both",
         "give all force controllers `offset: {3}`",
     ),
-    Check(
+    Row(
         "controllers.{0}.Mt",
         _weightless,
         "{1.name!r} is a hand with a mass, whose force depends on itself where the admittance has "
         "no inertia",
         "give Mt a smallest value above zero",
     ),
-    Check(
+    Row(
         "environments.{0}.model",
         _restless,
         "{1} has no rest position, so {0!r} shares no deflection with {2}",
@@ -275,7 +275,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
     # Goals.
     *each(_common_goals, *_GOALS),
     *each(_own_goals, *_GOALS),
-    Check(
+    Row(
         "goals.peak_torque",
         lambda s: (
             s.goals is not None and s.goals.peak_torque is not None and s.disturbances is None
@@ -284,7 +284,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
         "add `disturbances: {{command: 8 deg/s}}`",
     ),
     # The bound holds for what is declared alone: under friction, of a robot that nobody moves.
-    Check(
+    Row(
         "disturbances",
         lambda s: (
             s.goals is not None
@@ -295,19 +295,19 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
         "peak_torque is wanted, but the bound would be that of a loop without a command",
         "add `command: 8 deg/s`",
     ),
-    Check(
+    Row(
         "goals.delay",
         lambda s: s.goals is not None and s.goals.delay is not None and s.sampling is None,
         "a proof up to a delay is wanted, but the spec has no samples",
         "add `sampling: {{period: 2 ms, delay: [0, 2]}}`, or use min_delay_margin",
     ),
-    Check(
+    Row(
         "goals.constant_force",
         lambda s: CONSTANT_FORCE.find(s) and s.contact != "losable",
         "that contact settles under a constant force is shown through its loss",
         "write `contact: losable`",
     ),
-    Check(
+    Row(
         "goals.constant_force",
         lambda s: (
             CONSTANT_FORCE.find(s)
@@ -316,7 +316,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
         "a constant force settles at one deflection in one environment: another stiffness moves it",
         "let all controllers touch the same environment and no other, or remove the goal",
     ),
-    Check(
+    Row(
         "goals.initial_force",
         lambda s: SATURATED.find(s) and s.limits.command is None,
         "nothing says where the command of the motor saturates",
@@ -324,13 +324,13 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
         "for",
     ),
     # Disturbances, sensor and the motor.
-    Check(
+    Row(
         "disturbances.{0}",
         _undriven,
         "without sampling, {0} is not modelled",
         "add `sampling: {{period: 2 ms, delay: 1}}`, or name the command alone",
     ),
-    Check(
+    Row(
         "disturbances.force_step",
         lambda s: (
             s.sensor is not None
@@ -341,7 +341,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
         "move it to `sensor: {{resolution: ...}}`",
     ),
     *each(_commands, IN_ITS_UNIT),
-    Check(
+    Row(
         "coupling.axes",
         lambda s: (
             s.coupling is not None
@@ -352,7 +352,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
         "a bound under disturbances depends on the number of axes, which is not given",
         "add `axes: 3`, or remove disturbances",
     ),
-    Check(
+    Row(
         "coupling",
         lambda s: COUPLED.find(s) and not LOADED.find(s),
         "axes act on each other against the inertia of the drives, which is not given",
@@ -363,7 +363,7 @@ INTERACTION_CHECKS: tuple[Check[Spec], ...] = (
     *SCENARIO_CHECKS,
     *each(
         _dwell_times,
-        Check[DwellTime](
+        Row[DwellTime](
             "",
             lambda dwell: dwell.unit != "s",
             "{s.text!r} is not a time",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.references import NO_SUCH, Reference
@@ -71,9 +71,9 @@ def _forbidden(spec: Spec) -> Transition | None:
     return next((pair for pair in pairs if pair not in allowed), None)
 
 
-LOGIC_CHECKS: tuple[Check[Spec], ...] = (
+LOGIC_CHECKS: tuple[Row[Spec], ...] = (
     *each(_names, NO_SUCH),
-    Check(
+    Row(
         "switching",
         _about_others,
         "the rules are not about what the mode logic decides",
@@ -81,20 +81,20 @@ LOGIC_CHECKS: tuple[Check[Spec], ...] = (
     ),
     *each(
         _stays,
-        Check[_Stay](
+        Row[_Stay](
             "dwell_time",
             _Stay.too_short,
             "the mode logic keeps {s.name} for {0}, the rules say {1}",
             f"{_REMEDY}; a `hold` in mode_logic keeps it longer",
         ),
-        Check[_Stay](
+        Row[_Stay](
             "longest_dwell_time",
             _Stay.too_long,
             "the mode logic leaves {s.name} {0}, the rules say {1}",
             _REMEDY,
         ),
     ),
-    Check(
+    Row(
         "switching.transitions",
         _forbidden,
         "the mode logic may switch from {0} to {1}, the rules do not allow it",

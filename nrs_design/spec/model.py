@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import CoreSchema, core_schema
 
-from nrs_design.spec.check import Check, run_checks
+from nrs_design.spec.check import Row, run_checks
 
 
 class SpecModel(BaseModel):
@@ -21,7 +21,7 @@ class SpecModel(BaseModel):
 
     # What must not be, whatever its fields are for themselves. Each row asks for the fields that it
     # is about only, so that faults between valid fields are told although others are not valid.
-    checks: ClassVar[tuple[Check[Any], ...]] = ()
+    checks: ClassVar[tuple[Row[Any], ...]] = ()
 
     @model_validator(mode="after")
     def _run_checks(self) -> Self:

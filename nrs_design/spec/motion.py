@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
@@ -64,7 +64,7 @@ class AboutCommands:
         return None if held == self.command else (quoted(self.it.text), held)
 
 
-IN_ITS_UNIT = Check[AboutCommands](
+IN_ITS_UNIT = Row[AboutCommands](
     "",
     AboutCommands.other_unit,
     "{0} is about commands in {1}, and the motor takes {s.command}",
@@ -73,7 +73,7 @@ IN_ITS_UNIT = Check[AboutCommands](
 )
 
 
-def commands_in(command: str, *places: str) -> tuple[Check[Any], ...]:
+def commands_in(command: str, *places: str) -> tuple[Row[Any], ...]:
     """Return the checks that quantities about commands are in the unit that the motor takes.
 
     Parameters
@@ -138,7 +138,7 @@ class ActuatorSpec(IdentifiedRangesSpec):
     checks = (
         *IdentifiedRangesSpec.checks,
         *each(_about_commands, IN_ITS_UNIT),
-        Check(
+        Row(
             "intervals.{0}",
             lambda s: s._missed("gain") or s._missed("time_constant"),
             "the interval [{1}, {2}] does not hold {3!r}",
@@ -158,13 +158,13 @@ class TransferFunctionSpec(SpecModel):
     )
 
     checks = (
-        Check(
+        Row(
             "{0}.0",
             lambda s: next((k for k in ("numerator", "denominator") if not getattr(s, k)[0]), None),
             "the highest coefficient is zero",
             "leave it out",
         ),
-        Check(
+        Row(
             "numerator",
             lambda s: len(s.numerator) >= len(s.denominator),
             "the transfer function is not strictly proper",

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.plausible import unusual
@@ -70,14 +70,14 @@ class IdentifiedSpec(SpecModel):
         "unusual sizes: one line, which is printed with every proof; the gate then passes",
     )
 
-    checks: ClassVar[tuple[Check[Any], ...]] = (
-        Check(
+    checks: ClassVar[tuple[Row[Any], ...]] = (
+        Row(
             "accept_doubt",
             lambda s: s.accept_doubt is not None and not s.doubts and not unusual(s),
             "there are no doubts to accept",
             "remove accept_doubt",
         ),
-        Check(
+        Row(
             "accept_doubt",
             lambda s: s.accept_doubt is not None and not s.accept_doubt.strip(),
             "no reason is given",
@@ -96,9 +96,9 @@ class IdentifiedRangesSpec(IdentifiedSpec):
         "changed by hand since is refused",
     )
 
-    checks: ClassVar[tuple[Check[Any], ...]] = (
+    checks: ClassVar[tuple[Row[Any], ...]] = (
         *IdentifiedSpec.checks,
-        Check(
+        Row(
             "range_id",
             lambda s: s.range_id not in (None, s.values_id()),
             "the values are not those that range_covers and range_id are about: they were changed "

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.quantity import Quantity, is_less
 
 Number = Quantity | Fraction
@@ -54,17 +54,17 @@ def _crossed(said: Any) -> tuple[str, str] | None:
     return (_shown(said.max), _shown(said.min)) if _is_below(said.max, said.min) else None
 
 
-ORDERED_RANGE = Check[Any](
+ORDERED_RANGE = Row[Any](
     "range",
     lambda s: not (s.range and getattr(s, "nominal", None) and _mixed(s)) and _reversed(s),
     "the range ends at {0}, below its start {1}",
     "write [lowest, highest]",
 )
 # Of a nominal value and a range around it.
-RANGE_CHECKS: tuple[Check[Any], ...] = (
-    Check("range", _mixed, "nominal and range have different units", "use one unit"),
+RANGE_CHECKS: tuple[Row[Any], ...] = (
+    Row("range", _mixed, "nominal and range have different units", "use one unit"),
     ORDERED_RANGE,
-    Check(
+    Row(
         "nominal",
         _outside,
         "nominal {0} is outside the range [{1}, {2}]",
@@ -72,6 +72,6 @@ RANGE_CHECKS: tuple[Check[Any], ...] = (
     ),
 )
 # Of a smallest and a largest value.
-BOUND_CHECKS: tuple[Check[Any], ...] = (
-    Check("max", _crossed, "max {0} is below min {1}", "swap them"),
+BOUND_CHECKS: tuple[Row[Any], ...] = (
+    Row("max", _crossed, "max {0} is below min {1}", "swap them"),
 )

@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import did_you_mean
 
 
@@ -25,4 +25,4 @@ class Reference:
         return quoted(self.name), did_you_mean(self.name, self.choices)
 
 
-NO_SUCH = Check[Reference]("", Reference.is_lost, "there is no {s.noun} {0}", "{1}")
+NO_SUCH = Row[Reference]("", Reference.is_lost, "there is no {s.noun} {0}", "{1}")

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, WithJsonSchema
 
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -87,7 +87,7 @@ class TensorSpec(SpecModel):
         return largest if 2 * moments[largest] > sum(moments.values()) else None
 
     checks = (
-        Check(
+        Row(
             "{0}",
             _excess,
             "one moment exceeds the sum of the two others: no body has that inertia",
@@ -112,7 +112,7 @@ class BodySpec(SpecModel):
     )
 
     checks = (
-        Check(
+        Row(
             "inertia",
             lambda s: (s.inertia == "tensor") != (s.tensor is not None),
             "`inertia: tensor` and `tensor` go together",
@@ -162,7 +162,7 @@ class LegsSpec(SpecModel):
     )
 
     checks = (
-        Check(
+        Row(
             "right.azimuth",
             lambda s: abs(sin(s.left.azimuth.si - s.right.azimuth.si)) < 1e-6,
             "the base axes of the side legs are parallel: they cannot point the endoscope",

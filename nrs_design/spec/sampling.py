@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -114,7 +114,7 @@ class SamplingSpec(IdentifiedSpec):
 
     checks = (
         *IdentifiedSpec.checks,
-        Check(
+        Row(
             "outer_period",
             find_odd_periods,
             "{0}",
@@ -166,7 +166,7 @@ class DisturbancesSpec(SpecModel):
         }
 
     checks = (
-        Check(
+        Row(
             "",
             lambda s: not s.bounds() and s.largest_angle is None,
             "no disturbance is named",

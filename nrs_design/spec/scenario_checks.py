@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.references import NO_SUCH, Reference
@@ -126,14 +126,14 @@ def _logic_of_runs(spec: Spec) -> Iterator[tuple[Location, bool]]:
             yield (*at, "control", "logic"), there
 
 
-SCENARIO_CHECKS: tuple[Check[Spec], ...] = (
-    Check(
+SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
+    Row(
         "scenarios.{0}",
         _axis_of_another,
         "{0!r} is the name of a run of {1!r}",
         "give it another name",
     ),
-    Check(
+    Row(
         "scenarios.{0}.axes",
         lambda s: (
             (s.coupling is None or s.coupling.robot is None)
@@ -144,7 +144,7 @@ SCENARIO_CHECKS: tuple[Check[Spec], ...] = (
     ),
     *each(
         _of_three_axes,
-        Check[ScenarioSpec](
+        Row[ScenarioSpec](
             "start",
             lambda run: run.start is not None,
             "three axes begin in a pose",
@@ -154,13 +154,13 @@ SCENARIO_CHECKS: tuple[Check[Spec], ...] = (
     *each(_names, NO_SUCH),
     *each(
         _surfaces,
-        Check[_Surface](
+        Row[_Surface](
             "",
             _Surface.preloaded,
             "{0} is not linear, and environments of one body are",
             "leave beside out, or name linear environments",
         ),
-        Check[_Surface](
+        Row[_Surface](
             "at",
             lambda x: x.depth > 0,
             "the axis rests inside {s.it.environment!r} at the start",
@@ -169,7 +169,7 @@ SCENARIO_CHECKS: tuple[Check[Spec], ...] = (
     ),
     *each(
         _velocities,
-        Check[_Velocity](
+        Row[_Velocity](
             "",
             _Velocity.is_beyond,
             "a velocity of {s.size:.6g} rad/s is beyond the limit of {s.text}",
@@ -178,7 +178,7 @@ SCENARIO_CHECKS: tuple[Check[Spec], ...] = (
     ),
     *each(
         _logic_of_runs,
-        Check[bool](
+        Row[bool](
             "",
             lambda there: not there,
             "the spec has no mode_logic of type thresholds",

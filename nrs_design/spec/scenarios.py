@@ -11,7 +11,7 @@ from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -122,9 +122,9 @@ Seed = Annotated[
 ]
 
 
-def one_of(message: str, remedy: str) -> tuple[Check[Any], ...]:
+def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:
     """Return the check that just one field of a model is given."""
-    return (Check("", lambda s: sum(v is not None for _, v in s) != 1, message, remedy),)
+    return (Row("", lambda s: sum(v is not None for _, v in s) != 1, message, remedy),)
 
 
 class SinusoidSpec(SpecModel):
@@ -307,7 +307,7 @@ class ScenarioLimitsSpec(SpecModel):
     )
 
     checks = (
-        Check(
+        Row(
             "",
             lambda s: not s.named,
             "no limit is named",
@@ -369,13 +369,13 @@ class ScenarioSpec(SpecModel):
         return key, quoted(self.length.text)
 
     checks = (
-        Check(
+        Row(
             "",
             lambda s: s.length is None and s.command.csv is None,
             "nothing says how long the run is",
             "add `duration: 10 s`",
         ),
-        Check(
+        Row(
             "{0}",
             _too_long,
             "a run of {1} is not simulated",

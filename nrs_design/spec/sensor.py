@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import Field, WithJsonSchema
 
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -157,14 +157,14 @@ class SensorSpec(SpecModel):
         return next(rows, None)
 
     checks = (
-        Check(
+        Row(
             "",
             lambda s: not s.model_fields_set,
             "nothing is said of the sensor",
             "add `bias: 5 N*mm`, or remove sensor",
         ),
-        Check("{0}", _alone, "{0} counts with {1} only", "add `{2}`"),
-        Check(
+        Row("{0}", _alone, "{0} counts with {1} only", "add `{2}`"),
+        Row(
             "contact",
             lambda s: s.contact is not None and s.contact.exact == s._pivot,
             "the contact point is at the pivot",

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from nrs_design.spec.certification import CertificationSpec
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
 from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
@@ -77,7 +77,7 @@ class ModeSpec(SpecModel):
             lambda s: s.A,
             lambda s: (number for row in s.A for e in row for number in e.numbers),
         ),
-        Check(
+        Row(
             "A",
             _not_square,
             "the matrix is {0} x {1}, not square",
@@ -268,34 +268,34 @@ def _found(said: Any) -> Any:
     return said
 
 
-SYSTEM_CHECKS: tuple[Check[SwitchedSystemSpec], ...] = (
-    *each(_renamed, Check[str]("", _found, "another mode is named {0!r}", "rename it")),
+SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
+    *each(_renamed, Row[str]("", _found, "another mode is named {0!r}", "rename it")),
     *each(
         _in_matrices,
-        Check[Reference](
+        Row[Reference](
             "",
             _undeclared,
             "{0!r} is not a number, and there is no parameter of that name",
             "{1}",
         ),
     ),
-    Check(
+    Row(
         "parameters.{1}.varies",
         _constant,
         "{0!r} has varies: false already, and at most one parameter may",
         "leave it out here: what holds for a varying parameter holds for a constant one",
     ),
-    Check("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
+    Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
     short_denominator(
         "parameters", lambda s: (v for p in s.parameters.values() for v in (p.nominal, *p.range))
     ),
-    Check(
+    Row(
         "parameters",
         lambda s: _entries(s) > MAX_ENTRIES and _entries(s),
         f"the corners of the modes have {{0}} entries in all, at most {MAX_ENTRIES} are read",
         "declare fewer parameters",
     ),
-    Check(
+    Row(
         "parameters",
         lambda s: _corners(s) > MAX_MODES and _corners(s),
         f"the modes have {{0}} corners in all, at most {MAX_MODES} are read",
@@ -306,36 +306,36 @@ SYSTEM_CHECKS: tuple[Check[SwitchedSystemSpec], ...] = (
     ),
     *each(
         _dwell_times,
-        Check[Any](
+        Row[Any](
             "",
             _other_unit,
             "{0!r} is not a dwell time in {1} time, expected {2}",
             "such as {3!r}",
         ),
-        Check[Any]("", _obstacle, "{0}", "leave {1} out, or {2}"),
+        Row[Any]("", _obstacle, "{0}", "leave {1} out, or {2}"),
     ),
     *each(_named_modes, NO_SUCH),
     *each(
         _resets,
-        Check[_Reset](
+        Row[_Reset](
             "to",
             lambda r: r.it.source == r.it.target,
             "a switch leads to another mode",
             "name two modes",
         ),
-        Check[_Reset](
+        Row[_Reset](
             "",
             lambda r: not r.allowed and r.it.source != r.it.target,
             "the switch from {s.it.source} to {s.it.target} is not allowed",
             "add it to switching.transitions, or remove this reset",
         ),
-        Check[_Reset](
+        Row[_Reset](
             "",
             lambda r: r.doubled,
             "this reset is listed twice",
             "list each once",
         ),
-        Check[_Reset](
+        Row[_Reset](
             "map",
             _Reset.misshapen,
             "the map is {0} x {1}, expected {2} x {3}: {s.it.target} has {2} states, "
@@ -345,7 +345,7 @@ SYSTEM_CHECKS: tuple[Check[SwitchedSystemSpec], ...] = (
     ),
     *each(
         _sizes,
-        Check[Any](
+        Row[Any](
             "",
             _found,
             "{0} has {1} states and {2} has {3}, and the switch from {0} to {2} has no reset",

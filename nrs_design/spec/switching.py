@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import counted, quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
@@ -274,9 +274,9 @@ def is_long(numbers: Iterable[Fraction]) -> bool:
     return False
 
 
-def short_denominator(at: str, numbers: Callable[[Any], Iterable[Fraction]]) -> Check[Any]:
+def short_denominator(at: str, numbers: Callable[[Any], Iterable[Fraction]]) -> Row[Any]:
     """Return the check that numbers have a common denominator of few digits."""
-    return Check(
+    return Row(
         at,
         lambda s: is_long(numbers(s)),
         f"the least common denominator has more than {MAX_DENOMINATOR_BITS} binary digits",
@@ -288,7 +288,7 @@ def matrix_checks(
     key: str,
     rows: Callable[[Any], Collection[Collection[object]]],
     numbers: Callable[[Any], Iterable[Fraction]],
-) -> tuple[Check[Any], ...]:
+) -> tuple[Row[Any], ...]:
     """Return the checks of a matrix: rows of one length, a common denominator of few digits.
 
     Parameters
@@ -301,7 +301,7 @@ def matrix_checks(
     return (
         *each(
             lambda s: (((key, *at), found) for at, found in _uneven(rows(s))),
-            Check[Any](
+            Row[Any](
                 "",
                 lambda found: found,
                 "row {0} has {1} entries, the first has {2}",
@@ -363,13 +363,13 @@ def _named(
 
 
 _STAY_CHECKS = (
-    Check[_Stay](
+    Row[_Stay](
         "",
         lambda x: x.longest and x.shortest and x.longest.value < x.shortest.value,
         "{s.noun} {s.name!r} must be left after {s.longest.text}, but not before {s.shortest.text}",
         "give a longest dwell time that is not below the dwell time",
     ),
-    Check[_Stay](
+    Row[_Stay](
         "",
         lambda x: x.longest and not x.follows,
         "{s.noun} {s.name!r} must be left, but nothing may follow it",
@@ -380,7 +380,7 @@ _STAY_CHECKS = (
 
 def switching_checks(
     rules: Callable[[Any], SwitchingSpec], names: Callable[[Any], Collection[str]], noun: str
-) -> tuple[Check[Any], ...]:
+) -> tuple[Row[Any], ...]:
     """Return the checks that rules name what exists, and can be kept.
 
     Parameters

@@ -17,7 +17,7 @@ from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.check import Check, each
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Label
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -84,7 +84,7 @@ class LogicSignalsSpec(SpecModel):
 
 
 ONE_SIDE = (
-    Check[Any](
+    Row[Any](
         "",
         lambda s: (s.above is None) == (s.below is None),
         "a condition has one threshold",
@@ -137,13 +137,13 @@ class LogicSwitchSpec(SpecModel):
         return {name: condition for name, condition in written.items() if condition is not None}
 
     checks = (
-        Check(
+        Row(
             "to",
             lambda s: s.source == s.target,
             "a switch leads to another controller",
             "remove it",
         ),
-        Check(
+        Row(
             "",
             lambda s: not s.conditions,
             "nothing says when this switch is made",
@@ -222,7 +222,7 @@ class ThresholdLogicSpec(SpecModel):
     checks = (
         *each(
             _unsaid,
-            Check[Any](
+            Row[Any](
                 "",
                 lambda name: name,
                 "nothing is said of the signal {0}",
@@ -231,11 +231,11 @@ class ThresholdLogicSpec(SpecModel):
         ),
         *each(
             _held,
-            Check[Reference]("", Reference.is_lost, "no switch leads to or from {0}", "{1}"),
+            Row[Reference]("", Reference.is_lost, "no switch leads to or from {0}", "{1}"),
         ),
         *each(
             _holds,
-            Check[Any](
+            Row[Any](
                 "",
                 lambda held: held[1] is not None and held[1].unit != "s" and held[1].text,
                 "{0!r} is not a time",
@@ -244,7 +244,7 @@ class ThresholdLogicSpec(SpecModel):
         ),
         *each(
             _chattering,
-            Check[Any](
+            Row[Any](
                 "",
                 lambda found: (found[0], found[1].entering + 1, found[1].leaving + 1),
                 "{0!r} may be left as soon as it is entered, so the controllers may chatter: no "

@@ -2,6 +2,7 @@
 
 import json
 import re
+from itertools import combinations
 from string import Formatter
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import features as f
 from nrs_design.spec import parse_spec
-from nrs_design.spec.check import Check
+from nrs_design.spec.check import Row
 from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
 from nrs_design.spec.load import SPEC_KINDS, model_of
@@ -175,6 +176,27 @@ def test_no_dwell_time_is_searched_where_something_may_change(features):
     assert found.remedy
 
 
+@pytest.mark.slow
+def test_every_pair_that_is_read_makes_a_system_or_is_warned_of(tmp_path):
+    path = tmp_path / "combined.nrs.yaml"
+    made = 0
+    for pair in combinations(CHANGES, 2):
+        path.write_text(spec_with(*pair), encoding="utf-8")
+        try:
+            loaded = read_spec(path)
+        except SpecError:
+            continue
+        doubts = " ".join(doubt.message for doubt in doubt_spec(loaded.spec))
+        designed = run_design(loaded)
+        if "certify-switching refuses" in doubts:
+            with pytest.raises(AssemblyError):
+                assemble_spec(loaded, designed, designed.spec.coordinates)
+            continue
+        made += 1
+        assert assemble_spec(loaded, designed, designed.spec.coordinates).modes
+    assert made > 100
+
+
 def rows_of(model):
     yield from model.checks
     for inner in model.__subclasses__():
@@ -188,7 +210,7 @@ def test_every_row_of_every_table_can_be_filled():
     rows = {id(row): row for row in (*rows_of(SpecModel), *INTERACTION_CHECKS)}.values()
     assert len(rows) > 100
     for row in rows:
-        assert isinstance(row, Check)
+        assert isinstance(row, Row)
         for text in (row.at, row.message, row.remedy):
             for _, name, *_ in Formatter().parse(text):
                 assert name is None or re.match(r"\d|s\b", name), text

@@ -14,14 +14,11 @@ from numpy.typing import NDArray
 
 from benchmarks.cortex import Compiled, Counts, measure, versions
 from benchmarks.measure import Finding, Size
-from nrs_design.controllers.axes_law import build_axes_law
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.shipped import shipped_law
-from nrs_design.exporters import axes
 from nrs_design.exporters.build import build_unproved
 from nrs_design.exporters.c import header_text, source_text
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.program import Program
 from nrs_design.exporters.vectors import make_vectors
 from nrs_design.pipeline import run_design
 from nrs_design.robot.exporters import robot_c
@@ -91,29 +88,11 @@ def _of_robot(law: str) -> Callable[[], Exported]:
     return make
 
 
-def _of_axes(file: Path) -> Callable[[], Exported]:
-    """Return what designs a spec, and takes the admittance of three axes."""
-
-    def make() -> Exported:
-        loaded = read_spec(file)
-        designed = run_design(loaded)
-        assert designed is not None
-        one = shipped_law(designed.spec, designed.design, PERIOD)
-        record = build_unproved(loaded, designed.design, "a benchmark", PERIOD, None)
-        program, law = Program(record, one, CNames(record.spec.name)), build_axes_law(one)
-        texts = axes.header_text(program, law), axes.source_text(program, law)
-        own = axes.names_of(record.spec.name).lower
-        return Exported(law, f"{record.spec.name}_axes", *texts, own)
-
-    return make
-
-
 # Each law by its name: what makes it, and how many instructions are aimed for.
 LAWS: dict[str, tuple[Callable[[], Exported], int | None]] = {
     "hybrid impedance axis with guards": (_of_spec(HERE / "hybrid.nrs.yaml"), 200),
     "soft-tissue-sampled": (_of_spec(SPECS / "soft-tissue-sampled.nrs.yaml"), None),
     "force-limit-sampled": (_of_spec(SPECS / "force-limit-sampled.nrs.yaml"), None),
-    "three-axis admittance": (_of_axes(SPECS / "soft-tissue-axes.nrs.yaml"), 80),
     "robot: base": (_of_robot("base"), None),
     "robot: PD": (_of_robot("pd"), None),
     "robot: PD with gravity": (_of_robot("pd_gravity"), 250),

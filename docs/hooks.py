@@ -10,6 +10,7 @@ import re
 from itertools import count
 from pathlib import Path
 
+from making.assumptions import assumptions_table
 from making.combinations import combinations_table
 from making.commands import commands_page
 from making.cost import cost_figures
@@ -83,6 +84,8 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
             return drawing(ROOT / "nrs_design", markdown)
         if match[1] == "combinations":
             return combinations_table()
+        if match[1] == "assumptions":
+            return assumptions_table()
         assert match[1] == "misprints"
         return misprints_table()
 

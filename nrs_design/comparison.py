@@ -41,21 +41,12 @@ class Part(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One of two things that are compared.
+    """One of two things that are compared."""
 
-    Parameters
-    ----------
-    path : Path
-        Of the spec or certificate.
-    name : str
-        Of the spec.
-    parts : mapping of Part to mapping of str to str
-        What there is to compare, by its name. A part that a file cannot tell is left out: a
-        certificate has no margins, and does not repeat its spec.
-    """
-
-    path: Path
-    name: str
+    path: Path  # Of the spec or certificate
+    name: str  # Of the spec
+    # What there is to compare, by its name. A part that a file cannot tell is left out: a
+    # certificate has no margins, and does not repeat its spec.
     parts: Mapping[Part, Mapping[str, str]]
 
 
@@ -77,22 +68,13 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two sides, and where they differ.
+    """Two sides, and where they differ."""
 
-    Parameters
-    ----------
-    before, after : Side
-        What was compared.
-    differences : tuple of Difference
-        In the order of `Part`.
-    compared : tuple of Part
-        Those that both sides tell.
-    """
-
+    # before, after: what was compared.
     before: Side
     after: Side
-    differences: tuple[Difference, ...]
-    compared: tuple[Part, ...] = field(default=())
+    differences: tuple[Difference, ...]  # In the order of `Part`
+    compared: tuple[Part, ...] = field(default=())  # Those that both sides tell
 
     @property
     def same(self) -> tuple[Part, ...]:

@@ -2,7 +2,8 @@
 
 Libraries that read files of other programs follow what a file says: a stranger's may crash them,
 or make them fill the memory. So they run in a child with limits, which sends back plain values. Its
-answer is taken for no more than that: nothing in it is unpickled or run, and it has a limit, too.
+answer is data from a stranger, too: nothing in it is unpickled or run, its size is limited, and it
+must be of the type that the reader declares to return.
 
 `nrs_design.confined_child` is the other side.
 """
@@ -20,7 +21,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Timer
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeVar, get_type_hints
 
 from nrs_design.errors import DataError, NrsDesignError
 
@@ -55,22 +56,24 @@ from nrs_design.confined_child import main
 main(order)
 """
 _SAVE_ANEW = "save it anew, or as CSV"
+T = TypeVar("T")
 
 
 def read_confined(
-    reader: str,
+    reader: Callable[[BinaryIO, Path], T],
     libraries: Sequence[str],
     file: BinaryIO,
     path: Path,
     remedy: str = _SAVE_ANEW,
-) -> Any:
+) -> T:
     """Read a file in a process of its own.
 
     Parameters
     ----------
-    reader : str
-        ``module:function``, called there with the file at its beginning and its path. What it
-        returns is made of dicts, lists, texts, numbers, bytes and arrays of numbers or text.
+    reader : callable
+        Function of a module, called there with the file at its beginning and its path. What it
+        returns is made of dicts, lists, texts, numbers, bytes and arrays of numbers or text; an
+        answer that is not of its annotated type is refused.
     libraries : sequence of str
         Modules that it needs, which are imported before limits are set.
     file : binary file
@@ -83,7 +86,7 @@ def read_confined(
     Returns
     -------
     object
-        What the reader has returned; tuples are lists.
+        What the reader has returned.
 
     Raises
     ------
@@ -94,7 +97,7 @@ def read_confined(
     mebibytes = os.fstat(file.fileno()).st_size >> 20
     seconds = SECONDS + SECONDS_PER_MEBIBYTE * mebibytes
     order = {
-        "reader": reader,
+        "reader": f"{reader.__module__}:{reader.__name__}",
         "libraries": list(libraries),
         "path": str(path),
         "parent": os.getpid(),
@@ -105,13 +108,29 @@ def read_confined(
     with _child(order, file, PATIENCE * seconds) as child:
         try:
             told, value = answer_of(child)
+            if told == "value":
+                return _typed(reader, value)
         except (ValueError, TypeError, KeyError, RecursionError, MemoryError):
             child.kill()
             raise _ended(child.wait(), seconds, path, remedy) from None
-    if told == "value":
-        return value
     message, advice = value
     raise DataError(message, path=path, remedy=advice or remedy)
+
+
+def _typed(reader: Callable[[BinaryIO, Path], T], value: Any) -> T:
+    """Return a value as the type that a reader declares; lists become its tuples.
+
+    Raises
+    ------
+    ValueError
+        If it is of another type.
+    """
+    from pydantic import ConfigDict, TypeAdapter
+
+    # An array only has to be one: `_PLAIN` decides what it may hold.
+    config = ConfigDict(arbitrary_types_allowed=True)
+    adapter: TypeAdapter[T] = TypeAdapter(get_type_hints(reader)["return"], config=config)
+    return adapter.validate_python(value)
 
 
 def _places() -> list[str]:

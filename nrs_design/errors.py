@@ -10,22 +10,13 @@ from typing import Self
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing that is wrong with a file.
+    """One thing that is wrong with a file."""
 
-    Parameters
-    ----------
-    message : str
-        What is wrong, and what was expected.
-    line, column : int or None
-        Where, counted from 1, as far as it is known.
-    remedy : str or None
-        What to do about it.
-    """
-
-    message: str
+    message: str  # What is wrong, and what was expected
+    # line, column: where, counted from 1, as far as it is known.
     line: int | None = None
     column: int | None = None
-    remedy: str | None = None
+    remedy: str | None = None  # What to do about it
 
 
 class NrsDesignError(Exception):

@@ -19,7 +19,6 @@ EXPORT = b'{\n  "schema": "nrs-design/export/'
 MAT = b"MATLAB 5.0 MAT-file, nrs-design export of "
 C_HEADER, C_SOURCE = b"/* nrs-design C header\n", b"/* nrs-design C source\n"
 C_TEST, C_TEST_HEADER = b"/* nrs-design C test\n", b"/* nrs-design C header of a test\n"
-C_AXES, C_AXES_HEADER = b"/* nrs-design C axes\n", b"/* nrs-design C header of axes\n"
 C_MONITOR, C_MONITOR_HEADER = (
     b"/* nrs-design C monitor\n",
     b"/* nrs-design C header of a monitor\n",
@@ -43,10 +42,6 @@ SCHEMA = (
 # Records of others may begin with some of these columns: all that are always there count.
 RESPONSE = re.compile(
     rb"time_s,angle_rad,velocity_rad_s,torque_Nm,depth_rad,(?:[\w-]+,)*hand_rad_s,(?:[\w-]+,)*mode\n"
-)
-OUTCOMES = (
-    b"run,scenario,seed,peak_torque_Nm,peak_deflection_rad,peak_velocity_rad_s,stopped,",
-    b"run,scenario,seed,peak_torque_Nm,peak_deflection_rad,peak_velocity_rad_s,stopped\n",
 )
 WORST_RUN = re.compile(
     rb"time_s,(?:torque_Nm,)?(?:velocity_rad_s,)?(?:deflection_rad,)?(?:[\w-]+,)*?state-[^\n]*,mode\n"

@@ -26,20 +26,11 @@ class NotAffordableError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Prediction for one step, from sizes alone.
+    """Prediction for one step, from sizes alone."""
 
-    Parameters
-    ----------
-    work : float
-        In units.
-    memory : float
-        In bytes.
-    per_step : float
-        What a solver adds with every step beyond the predicted number of them, in units.
-    """
-
-    work: float
-    memory: float = 0.0
+    work: float  # In units
+    memory: float = 0.0  # In bytes
+    # What a solver adds with every step beyond the predicted number of them, in units.
     per_step: float = 0.0
 
 

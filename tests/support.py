@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import io
+import json
 import os
 import shutil
 import subprocess
@@ -21,7 +22,7 @@ import typer
 from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
-from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic, UnstableMode
+from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic
 from nrs_design.proof.evidence.function import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -111,11 +112,25 @@ def thinned(values: Iterable[Any], kept: int) -> list[Any]:
     ]
 
 
-def run(*arguments: str | Path | int, cwd: Path) -> subprocess.CompletedProcess[str]:
+def run(
+    *arguments: str | Path | int, cwd: Path, code: int | None = None
+) -> subprocess.CompletedProcess[str]:
     """Run the command line in this process, which takes a tenth of the time of a new one.
 
-    What the start of Python, its streams or its environment decide is seen by `typed` only.
+    What the start of Python, its streams or its environment decide is seen by `typed` only. A test
+    fails unless the exit code is the one that is named.
     """
+    done = _run(arguments, cwd)
+    assert code in (None, done.returncode), f"{done.returncode}: {done.stderr}{done.stdout}"
+    return done
+
+
+def document_of(*arguments: str | Path | int, cwd: Path, code: int | None = None) -> Any:
+    """Return the document that a command prints with ``--json``."""
+    return json.loads(run(*arguments, "--json", cwd=cwd, code=code).stdout)
+
+
+def _run(arguments: Sequence[str | Path | int], cwd: Path) -> subprocess.CompletedProcess[str]:
     command, code = ["nrs-design", *map(str, arguments)], 0
     threshold, settings = gc.get_threshold(), dict(os.environ)
     with (
@@ -138,12 +153,17 @@ def run(*arguments: str | Path | int, cwd: Path) -> subprocess.CompletedProcess[
 
 
 def typed(
-    *arguments: str | Path | int, cwd: Path, environment: dict[str, str] | None = None
+    *arguments: str | Path | int,
+    cwd: Path,
+    environment: dict[str, str] | None = None,
+    code: int | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """Run the command line as a user types it, in a process of its own."""
+    """Run the command line as a user types it, in a process of its own; see `run`."""
     command = [sys.executable, "-m", "nrs_design", *map(str, arguments)]
     env = {**os.environ, **(environment or {})}
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=env, check=False)
+    assert code in (None, done.returncode), f"{done.returncode}: {done.stderr}{done.stdout}"
+    return done
 
 
 def number_in(text: str) -> Fraction:
@@ -158,11 +178,12 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     those of the package; the others are left to `tests.proof.truth`.
     """
     discrete = system.time is Time.DISCRETE
-    if not isinstance(evidence, (CommonQuadratic, UnstableMode)):
+    if not (isinstance(evidence, CommonQuadratic) or evidence.names_unstable_mode):
         return truth.holds(system, evidence)
-    if isinstance(evidence, UnstableMode):
-        (mode,) = [mode for mode in system.modes if mode.name == evidence.mode]
-        may_stay = truth.bounds_of(system, evidence.mode)[1] is None
+    if evidence.names_unstable_mode:
+        ((name, _),) = evidence.steps
+        (mode,) = [mode for mode in system.modes if mode.name == name]
+        may_stay = truth.bounds_of(system, name)[1] is None
         return may_stay and not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
     Q, rate = exact(evidence.Q), evidence.rate
     if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):

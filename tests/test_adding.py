@@ -41,7 +41,7 @@ def test_adding_is_cheap():
     counts = {what: row.count("`nrs_design/") for what, row in rows.items()}
     most = {"controller law": 5, "environment law": 4, "figure": 2, "export format": 2}
     assert {what: counts[what] for what in most} == most
-    assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 6
+    assert len(re.findall(r"^\| `nrs_design/\S+` \|", text, re.MULTILINE)) == 5
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,6 @@ HELD = {"type", "model", "linear_model", "kind", "law", "command"}
 # What an assumption is about may have no place in a spec; a file of no kind that is known begins
 # with nothing.
 ALLOWED = {
-    ("nrs_design.reporting.sections.places", "get"),
     ("nrs_design.tables.arrays", "get"),
 }
 # Kinds of specs have nothing in common that could be asked for instead. A command refuses those
@@ -92,7 +91,6 @@ KINDS_OF_SPECS = {
     ("nrs_design.cli.check", "interaction-design"),
     ("nrs_design.cli.mode_logic", "interaction-design"),
     ("nrs_design.cli.report", "robot"),
-    ("nrs_design.cli.simulate", "interaction-design"),
     ("nrs_design.gating.examine", "interaction-design"),
     ("nrs_design.pipeline.certification", "robot"),
     ("nrs_design.pipeline.certification", "switched-system"),

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,10 @@ import pytest
 from nrs_design import confined
 from nrs_design.confined import encoded, read_confined
 from nrs_design.errors import DataError
+from nrs_design.exporters.deployed_archive import read_archive, unpack_archive
+from nrs_design.foreign import read_npz, unpack_sheet
+from nrs_design.given.files import unpack_npz
+from tests import foreign_readers
 from tests.support import ROOT
 
 LINUX = pytest.mark.skipif(sys.platform != "linux", reason="limits of other systems are others")
@@ -25,7 +30,7 @@ def read(tmp_path):
         path = tmp_path / "file.mat"
         path.write_bytes(content)
         with path.open("rb") as file:
-            return read_confined(f"tests.foreign_readers:{reader}", (), file, path)
+            return read_confined(getattr(foreign_readers, reader), (), file, path)
 
     return call
 
@@ -123,19 +128,52 @@ ANSWERS = {
 }
 
 
+@pytest.fixture
+def pretend(monkeypatch, tmp_path):
+    """Let a child that is no Python of ours give an answer."""
+
+    def call(answer, read):
+        (tmp_path / "answer.npz").write_bytes(answer)
+        started = subprocess.Popen
+
+        def answered(command, *, stdin, stdout, **_):
+            return started(["cat", str(tmp_path / "answer.npz")], stdin=stdin, stdout=stdout)
+
+        monkeypatch.setattr(confined.subprocess, "Popen", answered)
+        with (tmp_path / "answer.npz").open("rb") as file:
+            return read(file, tmp_path / "answer.npz")
+
+    return call
+
+
 @LINUX
 @pytest.mark.parametrize("case", ANSWERS)
-def test_an_answer_that_is_none_is_one_message(monkeypatch, tmp_path, case):
-    """What a taken process may say; here it is written by a child that is no Python of ours."""
-    (tmp_path / "answer").write_bytes(ANSWERS[case] + b"\n")
+def test_an_answer_that_is_none_is_one_message(pretend, case):
+    """What a taken process may say."""
+    with pytest.raises(DataError, match="hostile"):
+        pretend(ANSWERS[case] + b"\n", partial(read_confined, foreign_readers.told, ()))
 
-    def pretend(command, *, stdin, stdout, **_):
-        return started(["cat", str(tmp_path / "answer")], stdin=stdin, stdout=stdout)
 
-    started = subprocess.Popen
-    monkeypatch.setattr(confined.subprocess, "Popen", pretend)
-    with (tmp_path / "answer").open("rb") as file, pytest.raises(DataError, match="hostile"):
-        read_confined("a:b", (), file, tmp_path / "answer")
+def described(*values):
+    parts = []
+    return json.dumps({"value": encoded(values, parts)}).encode() + b"\n" + b"".join(parts)
+
+
+@LINUX
+@pytest.mark.parametrize("reader", [read_npz, unpack_sheet, unpack_npz, unpack_archive])
+@pytest.mark.parametrize(
+    "answer",
+    [b'{"value": 5}\n', described(), described(5, 5), described({"a": 3j}, {"b": [1j]})],
+)
+def test_an_answer_of_another_type_is_one_message(pretend, reader, answer):
+    with pytest.raises(DataError, match="hostile"):
+        pretend(answer, partial(read_confined, reader, ()))
+
+
+@LINUX
+def test_an_archive_without_its_documents_is_none_of_ours(pretend):
+    answer = described({"modelDescription.xml": b""}, {})
+    assert pretend(answer, lambda file, path: read_archive(path)) is None
 
 
 @LINUX
@@ -143,8 +181,9 @@ def test_an_answer_that_is_none_is_one_message(monkeypatch, tmp_path, case):
 def test_the_child_ends_with_the_command_that_is_killed(tmp_path):
     program = (
         "from pathlib import Path\nfrom nrs_design.confined import read_confined\n"
+        "from tests.foreign_readers import sleep\n"
         f"file = Path({str(tmp_path / 'file.mat')!r})\nfile.write_bytes(b'')\n"
-        "read_confined('tests.foreign_readers:sleep', (), file.open('rb'), file)\n"
+        "read_confined(sleep, (), file.open('rb'), file)\n"
     )
     with subprocess.Popen([sys.executable, "-c", program], cwd=ROOT) as command:
         children = Path(f"/proc/{command.pid}/task/{command.pid}/children")

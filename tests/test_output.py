@@ -10,7 +10,6 @@ from nrs_design.gating.formats.text import COLUMNS
 from nrs_design.output import (
     CERTIFICATE,
     GATE,
-    OUTCOMES,
     PAGE,
     PDF,
     PNG,
@@ -29,7 +28,6 @@ from nrs_design.spec.schema import schema_text
 
 XML = '<?xml version="1.0" encoding="utf-8" standalone="no"?>\n'
 RUN = "time_s,angle_rad,velocity_rad_s,torque_Nm"
-OUTCOME = "run,scenario,seed,peak_torque_Nm,peak_deflection_rad"
 JUNIT = '<?xml version="1.0" encoding="UTF-8"?>\n<testsuites name="{}" tests="1">'
 SARIF = (
     '{{\n  "$schema": "https://json.schemastore.org/sarif-2.1.0.json",\n  "version": "2.1.0",\n'
@@ -101,7 +99,6 @@ def test_a_working_folder_behind_a_link_is_the_users_own_choice(tmp_path, monkey
         (GATE, f"{'  '.join(COLUMNS)}\n---", "spec  1 of the project\n"),
         (RESPONSE, f"{RUN},depth_rad,reference_rad,hand_rad_s,theta_rad,mode\n", f"{RUN},mode\n"),
         (WORST_RUN, "time_s,torque_Nm,state-xp1,state-delta_rad,mode\n", "time_s,torque_Nm,mode\n"),
-        (OUTCOMES, f"{OUTCOME},peak_velocity_rad_s,stopped\n0,", f"{OUTCOME}\n0,"),
         (SCHEMA, schema_text(), "kind: switched-system"),
     ],
 )

@@ -15,12 +15,9 @@ from nrs_design.wings import WINGS
 from tests.package import FILES, nodes_of
 from tests.support import ROOT
 
-# Evidence about a block, or at one value, holds evidence of any kind: the table of them all has its
-# reader and its page.
+# Evidence about a block holds evidence of any kind: the table of them all has its reader.
 KNOWN_CYCLES = {
     ("nrs_design.proof.evidence", "nrs_design.proof.evidence.block_triangular"),
-    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.block_triangular"),
-    ("nrs_design.reporting.kinds", "nrs_design.reporting.kinds.unstable_value"),
     # The root names for type checkers what it loads when it is asked, and holds the version.
     ("nrs_design.api", "nrs_design"),
 }
@@ -272,7 +269,6 @@ def test_a_report_assembles_and_searches_nothing():
         "nrs_design.search.loop_margin",
         "nrs_design.search.method_run",
         "nrs_design.switched.assumption",
-        "nrs_design.switched.assumption_kinds",
     }
 
 
@@ -317,14 +313,14 @@ def test_only_the_pipeline_calls_the_stages():
 # Functions that do one thing in several modules; a command is named like what it calls.
 SHARED = {
     # Modules of a table offer them all.
-    *("render", "remarks", "header_text", "source_text", "names_of"),
+    *("render", "header_text", "source_text"),
     *("rows", "counterparts", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.
     *("add", "multiply", "is_stable", "read_integer", "content_id", "too_stiff", "best_rate"),
     # In continuous time, and sampled.
-    *("force_rows", "outputs_of"),
+    "force_rows",
 }
 
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.exporters.export import Export
     from nrs_design.exporters.state_space import StateSpaces
-    from nrs_design.pipeline.monte_carlo import Drawing
     from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.pipeline.worst_case import WorstCase
     from nrs_design.spec import Spec
@@ -70,16 +69,10 @@ class Study:
         >>> float(round(-parts.controllers["insertion"].dcgain(), 4))  # 1/Bt
         0.4651
         """
-        designed = pipeline.run_design(self.loaded)
-        if designed is None:
-            raise pipeline.wrong_kind(
-                self.loaded,
-                f"a spec of kind {self.loaded.spec.kind} has no actuator and no controllers",
-                "use a spec of kind interaction-design; certify() has the state spaces of modes",
-            )
         from nrs_design.exporters.state_space import design_state_spaces
 
-        return design_state_spaces(designed)
+        lacks = "has no actuator and no controllers"
+        return design_state_spaces(pipeline.run_interaction(self.loaded, lacks))
 
     def certify(
         self,
@@ -117,6 +110,7 @@ class Study:
         engine: str | None = None,
         period: float | None = None,
         delay: int | None = None,
+        draw: int | None = None,
     ) -> tuple[Simulated, ...]:
         """Simulate scenarios of the spec, or the one of a spec that has none.
 
@@ -128,6 +122,9 @@ class Study:
             By default sampled where the spec has sampling or tissue is not linear, else exact.
         period, delay : float and int, optional
             Of the sampled engine, in s and in samples; by default those of the spec.
+        draw : int, optional
+            Seed with which every parameter of tissue and motor, and every gain, is drawn uniformly
+            from its range; `Simulated.parameters` has them. By default the scenario's own.
 
         Raises
         ------
@@ -144,7 +141,7 @@ class Study:
         """
         from nrs_design.pipeline.scenarios import run_scenarios
 
-        wanted = _runs(scenarios, engine, period, delay)
+        wanted = _runs(scenarios, engine, period, delay, draw)
         return tuple(run_scenarios(self._interaction(), wanted))
 
     def worst_case(
@@ -186,59 +183,6 @@ class Study:
         proof = None if certificate is None else read_valid_certificate(Path(certificate), designed)
         return run_worst_case(designed, proof, seed=seed, rounds=rounds)
 
-    def monte_carlo(
-        self,
-        runs: int,
-        *scenarios: str,
-        seed: int = 0,
-        jobs: int = 1,
-        engine: str | None = None,
-        period: float | None = None,
-        delay: int | None = None,
-    ) -> Drawing:
-        """Simulate scenarios again and again, with parameters drawn from the ranges of the spec.
-
-        Run i depends on the seed and i alone, whatever processes there are.
-
-        Parameters
-        ----------
-        runs : int
-            How many; at least one.
-        *scenarios : str
-            Names, which take turns; by default all of one axis.
-        seed : int
-            Of what is drawn, not negative.
-        jobs : int
-            Processes.
-        engine, period, delay
-            As for `simulate`.
-
-        Returns
-        -------
-        Drawing
-            What every run came to, and the share of runs above each limit with its interval.
-
-        Raises
-        ------
-        DesignError, DataError
-            If there is nothing to draw for, or a scenario cannot be simulated.
-
-        Examples
-        --------
-        >>> import nrs_design as nrs
-        >>> found = nrs.load("docs/examples/scenarios.nrs.yaml").monte_carlo(4, "shaken")
-        >>> share = found.shares["torque"]
-        >>> share.runs, share.low <= share.value <= share.high
-        (4, True)
-        """
-        from nrs_design.pipeline.monte_carlo import MonteCarlo, draw_runs
-
-        for name, value, least in (("runs", runs, 1), ("jobs", jobs, 1), ("seed", seed, 0)):
-            if value < least:
-                raise DesignError(f"{name} is {value}", remedy=f"give {least} or more")
-        wanted = _runs(scenarios, engine, period, delay)
-        return draw_runs(MonteCarlo(self._interaction(), wanted, runs, seed), jobs)
-
     def export(self, certificate: str | Path | None = None) -> Export:
         """Return the gains that ship with their proof, or why there are none.
 
@@ -260,18 +204,15 @@ class Study:
 
     def _interaction(self) -> pipeline.Designed:
         """Design what interacts; refuse another kind of spec."""
-        designed = pipeline.run_design(self.loaded)
-        if designed is None:
-            raise pipeline.wrong_kind(
-                self.loaded,
-                f"a spec of kind {self.loaded.spec.kind} describes no interaction",
-                "use a spec of kind interaction-design",
-            )
-        return designed
+        return pipeline.run_interaction(self.loaded, "describes no interaction")
 
 
 def _runs(
-    scenarios: tuple[str, ...], engine: str | None, period: float | None, delay: int | None
+    scenarios: tuple[str, ...],
+    engine: str | None,
+    period: float | None,
+    delay: int | None,
+    draw: int | None,
 ) -> Runs:
     """Return how scenarios are run; who names a period wants the sampled engine."""
     from nrs_design.pipeline.scenarios import Runs
@@ -287,9 +228,11 @@ def _runs(
         raise DesignError(f"the period is {period} s", remedy="give 1e-5 to 1 s")
     if delay is not None and not 0 <= delay <= LONGEST_DELAY:
         raise DesignError(f"the delay is {delay} samples", remedy=f"give 0 to {LONGEST_DELAY}")
+    if draw is not None and draw < 0:
+        raise DesignError(f"the seed is {draw}", remedy="give 0 or more")
     if engine is None and (period is not None or delay is not None):
         engine = "sampled"
-    return Runs(scenarios, engine, period, delay)
+    return Runs(scenarios, engine, period, delay, draw=draw)
 
 
 def load(path: str | Path) -> Study:

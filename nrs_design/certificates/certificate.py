@@ -41,33 +41,19 @@ class CommonQuadraticStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """A claim about one spec with the evidence for it.
+    """A claim about one spec with the evidence for it."""
 
-    Parameters
-    ----------
-    spec_name, spec_sha256 : str
-        The spec that it belongs to, and the hash of what that file says.
-    coordinates : str or None
-        ``deflection`` or ``force`` for an interaction design, None for given matrices.
-    gains : mapping
-        Designed gains (float32, as exact decimals) by controller; empty for given matrices.
-    system : SwitchedSystem
-        What the statements are about.
-    statements : tuple of AbstractEvidence
-        What is shown, each with its numbers; at least one.
-    version : str
-        Version of this package.
-    schema : str
-        Of the file that it was read from; `FORMER` has no modes and no rules of switching.
-    """
-
+    # spec_name, spec_sha256: the spec that it belongs to, and the hash of what that file says.
     spec_name: str
     spec_sha256: str
+    # ``deflection`` or ``force`` for an interaction design, None for given matrices.
     coordinates: str | None
+    # Designed gains (float32, as exact decimals) by controller; empty for given matrices.
     gains: Gains
-    system: SwitchedSystem
-    statements: tuple[AbstractEvidence, ...]
-    version: str
+    system: SwitchedSystem  # What the statements are about
+    statements: tuple[AbstractEvidence, ...]  # What is shown, each with its numbers; at least one
+    version: str  # Version of this package
+    # Of the file that it was read from; `FORMER` has no modes and no rules of switching.
     schema: str = SCHEMA
 
     @property

@@ -19,23 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CertifiedGoal:
-    """One goal of a spec that a certificate must show.
+    """One goal of a spec that a certificate must show."""
 
-    Parameters
-    ----------
-    key : str
-        Of the goal in the spec, such as ``decay_rate``.
-    said : str
-        What is proved; numbers are rounded to their safe side.
-    wanted : str
-        As the spec writes it; ``largest`` and ``settles`` want no number.
-    met : bool
-        Whether what is proved is enough. Where it is not, nothing is known: more may be true.
-    """
-
-    key: str
-    said: str
-    wanted: str
+    key: str  # Of the goal in the spec, such as ``decay_rate``
+    said: str  # What is proved; numbers are rounded to their safe side
+    wanted: str  # As the spec writes it; ``largest`` and ``settles`` want no number
+    # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
     met: bool
 
 

@@ -13,17 +13,18 @@ from nrs_design.cli import exit_codes
 
 __all__ = ["main", "program"]
 
-# Objects made before the collector looks for garbage: what imports make stays until the end.
+# Imports make many objects that stay until the end, so the collector need not look at them.
 COLLECT_AFTER = 200_000
 
 
 def main() -> None:
-    """Run the program; one that cannot even be loaded has found no verdict, and says so.
+    """Run the program; exit with code 4 if it cannot be loaded.
 
-    A warning speaks about code, not about a spec: under ``-W error`` it is shown, but is no error.
+    Under ``-W error`` warnings are shown, but do not end the program: they are about code, not
+    about a spec.
     """
     gc.set_threshold(COLLECT_AFTER)
-    # Nor is what is left at the end worth a search for garbage.
+    # At the end there is nothing worth collecting.
     atexit.register(gc.freeze)
     if any(entry[0] == "error" for entry in warnings.filters):
         warnings.simplefilter("default")
@@ -37,10 +38,9 @@ def main() -> None:
 
 
 def program() -> None:
-    """Run the program as a process of its own, which ends at once when its work is done.
+    """Run the program as a process of its own, and end it without tearing down libraries.
 
-    To take libraries down piece by piece takes longer than to check a certificate, and the system
-    takes all of it back anyway. What others want done at the end is done before.
+    Tearing them down takes longer than checking a certificate. Exit handlers of others run before.
     """
     code: int | None = None
 

@@ -15,13 +15,13 @@ from nrs_design import __version__
 from nrs_design.cli import exit_codes
 from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.groups import CommandGroup
-from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.printing import insist, print_json
 from nrs_design.cli.streams import lasting
 from nrs_design.errors import ClockError, NrsDesignError
 from nrs_design.printable import printable
 from nrs_design.wings import load_wing, wing_of
 
-# Each is in the module of its name, here or in its wing; the help lists them in this order.
+# Each command is in the module of its name, here or in its wing; the help keeps this order.
 COMMANDS = (
     "init",
     "check",
@@ -46,13 +46,12 @@ COMMANDS = (
     "ros2",
 )
 
-# Settings of libraries that count from the moment they are loaded; they are not for the user to
-# choose, as no outcome must depend on them.
+# Environment variables that libraries read when they are loaded. Users cannot override them: no
+# outcome may depend on them.
 SETTINGS = {
-    # Threads share a sum as they find time, and round it differently. Matrices are small: waiting
-    # for a second thread takes longer than the work.
+    # Threads would round sums differently from run to run; for small matrices they are slower, too.
     "OPENBLAS_NUM_THREADS": "1",
-    # No other package takes part in reading specs, and none is searched for.
+    # No other package takes part in reading specs.
     "PYDANTIC_DISABLE_PLUGINS": "__all__",
 }
 
@@ -96,7 +95,7 @@ def make_app(names: Iterable[str] = COMMANDS) -> typer.Typer:
 
 
 def _refuse(app: typer.Typer, name: str, error: NrsDesignError) -> None:
-    """Add a command that, whatever its arguments, says that its wing is missing."""
+    """Add a command that only says that its wing is missing."""
     anything = {"ignore_unknown_options": True, "allow_extra_args": True, "help_option_names": []}
 
     @app.command(name, help=f"({error.message})", context_settings=anything)
@@ -123,7 +122,7 @@ def _root(
 
 
 def _run() -> None:
-    """Run the commands and flush, so that a verdict that was not delivered is no success."""
+    """Run the command and flush stdout, so that an undelivered verdict is not a success."""
     named = sys.argv[1:2]
     app = make_app(named if set(named) & set(COMMANDS) else COMMANDS)
     try:
@@ -133,10 +132,10 @@ def _run() -> None:
 
 
 def main() -> None:
-    """Run the program; an error that the user can mend is one message and exit code 2."""
+    """Run the program; an error that the user can correct is one message and exit code 2."""
     os.environ.update(SETTINGS)
     if not sys.warnoptions:
-        # What a library has to say to programmers is none of a user's business.
+        # Warnings of libraries are for programmers.
         warnings.simplefilter("ignore")
     sys.stdout, sys.stderr = lasting(sys.stdout), lasting(sys.stderr)
     try:
@@ -148,21 +147,21 @@ def main() -> None:
         stopped = isinstance(error, ClockError)
         sys.exit(exit_codes.INCONCLUSIVE if stopped else exit_codes.USAGE)
     except OSError as error:
-        # What could not be written must not be tried again at exit.
+        # Do not try to write the rest again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         # Standard output has no name.
         failed = "the output cannot be written"
         if error.filename is not None:
             failed = f"{printable(error.filename)} cannot be read or written"
-        note(f"error: {failed} ({error.strerror})")
+        insist(f"error: {failed} ({error.strerror})")
         sys.exit(exit_codes.USAGE)
     except Exception as error:
         if "-v" in sys.argv or "--verbose" in sys.argv:
             import traceback
 
             for line in traceback.format_exc().split("\n"):
-                note(line)
-        note(
+                insist(line)
+        insist(
             f"internal error: {type(error).__name__}: {error} (a defect of nrs-design, not a "
             "verdict; run it again as `nrs-design -v ...` and report what that prints)"
         )

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.certification_summary import certification_summary
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.facts import certification_facts, margins_facts
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
     MaxUpdates,
@@ -19,28 +20,14 @@ from nrs_design.cli.gradient_options import (
     StartMode,
     UpdateOrder,
 )
-from nrs_design.cli.margins_summary import margins_summary
-from nrs_design.cli.options import (
-    Budget,
-    Json,
-    LoopCoordinates,
-    MaxDegree,
-    Memory,
-    Quiet,
-    SpecFile,
-    Verbose,
-)
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile, Verbose
+from nrs_design.cli.printing import note, progress, say, wants_json, wants_text
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from nrs_design.pipeline import Result
-    from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
-    from nrs_design.search.certification import Limits
 
 
 LargestBox = Annotated[
@@ -65,6 +52,7 @@ ShortestDwell = Annotated[
 ]
 
 
+@command("certify-switching")
 def certify_switching(
     spec: SpecFile,
     out: Annotated[
@@ -88,17 +76,17 @@ def certify_switching(
     seed: Seed = 0,
     max_updates: MaxUpdates = 20_000,
     gradient_coordinates: GradientCoordinates = Coordinates.MEAN_NORM,
-    as_json: Json = False,
-    quiet: Quiet = False,
     verbose: Verbose = False,
-) -> None:
+) -> Answer:
     """Prove or refute exponential stability under the declared switching; keep the certificate.
 
     Example: nrs-design certify-switching specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
-    from nrs_design.pipeline import Overrides, run_certification, search_limits
+    from nrs_design.pipeline import Overrides, find_relief, run_certification, search_limits
+    from nrs_design.pipeline.margins import run_proof_margins
+    from nrs_design.pipeline.subsets import find_subsets, run_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -109,11 +97,11 @@ def certify_switching(
     gradient = Gradient(
         relaxation, radius, start_mode, order, seed, max_updates, gradient_coordinates
     )
-    if method is Method.GRADIENT and as_json:
+    if method is Method.GRADIENT and wants_json():
         gradient = replace(gradient, tell=lambda updates, v: history.append((updates, v)))
     limits = search_limits(loaded.spec, Overrides(max_degree, budget, memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
-    with progress(f"certifying {loaded.spec.name}", quiet=quiet) as step:
+    with progress(f"certifying {loaded.spec.name}") as step:
         result = run_certification(
             loaded,
             method=method,
@@ -122,58 +110,44 @@ def certify_switching(
             progress=step,
         )
     # What is shown is kept, and told, before the margins: those take minutes.
-    written = _write(result, path, quiet=quiet or as_json)
-    if not quiet and not as_json:
+    written = _write(result, path)
+    if wants_text():
         _print(result, verbose=verbose)
-    asked = _Asked(margin, shortest_dwell, subsets)
-    more = _look_further(result, limits, asked, quiet=quiet)
-    if as_json:
-        content = certification_summary(result, written) | margins_summary(more.margins)
-        content |= {"gradient_history": history} if history else {}
-        print_json("certify-switching", content | _help_summary(result, more))
-    elif not quiet:
-        _print_help(result, more)
-    raise typer.Exit(exit_codes.OF_VERDICT[str(result.certification.verdict)])
+    asked = {"margin": margin, "shortest_dwell": shortest_dwell}
+    what = "margins" if any(asked.values()) else "what else is proved"
+    with progress(f"{what} of {loaded.spec.name}", lines=True) as step:
+        margins = run_proof_margins(result, limits, step, **asked)
+        parts = (run_subsets if subsets else find_subsets)(result, limits, step)
+    relief = find_relief(result)
+    steps = _next_steps(result, parts, **asked)
 
-
-@dataclass(frozen=True, slots=True)
-class _Asked:
-    """What is to be looked for beside the proof."""
-
-    margin: bool
-    shortest_dwell: bool
-    subsets: bool
-
-    @property
-    def margins(self) -> bool:
-        return self.margin or self.shortest_dwell
-
-
-@dataclass(frozen=True, slots=True)
-class _More:
-    """What was found beside the proof, and what to do next."""
-
-    asked: _Asked
-    margins: ProofMargins
-    parts: tuple[Subset, ...] | None
-    steps: tuple[str, ...]
-
-
-def _look_further(result: Result, limits: Limits, asked: _Asked, *, quiet: bool) -> _More:
-    from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.subsets import find_subsets, run_subsets
-
-    what = "margins" if asked.margins else "what else is proved"
-    with progress(f"{what} of {result.loaded.spec.name}", quiet=quiet, lines=True) as step:
-        margins = run_proof_margins(
-            result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
+    def facts() -> dict[str, Any]:
+        more: dict[str, Any] = {"gradient_history": history} if history else {}
+        more |= {"relief": list(relief), "next_steps": list(steps)}
+        return (
+            certification_facts(result, written)
+            | margins_facts(margins)
+            | more
+            | _parts_facts(result, parts)
         )
-        look = run_subsets if asked.subsets else find_subsets
-        parts = look(result, limits, step)
-    return _More(asked, margins, parts, _next_steps(result, asked, parts))
+
+    def show() -> None:
+        for line in relief:
+            say(f"  {line}")
+        if any(asked.values()):
+            # Reports are slow to load, and a bare proof says nothing that only they can.
+            from nrs_design.reporting.margins import margin_lines
+
+            for line in margin_lines(margins, loaded):
+                say(f"  {line}")
+        _print_subsets(result, parts)
+        for line in steps:
+            say(f"next: {line}")
+
+    return Answer(facts, show, exit_codes.OF_VERDICT[str(result.certification.verdict)])
 
 
-def _write(result: Result, path: Path, *, quiet: bool) -> Path | None:
+def _write(result: Result, path: Path) -> Path | None:
     """Write the certificate, if there is one; return where it is."""
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, write_output
@@ -183,53 +157,23 @@ def _write(result: Result, path: Path, *, quiet: bool) -> Path | None:
         return None
     origin = origin_of(result.loaded.path, path)
     write_output(path, dump(result.certificate, origin), replaces=CERTIFICATE)
-    note(f"certificate written to {path}", quiet=quiet)
+    note(f"certificate written to {path}")
     return path
 
 
-def _help_summary(result: Result, more: _More) -> dict[str, Any]:
-    """Return what ``--json`` prints about what would help."""
-    from nrs_design.pipeline import find_relief
-
-    told: dict[str, Any] = {"relief": list(find_relief(result)), "next_steps": list(more.steps)}
-    if more.parts is not None:
-        told["subsets"] = [
-            {"left_out": p.left_out, "claim": p.claim or None, "needs": p.needs} for p in more.parts
-        ]
-        told["subsets_without"] = list(_unlooked(result))
-    return told
-
-
-def _print_help(result: Result, more: _More) -> None:
-    from nrs_design.pipeline import find_relief
-
-    for line in (*find_relief(result), *_margin_lines(result, more)):
-        say(f"  {line}")
-    _print_subsets(result, more.parts)
-    for line in more.steps:
-        say(f"next: {line}")
-
-
-def _margin_lines(result: Result, more: _More) -> Iterator[str]:
-    # Reports are slow to load, and a bare proof says nothing that only they can.
-    if more.asked.margins:
-        from nrs_design.reporting.margins import margin_lines
-
-        yield from margin_lines(more.margins, result.loaded)
-
-
-def _next_steps(result: Result, asked: _Asked, parts: tuple[Subset, ...] | None) -> tuple[str, ...]:
+def _next_steps(result: Result, parts: tuple[Subset, ...] | None, **asked: bool) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
     from nrs_design.reporting.next_steps import next_steps
 
-    return next_steps(
-        result,
-        margin=asked.margin,
-        shortest_dwell=asked.shortest_dwell,
-        subsets=parts is not None,
-        spec=result.loaded.path,
-    )
+    return next_steps(result, **asked, subsets=parts is not None, spec=result.loaded.path)
+
+
+def _parts_facts(result: Result, parts: tuple[Subset, ...] | None) -> dict[str, Any]:
+    if parts is None:
+        return {}
+    found = [{"left_out": p.left_out, "claim": p.claim or None, "needs": p.needs} for p in parts]
+    return {"subsets": found, "subsets_without": list(_unlooked(result))}
 
 
 def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
@@ -245,7 +189,7 @@ def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
 
 
 def _unlooked(result: Result) -> tuple[str, ...]:
-    """Return what the list of parts is decided without: the bounds of a proof are in it."""
+    """Return the disturbance bounds that the list of parts ignores; a proof holds them."""
     proved = str(result.certification.verdict) == "proved"
     return ("disturbances",) if result.certification.system.channels and not proved else ()
 

@@ -8,18 +8,17 @@ from typing import Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.errors import error_summary, print_error
-from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.printing import note, wants_json, wants_text
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
 
+@command("check")
 def check(
     specs: Annotated[list[Path], typer.Argument(metavar="SPEC...", help="Spec files.")],
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Validate specs and print what was understood, as written and in SI units.
 
     Example: nrs-design check specs/neuroboscope/soft-tissue.nrs.yaml
@@ -30,18 +29,15 @@ def check(
             results.append(_understood(path))
         except NrsDesignError as error:
             results.append({"valid": False, **error_summary(error), "path": str(path)})
-            if not as_json:
+            if not wants_json():
                 print_error(error)
             continue
-        if not as_json and not quiet:
+        if wants_text():
             _print(results[-1])
-        if not as_json:
             for text in results[-1]["warnings"]:
-                note(f"warning: {text}", quiet=quiet)
-    if as_json:
-        print_json("check", {"specs": results})
+                note(f"warning: {text}")
     valid = all(result["valid"] for result in results)
-    raise typer.Exit(exit_codes.PROVED if valid else exit_codes.USAGE)
+    return Answer(lambda: {"specs": results}, code=exit_codes.PROVED if valid else exit_codes.USAGE)
 
 
 def _understood(path: Path) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json
-from nrs_design.cli.printing import print_json, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.printing import say
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -31,6 +31,7 @@ MAX_DIGITS = 200_000
 LONGEST = 60
 
 
+@command("check-lyapunov")
 def check_lyapunov(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Modes and P: a .npz, .mat or .json file.")
@@ -42,8 +43,7 @@ def check_lyapunov(
     discrete: Annotated[
         bool, typer.Option("--discrete", help="The modes are x+ = A x, not x' = A x.")
     ] = False,
-    as_json: Json = False,
-) -> None:
+) -> Answer:
     """Decide exactly whether x' P x is a common Lyapunov function, whichever program found P.
 
     The file holds P and the modes as A (one matrix, a stack, or A1, A2, ...), and may hold rate and
@@ -63,12 +63,12 @@ def check_lyapunov(
     time = "discrete" if discrete else proposal.time
     wanted = proposal.rate if rate is None else rate
     found = check(proposal.modes, proposal.P, wanted, time=time)
-    if as_json:
-        document = _document(file, found, time or "continuous", list(proposal.modes), wanted)
-        print_json("check-lyapunov", document)
-    else:
-        _show(found, time or "continuous", list(proposal.modes), asked=wanted is not None)
-    raise typer.Exit(exit_codes.PROVED if found.holds else exit_codes.REFUTED)
+    time, names = time or "continuous", list(proposal.modes)
+    return Answer(
+        lambda: _document(file, found, time, names, wanted),
+        lambda: _show(found, time, names, asked=wanted is not None),
+        exit_codes.unless(not found.holds),
+    )
 
 
 def _document(

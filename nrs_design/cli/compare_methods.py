@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer, command, spec_facts
 from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
-from nrs_design.cli.options import Budget, Json, LoopCoordinates, Memory, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.options import Budget, LoopCoordinates, Memory, SpecFile
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.search.gradient_settings import Gradient
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
 
 
+@command("compare-methods")
 def compare_methods(
     spec: SpecFile,
     coordinates: LoopCoordinates = None,
@@ -37,9 +39,7 @@ def compare_methods(
     figure: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Draw v against updates as a PNG image.")
     ] = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Look for a common quadratic function by LMI and by the Liberzon-Tempo gradient iteration.
 
     The iteration runs in three kinds of coordinates, with the modes in turn and at random. What
@@ -59,29 +59,27 @@ def compare_methods(
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)
     states = None if coordinates is None else str(coordinates)
-    with progress(f"comparing on {loaded.spec.name}", quiet=quiet) as step:
+    with progress(f"comparing on {loaded.spec.name}") as step:
         system, runs = run_comparison(loaded, limits, states, step)
     if figure is not None:
         _draw(runs, figure)
-    if as_json:
-        print_json("compare-methods", _summary(loaded, system, runs))
-    elif not quiet:
-        _print(loaded, system, runs)
-    if figure is not None:
-        note(f"figure written to {figure}", quiet=quiet)
+        note(f"figure written to {figure}")
     verdicts = [str(run.certification.verdict) for run in runs]
     best = next((v for v in ("refuted", "proved") if v in verdicts), "inconclusive")
-    raise typer.Exit(exit_codes.OF_VERDICT[best])
+    return Answer(
+        lambda: _summary(loaded, system, runs),
+        lambda: _print(loaded, system, runs),
+        exit_codes.OF_VERDICT[best],
+    )
 
 
 def _summary(
     loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ...]
 ) -> dict[str, Any]:
-    from nrs_design.cli.certification_summary import rate_summary
+    from nrs_design.cli.facts import rate_facts
 
     return {
-        "spec": loaded.spec.name,
-        "spec_sha256": loaded.sha256,
+        **spec_facts(loaded),
         "time": str(system.time),
         "states": list(system.states),
         "modes": [mode.name for mode in system.modes],
@@ -94,7 +92,7 @@ def _summary(
                 "outcome": run.outcome,
                 "updates": run.updates,
                 "seconds": round(run.seconds, 6),
-                **rate_summary(run.certification),
+                **rate_facts(run.certification),
                 "condition": run.condition,
                 "history": [list(map(list, history)) for history in run.histories],
             }

@@ -1,17 +1,16 @@
-"""Where results go: into a spec, onto a page, to stdout."""
+"""Where a result is written beside stdout: into a spec, onto a page."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
-
-import typer
+from typing import TYPE_CHECKING, Self
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer
 from nrs_design.cli.errors import error_summary, print_error
-from nrs_design.cli.printing import note, print_json, progress
+from nrs_design.cli.printing import insist, note, progress
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
@@ -23,43 +22,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Destinations:
-    """Where a result goes: into a spec, onto a page, to stdout.
+    """Where a result is written: into a spec, onto a page."""
 
-    Parameters
-    ----------
-    spec : LoadedSpec or None
-        What it is merged into.
-    report : Path or None
-        The page: ends in .html or .pdf.
-    date : datetime or None
-        What the user wants to read as the date of the page.
-    as_json, quiet : bool
-        Print JSON instead of text; print no text.
-    """
-
-    spec: LoadedSpec | None
-    report: Path | None
-    date: datetime | None
-    as_json: bool
-    quiet: bool
+    spec: LoadedSpec | None  # What it is merged into
+    report: Path | None  # The page: ends in .html or .pdf
+    date: datetime | None  # What the user wants to read as the date of the page
 
     @classmethod
-    def checked(
-        cls,
-        write: Path | None,
-        report: Path | None,
-        date: datetime | None,
-        *,
-        as_json: bool,
-        quiet: bool,
-    ) -> Self:
+    def checked(cls, write: Path | None, report: Path | None, date: datetime | None) -> Self:
         """Refuse what cannot be written, before the work is done.
 
         Parameters
         ----------
         write : Path or None
             A spec.
-        report, date, as_json, quiet
+        report, date
             As for the class.
 
         Raises
@@ -74,31 +51,26 @@ class Destinations:
 
         if report is not None:
             check_place(report, page_kind(report))
-        if write is None:
-            return cls(None, report, date, as_json, quiet)
-        spec = read_spec(write)
-        check_place(write)
-        return cls(spec, report, date, as_json, quiet)
+        spec = None
+        if write is not None:
+            spec = read_spec(write)
+            check_place(write)
+        return cls(spec, report, date)
 
     def deliver(
         self,
-        command: str,
-        *,
-        summary: Callable[[], dict[str, Any]],
-        show: Callable[[], None],
+        answer: Answer,
         page: Callable[[], Report],
         merge: Callable[[LoadedSpec], str] | None = None,
         caveats: Iterable[str] = (),
         slips: Sequence[str] = (),
-    ) -> None:
-        """Write a result to where it is wanted, and print it; also what a spec refuses to take.
+    ) -> Answer:
+        """Write a result to where it is wanted; return the answer, with what a spec has refused.
 
         Parameters
         ----------
-        command : str
-            As the envelope of JSON names it.
-        summary, show : callable
-            Returns the content of JSON; prints the text.
+        answer : Answer
+            The result.
         page : callable
             Returns the page.
         merge : callable, optional
@@ -106,8 +78,8 @@ class Destinations:
         caveats : iterable of str
             What is doubtful about values that are merged.
         slips : sequence of str
-            What of it says that the data are likely read in another unit or sign: the result is
-            then no success, and the exit code says so.
+            Why the data are likely read in another unit or sign: the result is then no success,
+            and the exit code says so.
         """
         refused, merged = None, None
         if merge is not None and self.spec is not None:
@@ -116,29 +88,27 @@ class Destinations:
             except NrsDesignError as error:
                 # What was found is printed all the same: it took its time.
                 refused = error
+                print_error(error)
         if self.report is not None:
-            with progress("figures", quiet=self.quiet):
+            with progress("figures"):
                 _write_page(self.report, page(), self.date)
+            note(f"page written to {self.report}")
         if self.spec is not None and merged is not None:
             # A proof will rest on these values: no option silences this.
             for caveat in caveats:
-                note(f"warning: {caveat}")
-            _write_spec(self.spec, merged, quiet=self.quiet)
-        if self.as_json:
+                insist(f"warning: {caveat}")
+            _write_spec(self.spec, merged)
+        elif refused is None:
+            for slip in slips:
+                insist(f"warning: {slip}")
+        if self.spec is not None:
             not_written = None if refused is None else error_summary(refused)
-            written = {} if self.spec is None else {"not_written": not_written}
-            print_json(command, summary() | written)
-        elif not self.quiet:
-            show()
-        if self.report is not None:
-            note(f"page written to {self.report}", quiet=self.quiet)
-        if refused is not None:
-            print_error(refused)
-            raise typer.Exit(exit_codes.USAGE)
-        if slips:
-            for slip in slips if merged is None else ():
-                note(f"warning: {slip}")
-            raise typer.Exit(exit_codes.INCONCLUSIVE)
+            facts = answer.facts
+            answer = replace(answer, facts=lambda: facts() | {"not_written": not_written})
+        if refused is not None or slips:
+            code = exit_codes.INCONCLUSIVE if refused is None else exit_codes.USAGE
+            return replace(answer, code=code)
+        return answer
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:
@@ -150,15 +120,15 @@ def _write_page(path: Path, report: Report, date: datetime | None) -> None:
     write_output(path, content, replaces=kind)
 
 
-def _write_spec(spec: LoadedSpec, text: str, *, quiet: bool) -> None:
+def _write_spec(spec: LoadedSpec, text: str) -> None:
     from nrs_design.output import write_output
     from nrs_design.spec.changes import spec_changes
 
     changed, lost = spec_changes(spec, text)
     write_output(spec.path, text)
     for line in changed:
-        note(f"changed: {line}", quiet=quiet)
+        note(f"changed: {line}")
     # What the user wrote, and is gone, no option silences.
     for line in lost:
-        note(f"warning: no longer there: {line}")
-    note(f"merged into {spec.path}; run nrs-design gate {spec.path} to prove it", quiet=quiet)
+        insist(f"warning: no longer there: {line}")
+    note(f"merged into {spec.path}; run nrs-design gate {spec.path} to prove it")

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 
@@ -18,14 +19,13 @@ if TYPE_CHECKING:
     from nrs_design.reporting import Report
 
 
+@command("diff")
 def diff(
     before: Annotated[Path, typer.Argument(metavar="A", help="Spec, or certificate (.json).")],
     after: Annotated[Path, typer.Argument(metavar="B", help="Spec, or certificate (.json).")],
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Compare two specs or certificates: what they say, gains, margins, verdicts, assumptions.
 
     Specs are designed and certified afresh. Certificates are re-checked by themselves; they have no
@@ -37,16 +37,12 @@ def diff(
     """
     from nrs_design.comparison import compare
 
-    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
-    with progress("comparing", quiet=quiet) as step:
+    outputs = Destinations.checked(None, report, date)
+    with progress("comparing") as step:
         found = compare(before, after, step)
-    outputs.deliver(
-        "diff",
-        summary=lambda: _summary(found),
-        show=lambda: _print(found),
-        page=lambda: _page(found),
-    )
-    raise typer.Exit(exit_codes.REFUTED if found.differences else exit_codes.PROVED)
+    code = exit_codes.unless(found.differences)
+    answer = Answer(lambda: _summary(found), lambda: _print(found), code)
+    return outputs.deliver(answer, lambda: _page(found))
 
 
 def _page(found: Comparison) -> Report:

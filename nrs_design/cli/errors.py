@@ -1,4 +1,4 @@
-"""What an error looks like: as compilers show it, with the line of the file and a caret."""
+"""Errors in the form of compilers: with the line of the file and a caret."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from nrs_design.cli.printing import painted, wrapped
 from nrs_design.errors import Fault, NrsDesignError
 from nrs_design.printable import printable
 
-# More than a user mends at once.
+# A user corrects no more at once.
 MAX_SHOWN = 20
-# In JSON, for programs that show them in an editor.
+# In JSON, for editors.
 MAX_LISTED = 100
-# Of a line of the file; narrower on a narrow terminal.
+# Columns of a shown line of the file; fewer on a narrow terminal.
 WIDEST_LINE = 100
-# A file beyond this is data, not text that is read by line.
+# A larger file is data, not text with lines, in bytes.
 LARGEST_FILE = 16 * 1024 * 1024
 
 

@@ -11,3 +11,10 @@ INTERNAL = 4
 INTERRUPTED = 130
 
 OF_VERDICT = {"proved": PROVED, "refuted": REFUTED, "inconclusive": INCONCLUSIVE}
+# By severity of the worst obligation of a gate, from none to a defect of this program.
+OF_SEVERITY = (PROVED, INCONCLUSIVE, REFUTED, USAGE, INTERNAL)
+
+
+def unless(missed: object) -> int:
+    """Return 1 if something is missed or refuted, else 0."""
+    return REFUTED if missed else PROVED

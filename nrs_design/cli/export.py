@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -10,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 from nrs_design.exporters import FORMATS, ROBOT_FORMATS, Format
@@ -29,6 +28,7 @@ ROS2: dict[str, Any] = {
 }
 
 
+@command("export")
 def export(
     spec: Annotated[
         Path | None, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")
@@ -59,9 +59,7 @@ def export(
             "the exit code stays that of the verdict.",
         ),
     ] = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Export the designed gains, exactly and as float32, together with what is proved of them.
 
     A design that is refuted (exit code 1) or inconclusive (3) is not exported. A program that a
@@ -72,16 +70,15 @@ def export(
     Example: nrs-design export --list
     """
     if list_:
-        _list(as_json=as_json)
-        return
+        return _list()
     if spec is None:
         raise NrsDesignError("no spec is named", remedy="name one, or list the formats with --list")
     chosen = _format(format_)
     execution = _execution(chosen, sample_time, unproved=unproved)
-    _export_design(spec, chosen, certificate, out, execution, as_json=as_json, quiet=quiet)
+    return _export_design(spec, chosen, certificate, out, execution)
 
 
-def _list(*, as_json: bool) -> None:
+def _list() -> Answer:
     entries: list[dict[str, Any]] = [
         {
             "name": name,
@@ -92,11 +89,11 @@ def _list(*, as_json: bool) -> None:
         for name, item in (*FORMATS.items(), *ROBOT_FORMATS.items())
     ]
     entries.append(ROS2)
-    if as_json:
-        print_json("export", {"formats": entries})
-        return
     rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
-    print_table("", ("format", "what for", "needs"), rows)
+    return Answer(
+        lambda: {"formats": entries},
+        lambda: print_table("", ("format", "what for", "needs"), rows),
+    )
 
 
 def _format(name: str) -> Format:
@@ -121,11 +118,6 @@ def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Ex
     from nrs_design.exporters.export import Execution
 
     if chosen.executable:
-        if not (chosen.provable or unproved):
-            raise NrsDesignError(
-                "no proof is about what this format writes",
-                remedy="add --unproved, or take another",
-            )
         period = None if sample_time is None else _seconds(sample_time)
         return Execution(period, unproved)
     if unproved or sample_time is not None:
@@ -152,10 +144,7 @@ def _export_design(
     certificate: Path | None,
     out: Path,
     execution: Execution | None,
-    *,
-    as_json: bool,
-    quiet: bool,
-) -> None:
+) -> Answer:
     from nrs_design.exporters.export import export_design
     from nrs_design.exporters.write import check_places, places
     from nrs_design.ownership import check_certificate
@@ -172,7 +161,7 @@ def _export_design(
             raise OutputError("is the certificate file", path=file, remedy="choose another --out")
     check_places(chosen, files, name)
     check_certificate(spec, beside)
-    with progress(f"exporting {name}", quiet=quiet) as step:
+    with progress(f"exporting {name}") as step:
         result = export_design(loaded, certificate, step, execution)
     remarks: tuple[str, ...] = ()
     if result.record is not None:
@@ -180,23 +169,22 @@ def _export_design(
         with placed(loaded):
             remarks = _write(result, chosen, files, None if certificate else proof, spec)
     written = list(files.values()) if result.record else []
-    if result.verdict == "proved" and not chosen.provable:
-        reason = "what is proved is the step of one axis"
-        result = replace(result, verdict="inconclusive", reason=reason)
-    if as_json:
-        summary = _summary(name, result, written, proof)
-        print_json("export", summary | ({"remarks": remarks} if chosen.remarks else {}))
-    elif result.record is None:
+    summary = _summary(name, result, written, proof)
+    return Answer(
+        lambda: summary | ({"remarks": remarks} if chosen.remarks else {}),
+        lambda: _show(name, result, written, proof, remarks),
+        exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED),
         # Nothing was written, which is an error of its own.
+        loud=result.record is None,
+    )
+
+
+def _show(
+    name: str, result: Export, written: list[Path], proof: Path, remarks: tuple[str, ...]
+) -> None:
+    if result.record is None:
         note(f"{name}: not exported: {result.reason}")
-    elif not quiet:
-        _say(name, result, written, proof)
-        for remark in remarks:
-            note(remark)
-    raise typer.Exit(exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED))
-
-
-def _say(name: str, result: Export, written: list[Path], proof: Path) -> None:
+        return
     where = ", ".join(map(str, written))
     if result.verdict == "proved":
         say(f"{name}: PROVED, exported to {where}", verdict="proved")
@@ -204,6 +192,8 @@ def _say(name: str, result: Export, written: list[Path], proof: Path) -> None:
         say(f"{name}: UNPROVED ({result.reason}), exported to {where}")
     if result.certificate is not None:
         note(f"certificate: {proof}")
+    for remark in remarks:
+        note(remark)
 
 
 def _write(

@@ -6,13 +6,14 @@ import sys
 from enum import StrEnum
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Budget, Json, MaxDegree, Memory, Quiet
-from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.cli.command import command
+from nrs_design.cli.options import Budget, MaxDegree, Memory
+from nrs_design.cli.printing import note, progress, say, say_failure, wants_json, wants_text
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 
@@ -21,15 +22,6 @@ if TYPE_CHECKING:
 
 # Highest degree, budget and memory, as far as they are given.
 SearchLimits = tuple[int | None, float | None, float | None]
-
-# By severity of the worst obligation, from none to a defect of this program.
-OF_SEVERITY = (
-    exit_codes.PROVED,
-    exit_codes.INCONCLUSIVE,
-    exit_codes.REFUTED,
-    exit_codes.USAGE,
-    exit_codes.INTERNAL,
-)
 
 # Folders that a note lists by name.
 SHOWN = 5
@@ -45,6 +37,7 @@ class GateFormat(StrEnum):
     JSON = "json"
 
 
+@command("gate")
 def gate(
     paths: Annotated[
         list[Path], typer.Argument(metavar="PATH...", help="Spec files, or folders of them.")
@@ -81,9 +74,7 @@ def gate(
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> NoReturn:
     """Certify every spec, write certificates, reports and the lock file, and fail closed.
 
     The lock file keeps its entries for other specs, and no file of another spec is overwritten.
@@ -96,7 +87,7 @@ def gate(
 
     Example: nrs-design gate --locked --against ../base specs
     """
-    chosen = format_of(format_, as_json=as_json)
+    chosen = format_of(format_)
     _check_options(out, locked=locked, prune=prune)
     search = (max_degree, budget, memory)
     start = perf_counter()
@@ -106,21 +97,24 @@ def gate(
         # What cannot be compared is said before minutes of search.
         base_paths(paths, against)
     outcome = (
-        _re_check(paths, lock, quiet=quiet)
+        _re_check(paths, lock)
         if locked
-        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune, quiet=quiet)
+        else _certify(paths, lock, reports, search, html=not no_reports, prune=prune)
     )
     if against is not None:
         from nrs_design.gating.against import compare_with_base
 
         outcome = compare_with_base(outcome, paths, against, lock)
-    _deliver(outcome, chosen, out, quiet=quiet)
-    _note(outcome, quiet=quiet)
-    note(f"{perf_counter() - start:.1f} s", quiet=quiet)
-    raise typer.Exit(OF_SEVERITY[outcome.severity])
+    _deliver(outcome, chosen, out)
+    for item in (caution for spec in outcome.specs for caution in spec.cautions):
+        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}")
+    for text in outcome.notes:
+        note(f"note: {text}")
+    note(f"{perf_counter() - start:.1f} s")
+    raise typer.Exit(exit_codes.OF_SEVERITY[outcome.severity])
 
 
-def format_of(format_: GateFormat, *, as_json: bool) -> GateFormat:
+def format_of(format_: GateFormat) -> GateFormat:
     """Return the format that is asked for; --json is short for one of them.
 
     Raises
@@ -128,6 +122,7 @@ def format_of(format_: GateFormat, *, as_json: bool) -> GateFormat:
     NrsDesignError
         If both ask for different things.
     """
+    as_json = wants_json()
     if as_json and format_ not in (GateFormat.TEXT, GateFormat.JSON):
         raise NrsDesignError(
             f"--json and --format {format_} exclude each other", remedy="keep one of them"
@@ -151,7 +146,7 @@ def _check_options(out: Path | None, *, locked: bool, prune: bool) -> None:
         check_place(out, GATE)
 
 
-def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None, *, quiet: bool) -> None:
+def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None) -> None:
     """Write the document to where it is wanted; people see a text, too."""
     from nrs_design.gating.formats import FORMATS
     from nrs_design.output import GATE, write_output
@@ -160,42 +155,30 @@ def _deliver(outcome: GateOutcome, chosen: GateFormat, out: Path | None, *, quie
     if out is not None:
         write_output(out, document, replaces=GATE)
     elif chosen is GateFormat.TEXT:
-        _show(outcome, document, quiet=quiet)
+        _show(outcome, document)
     else:
         sys.stdout.write(document)
     if out is not None or chosen is not GateFormat.TEXT:
         for line in FORMATS["text"](outcome).split("\n"):
-            note(line, quiet=quiet)
+            note(line)
 
 
-def _note(outcome: GateOutcome, *, quiet: bool) -> None:
-    """Say what is doubtful, and what a person should know beside it."""
-    for item in (caution for spec in outcome.specs for caution in spec.cautions):
-        note(f"warning: {item.path}:{item.line}:{item.column}: {item.message}", quiet=quiet)
-    for text in outcome.notes:
-        note(f"note: {text}", quiet=quiet)
-
-
-def _show(outcome: GateOutcome, document: str, *, quiet: bool) -> None:
-    """Print for people: what is not fulfilled, and the rest too unless it shall be quiet."""
+def _show(outcome: GateOutcome, document: str) -> None:
+    """Print for people: what is not fulfilled; and the rest too, without --quiet."""
     from nrs_design.gating.formats import text
 
-    if not (quiet or sys.stdout.isatty()):
+    if wants_text() and not sys.stdout.isatty():
         sys.stdout.write(document)
         return
-    if not quiet:
+    if wants_text():
         print_table("", text.COLUMNS, text.rows_of(outcome))
-        for line in text.gain_lines(outcome):
-            say(line)
-    if outcome.broken and not quiet:
-        say()
+    gaps = [""] if outcome.broken else []
+    for line in (*text.gain_lines(outcome), *gaps):
+        say(line)
     for item in outcome.broken:
         say_failure(text.line_of(item), str(item.status))
-    if not quiet:
-        for line in text.change_lines(outcome):
-            say(line)
-        say()
-        say(text.summary_line(outcome))
+    for line in (*text.change_lines(outcome), "", text.summary_line(outcome)):
+        say(line)
 
 
 def _certify(
@@ -206,7 +189,6 @@ def _certify(
     *,
     html: bool,
     prune: bool,
-    quiet: bool,
 ) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock_if_any
@@ -219,19 +201,19 @@ def _certify(
     check_folder(reports, lock)
     check_place(lock, LOCK)
     known = read_lock_if_any(lock)
-    with progress("gate", quiet=quiet) as step:
+    with progress("gate") as step:
         files = Files(reports, html, certificates_of(known, lock), bounds_of(known))
         outcome = run_gate(specs, files, step, Overrides(*search))
     return _with_not_examined(write_lock(outcome, lock, prune=prune), paths)
 
 
-def _re_check(paths: list[Path], lock: Path, *, quiet: bool) -> GateOutcome:
+def _re_check(paths: list[Path], lock: Path) -> GateOutcome:
     from nrs_design.gating.find_specs import find_specs
     from nrs_design.gating.lock import read_lock
     from nrs_design.gating.locked import run_locked
 
     specs, content = find_specs(paths), read_lock(lock)
-    with progress("gate", quiet=quiet) as step:
+    with progress("gate") as step:
         outcome = run_locked(specs, content, lock, step, named=paths)
     return _with_not_examined(outcome, paths)
 

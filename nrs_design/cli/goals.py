@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer, spec_facts
 from nrs_design.cli.printing import note, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import AbstractControllerAnalysis, DesignAnalysis
     from nrs_design.design.goals import Achieved
-    from nrs_design.spec import InteractionDesignSpec, Spec
+    from nrs_design.pipeline import Designed
+    from nrs_design.spec import InteractionDesignSpec
 
 
-def print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
+def _print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
     """Print what the spec asks for beside what is achieved at worst; nothing without goals."""
     from nrs_design.design.measures import MEANING
 
@@ -40,32 +42,50 @@ def print_goals(name: str, items: Iterable[AbstractControllerAnalysis]) -> None:
             say(line)
 
 
-def say_unjudged(spec: InteractionDesignSpec) -> None:
+def design_answer(
+    designed: Designed,
+    analysis: DesignAnalysis,
+    items: Iterable[AbstractControllerAnalysis],
+    facts: Callable[[], dict[str, Any]],
+    show: Callable[[], object],
+) -> Answer:
+    """Return the answer of a command that shows a design: with goals and with what is doubtful.
+
+    Parameters
+    ----------
+    designed, analysis
+        The spec, and what its design achieves.
+    items : iterable of AbstractControllerAnalysis
+        The controllers that the command is about; its exit code is 1 if one misses a goal.
+    facts, show : callable
+        Return the content of the JSON document; print the text.
+    """
+    from nrs_design.spec import doubt_spec
+
+    loaded, spec = designed.loaded, designed.spec
+    warnings = [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)]
+
+    def show_all() -> None:
+        show()
+        _print_goals(spec.name, items)
+        _say_unjudged(spec)
+        for text in warnings:
+            note(f"warning: {text}")
+
+    return Answer(
+        lambda: spec_facts(loaded) | facts() | {"warnings": warnings},
+        show_all,
+        exit_codes.unless(any(not found.met for item in items for found in item.achieved)),
+    )
+
+
+def _say_unjudged(spec: InteractionDesignSpec) -> None:
     """Print which goals no number of a design decides; nothing without them."""
     from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
     given = () if spec.goals is None else (key for key, _ in spec.goals.given())
     if keys := [key for key in given if key in OF_THE_CERTIFICATE]:
         say(f"Not judged here: {', '.join(keys)}. A proof decides: nrs-design certify-switching.")
-
-
-def print_warnings(warnings: Iterable[str], *, quiet: bool) -> None:
-    """Print on stderr what is doubtful."""
-    for text in warnings:
-        note(f"warning: {text}", quiet=quiet)
-
-
-def warnings_of(spec: Spec, analysis: DesignAnalysis) -> list[str]:
-    """Say what is doubtful about a spec and its design, and no goal speaks of it."""
-    from nrs_design.spec import doubt_spec
-
-    return [str(doubt) for doubt in (*doubt_spec(spec), *analysis.warnings)]
-
-
-def exit_code(items: Iterable[AbstractControllerAnalysis]) -> int:
-    """Return 1 if a goal is missed."""
-    met = all(found.met for item in items for found in item.achieved)
-    return exit_codes.PROVED if met else exit_codes.REFUTED
 
 
 def goals_summary(item: AbstractControllerAnalysis) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Groups of commands: what is said where there is no such command, or it is used wrongly."""
+"""A group of commands that suggests the closest name, and reports wrong usage printably."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ from nrs_design.printable import printable
 
 
 class CommandGroup(TyperGroup):
-    """Commands, of which one is suggested where none is named.
+    """Command group that suggests the closest command name.
 
-    What is wrong with their arguments is said in printable words: an argument may be a stranger's
-    file name that a shell has put there.
+    Messages about arguments are made printable: a shell may have put a stranger's file name there.
     """
 
     def make_context(self, *args: Any, **kwargs: Any) -> Any:
@@ -36,7 +35,7 @@ class CommandGroup(TyperGroup):
         Raises
         ------
         NrsDesignError
-            If there is none of that name.
+            If there is no such command.
         """
         known = self.list_commands(ctx)
         if not args[0].startswith("-") and args[0] not in known:
@@ -51,15 +50,15 @@ def _printable_faults() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        # Wrong usage, which the command-line library prints itself.
+        # Wrong usage: the command-line library prints it.
         if hasattr(error, "format_message") and hasattr(error, "message"):
-            # What checks a value puts its own name in front of what is wrong with it.
+            # pydantic puts "Value error, " in front of our messages.
             error.message = printable(error.message).removeprefix("Value error, ")
         raise
 
 
 def _suggestion(word: str, known: Sequence[str]) -> str:
-    """Take the beginning of a name for a slip, before names that look alike."""
+    """Suggest names that begin with the word, else names that resemble it."""
     begun = [name for name in known if len(word) > 1 and name.startswith(word.lower())]
     near = begun or difflib.get_close_matches(word.lower(), known, n=2)
     return f"did you mean {' or '.join(near)}?" if near else f"there are {', '.join(known)}"

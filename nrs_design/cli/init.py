@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
-from nrs_design.cli.options import Quiet
-from nrs_design.cli.printing import note
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.printing import insist, note
 from nrs_design.errors import OutputError
 from nrs_design.files import open_regular
 
@@ -27,6 +27,7 @@ class TemplateOption(StrEnum):
     ROBOT = "robot"
 
 
+@command("init", has_json=False)
 def init(
     template: Annotated[
         TemplateOption,
@@ -36,8 +37,7 @@ def init(
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Write a commented spec (interaction-design, hybrid-force, switched-system or robot).
 
     The spec is named after its file, so that several can stand in one folder. The schema that its
@@ -52,8 +52,9 @@ def init(
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")
     write_output(path, named_after(path, TEMPLATES[str(template)]))
-    note(f"{path} written", quiet=quiet)
-    _write_schema(path.with_name(SCHEMA), quiet=quiet)
+    note(f"{path} written")
+    _write_schema(path.with_name(SCHEMA))
+    return Answer()
 
 
 def named_after(path: Path, template: str) -> str:
@@ -67,20 +68,20 @@ def named_after(path: Path, template: str) -> str:
     return line.sub(lambda m: f"name: {name} ".ljust(len(m[0])), template, count=1)
 
 
-def _write_schema(path: Path, *, quiet: bool) -> None:
+def _write_schema(path: Path) -> None:
     from nrs_design.output import write_output
     from nrs_design.spec.schema import schema_text
 
     if not path.exists():
         write_output(path, schema_text())
-        note(f"{path} written, for help in your editor", quiet=quiet)
+        note(f"{path} written, for help in your editor")
         return
     wanted = schema_text().encode()
     try:
         with open_regular(path) as file:
             same = file.read(2 * len(wanted)).replace(b"\r\n", b"\n") == wanted
     except OSError as error:
-        note(f"{path} cannot be read ({error.strerror})", quiet=quiet)
+        note(f"{path} cannot be read ({error.strerror})")
         return
     if not same:
-        note(f"{path} is that of another version: `nrs-design schema --out {path}` renews it")
+        insist(f"{path} is that of another version: `nrs-design schema --out {path}` renews it")

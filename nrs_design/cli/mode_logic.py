@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.cli.options import Json, SpecFile
-from nrs_design.cli.printing import print_json, say
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 
-def mode_logic(spec: SpecFile, as_json: Json = False) -> None:
+@command("mode-logic")
+def mode_logic(spec: SpecFile) -> Answer:
     """Show the mode logic of a spec: switches, dwell times derived from noise and delay, estimator.
 
     Nothing is certified here; `certify-switching` does, with these dwell times where the spec says
@@ -20,15 +22,17 @@ def mode_logic(spec: SpecFile, as_json: Json = False) -> None:
 
     Example: nrs-design mode-logic docs/examples/insertion-by-sign.nrs.yaml
     """
-    from nrs_design.reporting.sections.mode_logic import logic_meaning, logic_summary, logic_tables
+    from nrs_design.reporting.sections.mode_logic import logic_summary
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     declared = _with_logic(loaded)
-    if as_json:
-        content = {"spec": declared.name, "spec_sha256": loaded.sha256}
-        print_json("mode-logic", content | logic_summary(declared))
-        return
+    return Answer(lambda: spec_facts(loaded) | logic_summary(declared), lambda: _show(declared))
+
+
+def _show(declared: InteractionDesignSpec) -> None:
+    from nrs_design.reporting.sections.mode_logic import logic_meaning, logic_tables
+
     for table in logic_tables(declared):
         print_table(f"{declared.name}: {table.title}", table.columns, table.rows)
     for line in logic_meaning(declared):

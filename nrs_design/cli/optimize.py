@@ -7,18 +7,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from nrs_design.cli.goals import (
-    exit_code,
-    goals_summary,
-    print_goals,
-    print_warnings,
-    say_unjudged,
-    warnings_of,
-)
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.goals import design_answer, goals_summary
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -28,49 +20,37 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 
-def optimize(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
+@command("optimize")
+def optimize(spec: SpecFile) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
     Goals of the spec are respected; the exit code is 1 if gains that are given miss one.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
-    from nrs_design.pipeline import run_analysis, run_design, wrong_kind
+    from nrs_design.pipeline import run_analysis, run_interaction
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
-    with progress(f"designing {loaded.spec.name}", quiet=quiet) as step:
+    with progress(f"designing {loaded.spec.name}") as step:
         step("cost")
-        designed = run_design(loaded)
-        if designed is None:
-            raise wrong_kind(
-                loaded,
-                "a switched-system spec has nothing to design",
-                "use certify-switching, or a spec of kind interaction-design",
-            )
+        designed = run_interaction(loaded, "has nothing to design")
         step("margins")
         analysis = run_analysis(designed)
-    warnings = warnings_of(loaded.spec, analysis)
-    if as_json:
-        print_json(
-            "optimize",
-            {
-                "spec": loaded.spec.name,
-                "spec_sha256": loaded.sha256,
-                "motion_loop": motion_summary(analysis),
-                "sensor": _sensor(designed),
-                "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
-                "warnings": warnings,
-            },
-        )
-    elif not quiet:
+
+    def facts() -> dict[str, Any]:
+        return {
+            "motion_loop": motion_summary(analysis),
+            "sensor": _sensor(designed),
+            "controllers": [_summary(designed.spec, item) for item in analysis.impedance],
+        }
+
+    def show() -> None:
         if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
-        print_goals(loaded.spec.name, analysis.impedance)
-        say_unjudged(designed.spec)
-        print_warnings(warnings, quiet=quiet)
-    raise typer.Exit(exit_code(analysis.impedance))
+
+    return design_answer(designed, analysis, analysis.impedance, facts, show)
 
 
 def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:

@@ -23,10 +23,7 @@ def read_work(text: str) -> float:
     return value
 
 
-QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 SpecFile = Annotated[Path, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help=QUIET)]
 Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="Print every step.")]
 
 

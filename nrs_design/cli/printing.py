@@ -1,7 +1,8 @@
 """Printing: results on stdout, progress and notes on stderr.
 
 Here text leaves the program, and nowhere else in the command line: names and messages may come
-from files that strangers wrote, so every line and every cell is made `printable`.
+from files that strangers wrote, so every line and every cell is made `printable`. What --json and
+--quiet silence is decided here, too: `output` sets it for a command, and no command asks.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from contextvars import ContextVar
 from time import monotonic
 from typing import Any, TextIO
 
@@ -22,6 +24,35 @@ _CODES = {"red": "1;31", "green": "1;32", "yellow": "1;33", "blue": "1;34", "cya
 SILENCE = 20.0
 COLOURS = {"proved": "green", "refuted": "red", "rejected": "red", "inconclusive": "yellow"}
 
+_json: ContextVar[bool] = ContextVar("json", default=False)
+_quiet: ContextVar[bool] = ContextVar("quiet", default=False)
+
+
+@contextmanager
+def output(*, as_json: bool, quiet: bool) -> Iterator[None]:
+    """Set what is printed within: a JSON document in place of text; no text and no notes."""
+    tokens = _json.set(as_json), _quiet.set(quiet)
+    try:
+        yield
+    finally:
+        _json.reset(tokens[0])
+        _quiet.reset(tokens[1])
+
+
+def wants_json() -> bool:
+    """Whether the result is wanted as JSON."""
+    return _json.get()
+
+
+def wants_text() -> bool:
+    """Whether the result is wanted as text."""
+    return not (_json.get() or _quiet.get())
+
+
+def is_quiet() -> bool:
+    """Whether nothing but errors is wanted beside the result."""
+    return _quiet.get()
+
 
 def print_json(command: str, content: dict[str, Any]) -> None:
     """Print the versioned envelope of a command."""
@@ -31,21 +62,28 @@ def print_json(command: str, content: dict[str, Any]) -> None:
 
 def say(line: str = "", *, verdict: str = "") -> None:
     """Print one line of the result; the verdict in it, in capitals, is coloured on a terminal."""
+    if not wants_text():
+        return
     text = wrapped(printable(line), sys.stdout)
     word = verdict.upper()
     print(text.replace(word, painted(word, COLOURS[verdict], sys.stdout), 1) if word else text)
 
 
 def say_failure(line: str, status: str) -> None:
-    """Print one line about what is not fulfilled; its status is coloured on a terminal."""
+    """Print one line about what is not fulfilled, --quiet or not; its status is coloured."""
     text, colour = wrapped(printable(line), sys.stdout), COLOURS.get(status, "red")
     print(text.replace(f"{status}:", f"{painted(status, colour, sys.stdout)}:", 1))
 
 
-def note(line: str, *, quiet: bool = False) -> None:
-    """Print one line on stderr."""
-    if not quiet:
-        print(wrapped(printable(line), sys.stderr), file=sys.stderr)
+def note(line: str) -> None:
+    """Print one line on stderr, unless --quiet silences it."""
+    if not _quiet.get():
+        insist(line)
+
+
+def insist(line: str) -> None:
+    """Print one line on stderr that no option silences."""
+    print(wrapped(printable(line), sys.stderr), file=sys.stderr)
 
 
 def painted(text: str, colour: str, stream: TextIO) -> str:
@@ -90,17 +128,15 @@ def wrapped(line: str, stream: TextIO, hanging: int = 2) -> str:
 
 
 @contextmanager
-def progress(
-    title: str, *, quiet: bool = False, lines: bool = False
-) -> Iterator[Callable[[str], None]]:
+def progress(title: str, *, lines: bool = False) -> Iterator[Callable[[str], None]]:
     """Show the current step on stderr: a spinner on a terminal, elsewhere a line now and then.
+
+    Under --quiet, show nothing.
 
     Parameters
     ----------
     title : str
         What is done.
-    quiet : bool
-        Whether to show nothing.
     lines : bool
         Whether to write a line for each step, too, where there is no terminal.
 
@@ -109,7 +145,7 @@ def progress(
     callable
         Tell it the name of the step that begins.
     """
-    if quiet:
+    if _quiet.get():
         yield lambda step: None
         return
     if not sys.stderr.isatty():
@@ -132,7 +168,8 @@ def _spoken(title: str, *, lines: bool) -> Iterator[Callable[[str], None]]:
 
     def tell(step: str) -> None:
         current[0] = f"{title}: {step}"
-        note(current[0], quiet=not lines)
+        if lines:
+            note(current[0])
 
     def speak() -> None:
         # A reader that has gone ends the command where it prints its result.

@@ -5,19 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Budget, Date, Json, MaxDegree, Memory, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import DesignError, OutputError
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from datetime import date as Day
 
+    from nrs_design.certificates.certificate import Certificate
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Overrides, Result
     from nrs_design.reporting import Report
@@ -34,6 +36,7 @@ class ReportFormat(StrEnum):
     PNG = "png"
 
 
+@command("report")
 def report(
     spec: SpecFile,
     file_format: Annotated[
@@ -85,9 +88,7 @@ def report(
     max_degree: MaxDegree = None,
     budget: Budget = None,
     memory: Memory = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Design, certify, and report it all with figures; the exit code is that of the verdict.
 
     A robot spec gives a page about workspace, dynamics, correction and balance; the exit code is
@@ -103,20 +104,47 @@ def report(
     if loaded.spec.kind == "robot":
         if certificate is not None:
             raise DesignError("a robot has no certificate", remedy="leave --certificate out")
-        raise typer.Exit(_report_robot(loaded, file_format, out, day, as_json=as_json, quiet=quiet))
+        return _report_robot(loaded, file_format, out, day)
     _check_out(loaded, file_format, out)
     asked = _Asked(certificate, compare_methods, margin, shortest_dwell, stability_map, times, day)
-    with progress(f"reporting {loaded.spec.name}", quiet=quiet) as step:
-        result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step, quiet)
+    with progress(f"reporting {loaded.spec.name}") as step:
+        result, page = _build(loaded, asked, Overrides(max_degree, budget, memory), step)
         files = _write(page, file_format, out, spec)
     verdict = str(result.certification.verdict)
-    if as_json:
-        _print_json(loaded, verdict, result.certificate.id if result.certificate else None, files)
-    elif not quiet:
-        say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
-        _print_next(result, asked)
-        _print_files(files)
-    raise typer.Exit(exit_codes.OF_VERDICT[verdict])
+    steps = _next_steps(result, asked)
+    return _answer(
+        loaded, verdict, exit_codes.OF_VERDICT[verdict], files, result.certificate, steps
+    )
+
+
+def _answer(
+    loaded: LoadedSpec,
+    verdict: str,
+    code: int,
+    files: list[Path],
+    certificate: Certificate | None = None,
+    steps: tuple[str, ...] = (),
+) -> Answer:
+    def facts() -> dict[str, Any]:
+        return {
+            **spec_facts(loaded),
+            "verdict": verdict,
+            "certificate_id": certificate.id if certificate else None,
+            "files": [str(path) for path in files],
+        }
+
+    def show() -> None:
+        decided = verdict in exit_codes.OF_VERDICT
+        if decided:
+            say(f"{loaded.spec.name}: {verdict.upper()}", verdict=verdict)
+        else:
+            say(f"{loaded.spec.name}: {verdict}")
+        for line in steps:
+            say(f"next: {line}")
+        for path in files:
+            note(f"written to {path}")
+
+    return Answer(facts, show, code)
 
 
 def _format_of(file_format: ReportFormat | None, out: Path | None) -> ReportFormat:
@@ -167,7 +195,7 @@ def _check_out(loaded: LoadedSpec, file_format: ReportFormat, out: Path | None) 
 
 
 def _build(
-    loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress, quiet: bool
+    loaded: LoadedSpec, asked: _Asked, overrides: Overrides, step: Progress
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
     from nrs_design.pipeline import run_certification, run_comparison, run_recorded, search_limits
@@ -190,7 +218,7 @@ def _build(
     runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
     return result, build_report(
         result,
-        _analysis(result, quiet=quiet),
+        _analysis(result),
         comparison=runs,
         margins=margins,
         subsets=subsets,
@@ -200,33 +228,12 @@ def _build(
     )
 
 
-def _print_json(
-    loaded: LoadedSpec, verdict: str, certificate_id: str | None, files: list[Path]
-) -> None:
-    print_json(
-        "report",
-        {
-            "spec": loaded.spec.name,
-            "spec_sha256": loaded.sha256,
-            "verdict": verdict,
-            "certificate_id": certificate_id,
-            "files": [str(path) for path in files],
-        },
-    )
-
-
-def _print_next(result: Result, asked: _Asked) -> None:
+def _next_steps(result: Result, asked: _Asked) -> tuple[str, ...]:
     from nrs_design.reporting.next_steps import next_steps
 
-    for line in next_steps(
+    return next_steps(
         result, margin=asked.margin, shortest_dwell=asked.shortest_dwell, spec=result.loaded.path
-    ):
-        say(f"next: {line}")
-
-
-def _print_files(files: list[Path]) -> None:
-    for path in files:
-        note(f"written to {path}")
+    )
 
 
 def _report_robot(
@@ -234,33 +241,24 @@ def _report_robot(
     file_format: ReportFormat,
     out: Path | None,
     date: Day | None,
-    *,
-    as_json: bool,
-    quiet: bool,
-) -> int:
-    """Report a robot; return the exit code, that of `robot check`."""
+) -> Answer:
+    """Report a robot, with the exit code of `robot check`."""
     from nrs_design.ownership import check_page
     from nrs_design.pipeline import placed
     from nrs_design.wings import load_wing
 
     spec = loaded.path
     check_page(spec, out or REPORTS / f"{loaded.spec.name}.html")
-    with progress(f"reporting {loaded.spec.name}", quiet=quiet):
+    with progress(f"reporting {loaded.spec.name}"):
         _, robot_spec, robot = load_wing("robot", "pipeline").run_robot(spec)
         pages = load_wing("robot", "reporting.robot")
         with placed(loaded):
             page: Report = pages.robot_report(loaded, robot_spec, robot, date)
         files = _write(page, file_format, out, spec)
-    if as_json:
-        _print_json(loaded, page.verdict, None, files)
-    elif not quiet:
-        say(f"{loaded.spec.name}: {page.verdict}")
-        _print_files(files)
-    reached = page.verdict == "reachable"
-    return exit_codes.PROVED if reached else exit_codes.REFUTED
+    return _answer(loaded, page.verdict, exit_codes.unless(page.verdict != "reachable"), files)
 
 
-def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
+def _analysis(result: Result) -> DesignAnalysis | None:
     """Return what the design achieves, or nothing where a nominal loop has no margins."""
     from nrs_design.pipeline import run_analysis
 
@@ -269,7 +267,7 @@ def _analysis(result: Result, *, quiet: bool) -> DesignAnalysis | None:
     try:
         return run_analysis(result.designed)
     except DesignError as error:
-        note(f"no margins in this report: {error.message}", quiet=quiet)
+        note(f"no margins in this report: {error.message}")
         return None
 
 

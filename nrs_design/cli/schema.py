@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from nrs_design.cli.options import Quiet
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note
 
 
@@ -20,13 +20,13 @@ class Described(StrEnum):
     EXPORT = "export"
 
 
+@command("schema", has_json=False)
 def schema(
     of: Annotated[
         Described, typer.Option(help="Of spec files (draft-07), or of export records (2020-12).")
     ] = Described.SPEC,
     out: Annotated[Path | None, typer.Option(help="Write to a file instead of stdout.")] = None,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Print the JSON Schema of spec files, or of what `export` writes.
 
     Example: nrs-design schema --out nrs.schema.json
@@ -38,9 +38,10 @@ def schema(
     text = _text(of)
     if out is None:
         sys.stdout.write(text)
-        return
+        return Answer()
     write_output(out, text, replaces=SCHEMA)
-    note(f"schema written to {out}", quiet=quiet)
+    note(f"schema written to {out}")
+    return Answer()
 
 
 def _text(of: Described) -> str:

@@ -18,7 +18,7 @@ def seconds(low: float = 0.0, high: float = float("inf")) -> Callable[[str], flo
     Returns
     -------
     callable
-        Takes ``0.001`` and ``1 ms`` alike; raises `typer.BadParameter` on anything else.
+        Takes ``0.001`` or ``1 ms``; raises `typer.BadParameter` on anything else.
     """
 
     def read(text: str) -> float:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
 from nrs_design.cli.simulate_options import (
     Bound,
@@ -16,14 +17,10 @@ from nrs_design.cli.simulate_options import (
     Delay,
     Engine,
     EngineOption,
-    Jobs,
-    Many,
     MaxSteps,
-    MonteCarloRuns,
     Out,
     OuterPeriod,
     Period,
-    Resume,
     Scenarios,
     Seed,
     WorstCaseFlag,
@@ -31,14 +28,11 @@ from nrs_design.cli.simulate_options import (
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.pipeline import Designed
-    from nrs_design.pipeline.scenarios import Runs
-    from nrs_design.spec import LoadedSpec
 
 
+@command("simulate")
 def simulate(
     spec: SpecFile,
     scenario: Scenarios = None,
@@ -51,13 +45,8 @@ def simulate(
     outer_period: OuterPeriod = None,
     max_steps: MaxSteps = None,
     worst: WorstCaseFlag = False,
-    monte_carlo: MonteCarloRuns = None,
-    jobs: Jobs = 1,
     seed: Seed = 0,
-    resume: Resume = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Simulate the interaction of robot, tissue and surgeon, and measure safety and agility.
 
     Scenarios are in the spec; without any, the command of thesis fig. 6.7 moves into the first
@@ -66,66 +55,33 @@ def simulate(
     Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --out runs
 
     Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --worst-case
-
-    Example: nrs-design simulate docs/examples/scenarios.nrs.yaml --monte-carlo 500 --jobs 2
     """
+    from nrs_design.cli.simulate_scenarios import simulate_scenarios
+    from nrs_design.cli.worst_case import worst_case
+    from nrs_design.pipeline import run_interaction
     from nrs_design.pipeline.scenarios import Runs
     from nrs_design.spec import read_spec
 
     timed = any(value is not None for value in (period, delay, outer_period))
     if engine is EngineOption.EXACT and timed:
         raise typer.BadParameter("the exact engine has no samples", param_hint="--engine")
-    many = Many(worst, monte_carlo, seed, jobs, resume)
-    many.check((scenario, engine, period, delay, outer_period, max_steps))
+    if worst and any((scenario, engine, period, delay is not None, outer_period, max_steps)):
+        message = "the adversary plays against the loop of the spec, not within a scenario"
+        raise typer.BadParameter(message, param_hint="--worst-case")
+    if seed and not worst:
+        message = "needs --worst-case; a scenario has its own seed"
+        raise typer.BadParameter(message, param_hint="--seed")
     loaded = read_spec(spec)
-    _check_kind(loaded)
     if engine is None and timed:
         engine = EngineOption.SAMPLED
     how = None if engine is None else str(engine)
     wanted = Runs(tuple(dict.fromkeys(scenario or ())), how, period, delay, max_steps, outer_period)
-    with progress(f"simulating {loaded.spec.name}", quiet=quiet) as step:
-        show = _simulate(loaded, wanted, many, certificate, out, step, bound=bound)
-    raise typer.Exit(show(as_json=as_json, quiet=quiet))
-
-
-def _check_kind(loaded: LoadedSpec) -> None:
-    from nrs_design.pipeline import wrong_kind
-
-    if loaded.spec.kind != "interaction-design":
-        raise wrong_kind(
-            loaded,
-            f"a spec of kind {loaded.spec.kind} describes no interaction",
-            "name a spec of kind interaction-design; see also `nrs-design robot track`",
-        )
-
-
-def _simulate(
-    loaded: LoadedSpec,
-    wanted: Runs,
-    many: Many,
-    certificate: Path | None,
-    out: Path | None,
-    step: Progress,
-    *,
-    bound: bool,
-) -> Callable[..., int]:
-    """Run the scenarios, let an adversary search, or chance draw; return what prints the result."""
-    from nrs_design.cli.monte_carlo import monte_carlo
-    from nrs_design.cli.simulate_scenarios import simulate_scenarios
-    from nrs_design.cli.worst_case import worst_case
-    from nrs_design.pipeline import run_design
-
-    designed = run_design(loaded)
-    assert designed is not None
-    prove = partial(_proof, designed, certificate, step, bound=bound)
-    if many.worst:
-        return worst_case(designed, prove(), many.seed, out, step)
-    if many.runs is not None:
-        from nrs_design.pipeline.monte_carlo import MonteCarlo
-
-        asked = MonteCarlo(designed, wanted, many.runs, many.seed)
-        return monte_carlo(asked, many.jobs, many.resume, prove(), out, step)
-    return simulate_scenarios(designed, wanted, prove, out, step)
+    with progress(f"simulating {loaded.spec.name}") as step:
+        designed = run_interaction(loaded, "describes no interaction")
+        prove = partial(_proof, designed, certificate, step, bound=bound)
+        if worst:
+            return worst_case(designed, prove(), seed, out, step)
+        return simulate_scenarios(designed, wanted, prove, out, step)
 
 
 def _proof(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.command import Answer, spec_facts
+from nrs_design.cli.printing import note, say
+from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
 
@@ -16,12 +17,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.output import Beginning
+    from nrs_design.output import Output
     from nrs_design.pipeline import Designed
     from nrs_design.pipeline.certified_runs import CertifiedBound, CertifiedRate
     from nrs_design.pipeline.scenarios import Runs, Simulated
     from nrs_design.simulation.run import Run
-    from nrs_design.spec import InteractionDesignSpec
 
 # A run, and the bounds and the rate that are certified beside it.
 Bounded = tuple["Simulated", "tuple[CertifiedBound, ...]", "CertifiedRate | None"]
@@ -33,8 +33,8 @@ def simulate_scenarios(
     prove: Callable[[], Certificate | None],
     out: Path | None,
     step: Progress,
-) -> Callable[..., int]:
-    """Simulate, and write the figures and tables of every run; return what prints them.
+) -> Answer:
+    """Simulate, and write the figures and tables of every run.
 
     Parameters
     ----------
@@ -51,37 +51,27 @@ def simulate_scenarios(
     """
     from nrs_design.pipeline.scenarios import run_scenarios
 
-    _check_places(designed.spec, wanted.names, out)
+    if out is not None:
+        _check_places(designed, wanted, out)
     found = list(run_scenarios(designed, wanted, step))
     proof = prove()
     runs = [(one, *_certified(designed, proof, one)) for one in found]
     step("figures")
-    return partial(_show, designed, runs, _write(designed, out, runs), out)
+    files = [] if out is None else _write(designed, out, runs)
 
-
-def _show(
-    designed: Designed,
-    runs: Sequence[Bounded],
-    files: Sequence[Path],
-    out: Path | None,
-    *,
-    as_json: bool,
-    quiet: bool,
-) -> int:
-    if files:
-        note(f"written to {out}", quiet=quiet)
-    if as_json:
-        head = {"spec": designed.spec.name, "spec_sha256": designed.loaded.sha256}
-        found = {"runs": [_document(*run) for run in runs], "files": list(map(str, files))}
-        print_json("simulate", head | found)
-    elif not quiet:
+    def show() -> None:
         for run in runs:
             _print(*run)
         say("not modelled:")
-        for line in dict.fromkeys(line for one, *_ in runs for line in one.run.left_out):
+        for line in dict.fromkeys(line for one in found for line in one.run.left_out):
             say(f"  - {line}")
-    stopped = any(one.run.stopped for one, *_ in runs)
-    return exit_codes.INCONCLUSIVE if stopped else exit_codes.PROVED
+
+    facts = spec_facts(designed.loaded)
+    return Answer(
+        lambda: facts | {"runs": [_facts(*run) for run in runs], "files": files},
+        show,
+        exit_codes.INCONCLUSIVE if any(one.run.stopped for one in found) else exit_codes.PROVED,
+    )
 
 
 def _certified(
@@ -95,36 +85,22 @@ def _certified(
     return hold_bounds(designed, proof, one), hold_rate(designed, proof, one)
 
 
-def _check_places(spec: InteractionDesignSpec, names: Sequence[str], out: Path | None) -> None:
-    """Refuse, before the runs, a folder in which something else stands in the place of a file."""
-    from nrs_design.output import check_place
+def _check_places(designed: Designed, wanted: Runs, out: Path) -> None:
     from nrs_design.simulation.build_scenario import default_names, run_names
 
-    if out is None:
-        return
-    for name in run_names(spec, tuple(names or spec.scenarios or default_names(spec))):
-        for path, beginning in _places(out, spec.name, name).values():
-            check_place(path, beginning)
+    spec = designed.spec
+    for name in run_names(spec, tuple(wanted.names or spec.scenarios or default_names(spec))):
+        _files(designed, out, name).check()
 
 
-def _places(out: Path, spec: str, scenario: str) -> dict[str, tuple[Path, Beginning]]:
-    """Return where each file of a run goes, and how one begins that it may replace."""
-    from nrs_design.output import ARCHIVE, PNG, RESPONSE, SVG
+def _files(designed: Designed, out: Path, scenario: str) -> RunFiles:
+    from nrs_design.output import RESPONSE
 
-    beginnings: dict[str, Beginning] = {"csv": RESPONSE, "npz": ARCHIVE, "svg": SVG, "png": PNG}
-    return {
-        suffix: (out / f"{spec}.{scenario}.{suffix}", beginning)
-        for suffix, beginning in beginnings.items()
-    }
+    return RunFiles(out, f"{designed.spec.name}.{scenario}", RESPONSE)
 
 
-def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> list[Path]:
-    """Write every run, once all of them are there."""
-    if out is None:
-        return []
-    from nrs_design.output import Output, write_outputs
+def _write(designed: Designed, out: Path, runs: Sequence[Bounded]) -> list[str]:
     from nrs_design.reporting.figures.simulated import draw_simulated
-    from nrs_design.reporting.images import to_png, to_svg_file
     from nrs_design.simulation.run import common_lever_arm
 
     limits = designed.spec.limits
@@ -135,19 +111,14 @@ def _write(designed: Designed, out: Path | None, runs: Sequence[Bounded]) -> lis
         arm = common_lever_arm(designed.spec, touched)
         level = next(((b.level, not b.uncovered) for b in bounds if b.output == "force"), None)
         figure = draw_simulated(response, limits.torque.si, limits.velocity.si, arm, level)
-        contents: dict[str, str | bytes] = {
-            "csv": response.to_csv(),
-            "npz": response.to_npz(),
-            "svg": to_svg_file(figure),
-            "png": to_png(figure),
-        }
-        places = _places(out, designed.spec.name, one.scenario.name)
-        outputs += [(path, contents[suffix], ours) for suffix, (path, ours) in places.items()]
-    write_outputs(outputs)
-    return [path for path, _, _ in outputs]
+        files = _files(designed, out, one.scenario.name)
+        outputs += files.outputs(response.to_csv(), response.to_npz(), figure)
+    written = write_runs(outputs)
+    note(f"written to {out}")
+    return written
 
 
-def _document(
+def _facts(
     one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRate | None
 ) -> dict[str, Any]:
     run = one.run

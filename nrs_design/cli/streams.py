@@ -1,4 +1,4 @@
-"""Output that lasts as long as the command, even if its reader does not."""
+"""Output streams that keep accepting text after their reader has gone."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 
 
 class _Unheard(io.FileIO):
-    """Writes into the void once the reader has gone, as ``head`` does when it has its lines.
+    """Discards output once the reader has gone, as after ``| head``.
 
-    A command then ends as it would have: what it decides and writes does not depend on who reads.
+    The command then ends with the exit code and the files that it would have had.
     """
 
     def write(self, data: ReadableBuffer, /) -> int:
@@ -26,21 +26,21 @@ class _Unheard(io.FileIO):
 
 
 def lasting(stream: TextIO | None) -> TextIO:
-    """Return a stream in place of stdout or stderr that takes every text, heard or not.
+    """Return a stream for stdout or stderr that accepts every text, whether it is read or not.
 
-    Characters that its encoding does not have are written as escapes.
+    Characters that the encoding lacks are written as escapes.
 
     Parameters
     ----------
     stream : TextIO or None
-        None if the caller has closed it: then nothing is printed.
+        None if the caller has closed it; then nothing is printed.
     """
     if stream is None:
         return Path(os.devnull).open("w")
     try:
         raw = _Unheard(stream.fileno(), "w", closefd=False)
     except (OSError, ValueError):
-        # Within a test or a notebook: no stream of the system's.
+        # In a test or a notebook it is not a stream of the system.
         return stream
     stream.flush()
     return io.TextIOWrapper(

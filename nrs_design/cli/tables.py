@@ -1,4 +1,4 @@
-"""Tables on stdout: turned, where the terminal is too narrow, rather than folded."""
+"""Tables on stdout: transposed, not folded, where the terminal is too narrow."""
 
 from __future__ import annotations
 

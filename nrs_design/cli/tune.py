@@ -5,19 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import typer
-
-from nrs_design.cli.goals import (
-    exit_code,
-    goals_summary,
-    print_goals,
-    print_warnings,
-    say_unjudged,
-    warnings_of,
-)
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.goals import design_answer, goals_summary
 from nrs_design.cli.optimize import motion_summary
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, progress, say
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -53,36 +45,28 @@ _NO_OFFSET = (
 OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
 
 
-def tune(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
+@command("tune")
+def tune(spec: SpecFile) -> Answer:
     """Tune the motion PD by root locus and the force gain, and print the poles that result.
 
     The exit code is 1 if a force controller misses a goal of the spec.
 
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
-    from nrs_design.pipeline import run_analysis, run_design, wrong_kind
+    from nrs_design.pipeline import run_analysis, run_interaction
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
-    with progress(f"tuning {loaded.spec.name}", quiet=quiet):
-        designed = run_design(loaded)
-        if designed is None:
-            raise wrong_kind(
-                loaded,
-                "a switched-system spec has nothing to tune",
-                "use certify-switching, or a spec of kind interaction-design",
-            )
+    with progress(f"tuning {loaded.spec.name}"):
+        designed = run_interaction(loaded, "has nothing to tune")
         analysis = run_analysis(designed)
-    warnings = warnings_of(loaded.spec, analysis)
-    if as_json:
-        content = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("tune", content | _summary(designed.design, analysis) | {"warnings": warnings})
-    elif not quiet:
-        _print(designed.spec.name, designed.design, analysis)
-        print_goals(loaded.spec.name, analysis.tuned)
-        say_unjudged(designed.spec)
-        print_warnings(warnings, quiet=quiet)
-    raise typer.Exit(exit_code(analysis.tuned))
+    return design_answer(
+        designed,
+        analysis,
+        analysis.tuned,
+        lambda: _summary(designed.design, analysis),
+        lambda: _print(loaded.spec.name, designed.design, analysis),
+    )
 
 
 def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any]:

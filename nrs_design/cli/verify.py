@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import CoordinatesOption, Json, Quiet
-from nrs_design.cli.printing import print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.options import CoordinatesOption
+from nrs_design.cli.printing import is_quiet, progress, say
 from nrs_design.errors import CertificateError
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.certificates.verify import Verification
     from nrs_design.spec import LoadedSpec, Spec
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
 BUDGET = 1800.0
 
 
+@command("verify")
 def verify(
     certificate: Annotated[Path, typer.Argument(metavar="CERT", help="Certificate file.")],
     spec: Annotated[
@@ -52,9 +56,7 @@ def verify(
             "one: minutes.",
         ),
     ] = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Re-check a certificate in exact arithmetic, and that its modes are those of a spec.
 
     No solver runs. Without a spec, the proof is checked for the modes that the certificate holds,
@@ -80,27 +82,34 @@ def verify(
     robot = None if loaded is None else loaded.robot
     if bounds and robot is None:
         raise typer.BadParameter("needs a SPEC that names a robot", param_hint="--bounds")
-    faults = None if robot is None else _bounds_faults(robot, again=bounds, quiet=quiet)
+    faults = None if robot is None else _bounds_faults(robot, again=bounds)
     on_trust = None if robot is None or bounds else _file_of(robot)
     checked = outcome.certificate if outcome.fault is None else None
     differences = _differences(deployed, loaded, checked)
-    if as_json:
-        given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
-        _print_json(outcome, given, differences, faults, on_trust)
-    elif checked is None:
-        say(f"REJECTED: {outcome.fault}", verdict="rejected")
-    else:
+    rejected = checked is None or bool(differences) or bool(faults)
+    verdict = "rejected" if checked is None or rejected else checked.verdict
+    brief = is_quiet()
+
+    def show() -> None:
+        if checked is None:
+            say(f"REJECTED: {outcome.fault}", verdict="rejected")
+            return
         # What was deployed comes first: a proof of other numbers is no good news.
         if differences is not None:
-            _print_deployed(deployed, differences, quiet=quiet)
+            _print_deployed(deployed, differences)
         _print_faults(faults or [])
-        if not (quiet or faults):
+        if not (faults or brief):
             _print(checked, None if loaded is None else loaded.spec, on_trust)
-        if robot is not None and bounds and not faults and not quiet:
+        if robot is not None and bounds and not faults:
             say(f"  bounds of {robot.as_posix()}: computed again, they hold")
-    if checked is None or differences or faults:
-        raise typer.Exit(exit_codes.REFUTED)
-    raise typer.Exit(exit_codes.OF_VERDICT[checked.verdict])
+
+    given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
+    return Answer(
+        lambda: _facts(outcome, given, differences, faults, on_trust),
+        show,
+        exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
+        loud=rejected,
+    )
 
 
 def _verify(
@@ -138,41 +147,36 @@ def _check_arguments(
         )
 
 
-def _print_json(
+def _facts(
     outcome: Verification,
     given: Mapping[str, Path | None],
     differences: list[str] | None,
     faults: list[str] | None,
     on_trust: Path | None,
-) -> None:
+) -> dict[str, Any]:
     from nrs_design.certificates.units import gain_units
 
     checked = outcome.certificate if outcome.fault is None else None
     # What stands in a certificate beside its modes is held against a spec, or against nothing.
     compared = checked if given["spec"] is not None else None
     files = {name: None if path is None else str(path) for name, path in given.items()}
-    print_json(
-        "verify",
-        {
-            "verdict": checked.verdict if checked and not (differences or faults) else "rejected",
-            "refuted_in": checked.refuted_in if checked else None,
-            "fault": outcome.fault,
-            "claims": [item.claim(checked.system) for item in checked.statements]
-            if checked
-            else None,
-            "gains": dict(compared.gains) if compared else None,
-            "gain_units": gain_units(compared) if compared else None,
-            "assumptions": list(compared.granted) if compared else None,
-            "certificate": files["certificate"],
-            "certificate_id": checked.id if checked else None,
-            "spec": files["spec"],
-            "deployed": files["deployed"],
-            "differences": differences,
-            "robot": files["robot"],
-            "bounds_faults": faults,
-            "on_trust": None if on_trust is None else str(on_trust),
-        },
-    )
+    return {
+        "verdict": checked.verdict if checked and not (differences or faults) else "rejected",
+        "refuted_in": checked.refuted_in if checked else None,
+        "fault": outcome.fault,
+        "claims": [item.claim(checked.system) for item in checked.statements] if checked else None,
+        "gains": dict(compared.gains) if compared else None,
+        "gain_units": gain_units(compared) if compared else None,
+        "assumptions": list(compared.granted) if compared else None,
+        "certificate": files["certificate"],
+        "certificate_id": checked.id if checked else None,
+        "spec": files["spec"],
+        "deployed": files["deployed"],
+        "differences": differences,
+        "robot": files["robot"],
+        "bounds_faults": faults,
+        "on_trust": None if on_trust is None else str(on_trust),
+    }
 
 
 def _print_faults(faults: list[str]) -> None:
@@ -188,11 +192,11 @@ def _file_of(robot: Path) -> Path:
     return bounds_file(robot)
 
 
-def _bounds_faults(robot: Path, *, again: bool, quiet: bool) -> list[str]:
+def _bounds_faults(robot: Path, *, again: bool) -> list[str]:
     from nrs_design.wings import load_wing
 
     robots = load_wing("robot", "pipeline")
-    with progress(f"bounds of {robot.name}", quiet=quiet, lines=again) as step:
+    with progress(f"bounds of {robot.name}", lines=again) as step:
         if again:
             return list(robots.check_robot_bounds(robot, BUDGET, step)[1])
         return list(robots.contradict_robot_bounds(robot, step)[1])
@@ -220,12 +224,12 @@ def _differences(
     return find_differences(deployed, loaded.spec, checked)
 
 
-def _print_deployed(file: Path | None, differences: list[str], *, quiet: bool) -> None:
+def _print_deployed(file: Path | None, differences: list[str]) -> None:
     if differences:
         say(f"REJECTED: {file} does not hold the numbers of the certificate", verdict="rejected")
         for line in differences:
             say(f"  {line}")
-    elif not quiet:
+    else:
         from nrs_design.exporters.deployed import scope_of
 
         assert file is not None, "it was compared"
@@ -276,6 +280,27 @@ def _print_gains(certificate: Certificate, spec: Spec) -> None:
             say(f"  {name}: {', '.join(said)}")
             for gain, low, high in _ranges(spec, name):
                 say(f"  {name}: {gain} anywhere in [{low}, {high}]")
+    if spec.kind == "interaction-design" and spec.sampling is not None:
+        _print_sampled_derivative(certificate, spec.sampling.period.exact)
+
+
+def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> None:
+    """Say which Kd a program has that multiplies by Kd/T, where that is another one."""
+    from nrs_design.certificates.units import gain_units
+    from nrs_design.controllers.float32 import exact_decimal
+    from nrs_design.controllers.gains import MOTION
+    from nrs_design.controllers.laws import ProportionalDerivative
+    from nrs_design.spec import parse_exact
+
+    gains = {name: parse_exact(text) for name, text in certificate.gains[MOTION].items()}
+    motion = ProportionalDerivative.of(gains)
+    factor = motion.sampled(period).D
+    if factor * period != motion.Kd:
+        units = gain_units(certificate)[MOTION]
+        say(
+            f"  {MOTION}: a program multiplies by Kd/T = {exact_decimal(factor)} {units['Kp']}, "
+            f"which makes its Kd about {float(factor * period):.10g} {units['Kd']}"
+        )
 
 
 def _ranges(spec: Spec, name: str) -> Iterator[tuple[str, str, str]]:

@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.cli import exit_codes
-from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.command import Answer, spec_facts
+from nrs_design.cli.printing import note, say
+from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from nrs_design.certificates.certificate import Certificate
-    from nrs_design.output import Beginning
+    from nrs_design.output import Output
     from nrs_design.pipeline import Designed
     from nrs_design.pipeline.worst_case import WorstCase
 
 
 def worst_case(
     designed: Designed, proof: Certificate | None, seed: int, out: Path | None, step: Progress
-) -> Callable[..., int]:
-    """Search, and write the figure and the table of every run; return what prints it.
+) -> Answer:
+    """Search, and write the figure and the table of every run.
 
     Parameters
     ----------
@@ -38,27 +36,24 @@ def worst_case(
     step : callable
         Told what is done.
     """
-    from nrs_design.output import check_place
     from nrs_design.pipeline.worst_case import run_worst_case
+    from nrs_design.simulation.run import common_lever_arm
     from nrs_design.simulation.worst_outputs import DEFLECTION
 
-    names = ("force", "velocity", DEFLECTION)
-    for path, beginning in (item for name in names for item in _places(designed, out, name)):
-        check_place(path, beginning)
+    if out is not None:
+        for name in ("force", "velocity", DEFLECTION):
+            _files(designed, out, name).check()
     case = run_worst_case(designed, proof, seed=seed, progress=step)
     step("figures")
-    return partial(_show, designed, case, _write(designed, case, out), seed)
+    arm = common_lever_arm(designed.spec, designed.spec.touched)
+    written = [] if out is None else _write(designed, case, arm, out)
+    return Answer(
+        lambda: spec_facts(designed.loaded) | _facts(case, seed) | {"files": written},
+        lambda: _show(designed.spec.name, case, arm, seed),
+    )
 
 
-def _show(
-    designed: Designed,
-    case: WorstCase,
-    files: list[Path],
-    seed: int,
-    *,
-    as_json: bool,
-    quiet: bool,
-) -> int:
+def _show(name: str, case: WorstCase, arm: float | None, seed: int) -> None:
     from nrs_design.reporting.worst_case import (
         COLUMNS,
         MEANING,
@@ -68,63 +63,34 @@ def _show(
         worst_rows,
     )
 
-    if files:
-        note(f"written to {files[0].parent}", quiet=quiet)
-    if as_json:
-        print_json("simulate", _document(designed, case, seed) | {"files": list(map(str, files))})
-    elif not quiet:
-        title = f"{designed.spec.name}: the worst that an adversary found, seed {seed}"
-        print_table(title, COLUMNS, worst_rows(case, _arm(designed)))
-        say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
-        if not case.declared:
-            say(UNDECLARED)
-        say(f"not in it: {left_out(case.system)}")
-    return exit_codes.PROVED
+    title = f"{name}: the worst that an adversary found, seed {seed}"
+    print_table(title, COLUMNS, worst_rows(case, arm))
+    say(MEANING if case.bounds else f"{MEANING.partition(';')[0]}. {NO_BOUND}")
+    if not case.declared:
+        say(UNDECLARED)
+    say(f"not in it: {left_out(case.system)}")
 
 
-def _arm(designed: Designed) -> float | None:
-    from nrs_design.simulation.run import common_lever_arm
+def _files(designed: Designed, out: Path, name: str) -> RunFiles:
+    from nrs_design.output import WORST_RUN
 
-    return common_lever_arm(designed.spec, designed.spec.touched)
-
-
-def _places(designed: Designed, out: Path | None, name: str) -> list[tuple[Path, Beginning]]:
-    from nrs_design.output import ARCHIVE, PNG, SVG, WORST_RUN
-
-    if out is None:
-        return []
-    beginnings: dict[str, Beginning] = {"csv": WORST_RUN, "npz": ARCHIVE, "svg": SVG, "png": PNG}
-    stem = f"{designed.spec.name}.worst-{name}"
-    return [(out / f"{stem}.{suffix}", beginning) for suffix, beginning in beginnings.items()]
+    return RunFiles(out, f"{designed.spec.name}.worst-{name}", WORST_RUN)
 
 
-def _write(designed: Designed, case: WorstCase, out: Path | None) -> list[Path]:
-    if out is None:
-        return []
-    from nrs_design.output import Output, write_outputs
-    from nrs_design.reporting.images import to_png, to_svg_file
+def _write(designed: Designed, case: WorstCase, arm: float | None, out: Path) -> list[str]:
     from nrs_design.reporting.worst_case import draw_worst, response_of
 
     outputs: list[Output] = []
-    arm = _arm(designed)
     for run in case.runs:
-        response = response_of(case, run)
+        files, response = _files(designed, out, run.output.name), response_of(case, run)
         figure = draw_worst(case, run, arm)
-        contents: tuple[str | bytes, ...] = (
-            response.to_csv(),
-            response.to_npz(),
-            to_svg_file(figure),
-            to_png(figure),
-        )
-        places = _places(designed, out, run.output.name)
-        outputs += [
-            (path, content, ours) for content, (path, ours) in zip(contents, places, strict=True)
-        ]
-    write_outputs(outputs)
-    return [path for path, _, _ in outputs]
+        outputs += files.outputs(response.to_csv(), response.to_npz(), figure)
+    written = write_runs(outputs)
+    note(f"written to {out}")
+    return written
 
 
-def _document(designed: Designed, case: WorstCase, seed: int) -> dict[str, Any]:
+def _facts(case: WorstCase, seed: int) -> dict[str, Any]:
     from nrs_design.reporting.worst_case import found_in, left_out
 
     found = [
@@ -142,8 +108,6 @@ def _document(designed: Designed, case: WorstCase, seed: int) -> dict[str, Any]:
         for item, run in zip(found_in(case), case.runs, strict=True)
     ]
     return {
-        "spec": designed.spec.name,
-        "spec_sha256": designed.loaded.sha256,
         "worst_case": {
             "seed": seed,
             "disturbances": [

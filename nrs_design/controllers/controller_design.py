@@ -11,72 +11,36 @@ from nrs_design.controllers.sensor import Sensor
 
 @dataclass(frozen=True, slots=True)
 class ImpedanceOptimum:
-    """The best admittance within the bounds, before any rounding.
+    """The best admittance within the bounds, before any rounding."""
 
-    Parameters
-    ----------
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
-    cost : float
-        Value of `nrs_design.design.impedance_optimum.impedance_cost` there.
-    evaluations : int
-        Number of admittances that the search tried.
-    """
-
-    Mt: float
-    Bt: float
-    cost: float
-    evaluations: int
+    Mt: float  # Virtual mass, kg m^2
+    Bt: float  # Virtual damping, N m s/rad
+    cost: float  # Value of `nrs_design.design.impedance_optimum.impedance_cost` there
+    evaluations: int  # Number of admittances that the search tried
 
 
 @dataclass(frozen=True, slots=True)
 class Controller:
-    """One compliant controller.
+    """One compliant controller."""
 
-    Parameters
-    ----------
-    name : str
-        As in the spec.
-    law : CompliantLaw
-        Its law with the gains that ship.
-    environment : str or None
-        The environment that it was designed for.
-    contacts : tuple of str
-        The environments that it may touch while it is active; empty for position control.
-    optimum : ImpedanceOptimum or None
-        What the gains were rounded from, if a search found them. It does not run on the robot, so
-        controllers that differ in it alone are equal.
-    """
-
-    name: str
-    law: CompliantLaw
-    environment: str | None
+    name: str  # As in the spec
+    law: CompliantLaw  # Its law with the gains that ship
+    environment: str | None  # The environment that it was designed for
+    # The environments that it may touch while it is active; empty for position control.
     contacts: tuple[str, ...]
+    # What the gains were rounded from, if a search found them. It does not run on the robot, so
+    # controllers that differ in it alone are equal.
     optimum: ImpedanceOptimum | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class ControllerDesign:
-    """All gains of one axis.
+    """All gains of one axis."""
 
-    Parameters
-    ----------
-    motion : ProportionalDerivative
-        The motion controller below the compliant ones.
-    controllers : tuple of Controller
-        In the order of the spec.
-    sensor : Sensor
-        Of the force that they act on.
-    command : str
-        Unit of the commands that the motor takes.
-    """
-
-    motion: ProportionalDerivative
-    controllers: tuple[Controller, ...]
-    sensor: Sensor = field(default_factory=Sensor)
-    command: str = "rpm"
+    motion: ProportionalDerivative  # The motion controller below the compliant ones
+    controllers: tuple[Controller, ...]  # In the order of the spec
+    sensor: Sensor = field(default_factory=Sensor)  # Of the force that they act on
+    command: str = "rpm"  # Unit of the commands that the motor takes
 
     @property
     def contacts(self) -> frozenset[str]:

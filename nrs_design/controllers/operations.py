@@ -46,64 +46,32 @@ WITH_COEFFICIENT: frozenset[Kind] = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """What a step gets from outside, or from the step before.
+    """What a step gets from outside, or from the step before."""
 
-    Parameters
-    ----------
-    name : str
-        As the exported code calls it.
-    symbol : str
-        As terms and formulas call it.
-    unit : str
-        Its unit.
-    limit : Fraction
-        A single-precision number; beyond it, or not a number, the value is refused.
-    meaning : str
-        In words.
-    rounding : {"none", "term", "angle"}
-        Whether it is rounded when it is read, and how that counts.
-    starts_at_angle : bool
-        Whether a state is the measured angle at first; others are zero.
-    guarded : bool
-        Whether a value beyond its limit is refused as such; if not, the checks of results do it.
-    """
-
-    name: str
-    symbol: str
-    unit: str
-    limit: Fraction
-    meaning: str
-    rounding: Rounding = "none"
+    name: str  # As the exported code calls it
+    symbol: str  # As terms and formulas call it
+    unit: str  # Its unit
+    limit: Fraction  # A single-precision number; beyond it, or not a number, the value is refused
+    meaning: str  # In words
+    rounding: Rounding = "none"  # Whether it is rounded when it is read, and how that counts
+    # Whether a state is the measured angle at first; others are zero.
     starts_at_angle: bool = False
+    # Whether a value beyond its limit is refused as such; if not, the checks of results do it.
     guarded: bool = True
 
 
 @dataclass(frozen=True, slots=True)
 class Coefficient:
-    """A number that ships, the same in all modes or one for each.
+    """A number that ships, the same in all modes or one for each."""
 
-    Parameters
-    ----------
-    name : str
-        As the exported code calls it.
-    symbol : str
-        As terms and formulas call it.
-    unit : str
-        Its unit.
-    values : tuple of Fraction
-        Single-precision numbers: one, one for each mode, or those of a table.
-    inline : bool
-        Whether it is a number of the robot, without a name of its own in the exported code.
-    table : bool
-        Whether it is a table at equal distances, for `interpolate`.
-    """
-
-    name: str
-    symbol: str
-    unit: str
+    name: str  # As the exported code calls it
+    symbol: str  # As terms and formulas call it
+    unit: str  # Its unit
+    # Single-precision numbers: one, one for each mode, or those of a table.
     values: tuple[Fraction, ...]
+    # Whether it is a number of the robot, without a name of its own in the exported code.
     inline: bool = False
-    table: bool = False
+    table: bool = False  # Whether it is a table at equal distances, for `interpolate`
 
     @property
     def by_mode(self) -> bool:
@@ -117,59 +85,26 @@ class Coefficient:
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """One operation; of those in `WITH_COEFFICIENT` the left operand is a coefficient.
+    """One operation; of those in `WITH_COEFFICIENT` the left operand is a coefficient."""
 
-    Parameters
-    ----------
-    name : str
-        Of the result.
-    kind : str
-        ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
-        ``saturate``: right within plus and minus a coefficient. ``shift``: right plus a
-        coefficient. ``rest``: a coefficient minus right. ``product``, ``divide``: left times or
-        over right. ``invert``: a coefficient over right. ``root``: the square root of right,
-        without a left operand. ``interpolate``: a table at right, which counts from its first entry
-        and ends at its last.
-    left, right : str
-        Names of values, of coefficients, or of results of operations before.
-    rounding : {"term", "own", "angle"}
-        How its rounding counts.
-    symbol : str
-        As terms call the result; by default they write it out.
-    """
-
-    name: str
+    name: str  # Of the result
+    # ``add``, ``subtract``: left plus or minus right. ``multiply``: a coefficient times right.
+    # ``saturate``: right within plus and minus a coefficient. ``shift``: right plus a coefficient.
+    # ``rest``: a coefficient minus right. ``product``, ``divide``: left times or over right.
+    # ``invert``: a coefficient over right. ``root``: the square root of right, without a left
+    # operand. ``interpolate``: a table at right, which counts from its first entry and ends at its
+    # last.
     kind: Kind
+    # left, right: names of values, of coefficients, or of results of operations before.
     left: str
     right: str
-    rounding: Rounding = "term"
-    symbol: str = ""
+    rounding: Rounding = "term"  # How its rounding counts
+    symbol: str = ""  # As terms call the result; by default they write it out
 
 
 @dataclass(frozen=True, slots=True)
 class StepLaw:
     """One step of a law, with a mode for each controller that the robot switches between.
-
-    Parameters
-    ----------
-    modes : tuple of str
-        Controllers, in the order of the spec; none where there is nothing to choose.
-    inputs, states : tuple of Value
-        What a step gets.
-    coefficients : tuple of Coefficient
-        Numbers that ship.
-    operations : tuple of Operation
-        In the order in which they are computed.
-    outputs : mapping of str to str
-        Outputs, and the results that they are; ``units`` has their units.
-    following : mapping of str to str
-        Every state, and the result that it has after the step.
-    units : mapping of str to str
-        Of the outputs.
-    checks : mapping of str to Fraction
-        Results that have to be numbers within a limit; if one is not, the step is not valid.
-    logic : StepLogic or None
-        What chooses the mode, where the spec says it.
 
     Raises
     ------
@@ -177,16 +112,19 @@ class StepLaw:
         If a name is used before it is computed, or twice, or the kinds of operands do not fit.
     """
 
+    # Controllers, in the order of the spec; none where there is nothing to choose.
     modes: tuple[str, ...]
+    # inputs, states: what a step gets.
     inputs: tuple[Value, ...]
     states: tuple[Value, ...]
-    coefficients: tuple[Coefficient, ...]
-    operations: tuple[Operation, ...]
-    outputs: Mapping[str, str]
-    following: Mapping[str, str]
-    units: Mapping[str, str]
+    coefficients: tuple[Coefficient, ...]  # Numbers that ship
+    operations: tuple[Operation, ...]  # In the order in which they are computed
+    outputs: Mapping[str, str]  # Outputs, and the results that they are; ``units`` has their units
+    following: Mapping[str, str]  # Every state, and the result that it has after the step
+    units: Mapping[str, str]  # Of the outputs
+    # Results that have to be numbers within a limit; if one is not, the step is not valid.
     checks: Mapping[str, Fraction] = field(default_factory=dict)
-    logic: StepLogic | None = None
+    logic: StepLogic | None = None  # What chooses the mode, where the spec says it
 
     def __post_init__(self) -> None:
         """Refuse a list that does not fit together."""

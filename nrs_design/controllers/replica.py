@@ -17,18 +17,12 @@ Single = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class StepResult:
-    """What a step leaves, for a batch.
+    """What a step leaves, for a batch."""
 
-    Parameters
-    ----------
-    outputs, states : mapping of str to ndarray
-        By name; single precision, shape (n,).
-    valid : ndarray of bool
-        Shape (n,). Where a step is not valid, outputs are zero and states stay as they were.
-    """
-
+    # outputs, states: by name; single precision, shape (n,).
     outputs: Mapping[str, Single]
     states: Mapping[str, Single]
+    # Shape (n,). Where a step is not valid, outputs are zero and states stay as they were.
     valid: NDArray[np.bool_]
 
 

@@ -60,18 +60,10 @@ def rounding_share(count: int) -> Fraction:
 
 @dataclass(frozen=True, slots=True)
 class SampledMotion:
-    """``u = Kp e + D (e - e_before)``, with the backward difference for the derivative.
+    """``u = Kp e + D (e - e_before)``, with the backward difference for the derivative."""
 
-    Parameters
-    ----------
-    Kp : Fraction
-        In rpm/rad.
-    D : Fraction
-        Kd over the period, in rpm/rad.
-    """
-
-    Kp: Fraction
-    D: Fraction
+    Kp: Fraction  # In rpm/rad
+    D: Fraction  # Kd over the period, in rpm/rad
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,23 +71,12 @@ class SampledAdmittance:
     """``v+ = a v + b F``, and the reference moves on by ``-T v``; without inertia ``v = b F``.
 
     With a spring F is the force sample plus Kt times the offset that the reference has by then.
-
-    Parameters
-    ----------
-    a : Fraction or None
-        Without unit; None for a law without inertia.
-    b : Fraction
-        In rad/(s N m).
-    T : Fraction
-        The period as the processor holds it, in s.
-    Kt : Fraction
-        In N m/rad; zero is no spring.
     """
 
-    a: Fraction | None
-    b: Fraction
-    T: Fraction
-    Kt: Fraction = Fraction(0)
+    a: Fraction | None  # Without unit; None for a law without inertia
+    b: Fraction  # In rad/(s N m)
+    T: Fraction  # The period as the processor holds it, in s
+    Kt: Fraction = Fraction(0)  # In N m/rad; zero is no spring
 
     @property
     def lasting_gain(self) -> Fraction:
@@ -125,18 +106,11 @@ class SampledAdmittance:
 
 @dataclass(frozen=True, slots=True)
 class SampledForce:
-    """``xref = X + Kp (Fd - F) + w``, before the error is formed; without Kp, position control.
+    """``xref = X + Kp (Fd - F) + w``, before the error is formed; without Kp, position control."""
 
-    Parameters
-    ----------
-    Kp : Fraction
-        In rad/(N m); zero takes no force.
-    Ki_T : Fraction
-        What a sample adds to the integral, ``w+ = w + Ki_T (Fd - F)``, in rad/(N m); zero is no
-        integral of its own.
-    """
-
-    Kp: Fraction
+    Kp: Fraction  # In rad/(N m); zero takes no force
+    # What a sample adds to the integral, ``w+ = w + Ki_T (Fd - F)``, in rad/(N m); zero is no
+    # integral of its own.
     Ki_T: Fraction = Fraction(0)
 
     @property

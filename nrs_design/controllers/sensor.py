@@ -29,18 +29,10 @@ _FINE = 10**24
 
 @dataclass(frozen=True, slots=True)
 class LowPass:
-    """Equal lags in a row, ``x1' = w (F - x1)``, ``x2' = w (x1 - x2)``, ...; the last is used.
+    """Equal lags in a row, ``x1' = w (F - x1)``, ``x2' = w (x1 - x2)``, ...; the last is used."""
 
-    Parameters
-    ----------
-    order : int
-        How many.
-    pole : Fraction
-        The corner frequency w in rad/s, a single-precision number.
-    """
-
-    order: int
-    pole: Fraction
+    order: int  # How many
+    pole: Fraction  # The corner frequency w in rad/s, a single-precision number
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -95,16 +87,10 @@ class SampledLowPass:
     """What a processor computes at every sample: ``x1 = p x1 + q F``, ``x2 = p x2 + q x1``, ...
 
     Each lag takes what the one before it has just computed, and the law takes the last.
-
-    Parameters
-    ----------
-    order : int
-        How many lags.
-    p, q : Fraction
-        Single-precision numbers without unit.
     """
 
-    order: int
+    order: int  # How many lags
+    # p, q: single-precision numbers without unit.
     p: Fraction
     q: Fraction
 
@@ -121,27 +107,14 @@ class SampledLowPass:
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A force sensor, in exact numbers that are not too small.
+    """A force sensor, in exact numbers that are not too small."""
 
-    Parameters
-    ----------
-    errors : mapping of str to Fraction
-        What may last, by where it comes from: bounds on torques about the pivot in N m.
-    filter : LowPass or None
-        Of the signal.
-    noise : float or None
-        One-sided power density in (N m)^2/Hz.
-    arm : Fraction or None
-        Distance from the pivot to the contact point in m, rounded down.
-    carries : bool
-        Whether a tool hangs on it.
-    """
-
+    # What may last, by where it comes from: bounds on torques about the pivot in N m.
     errors: Mapping[str, Fraction] = field(default_factory=dict)
-    filter: LowPass | None = None
-    noise: float | None = None
-    arm: Fraction | None = None
-    carries: bool = False
+    filter: LowPass | None = None  # Of the signal
+    noise: float | None = None  # One-sided power density in (N m)^2/Hz
+    arm: Fraction | None = None  # Distance from the pivot to the contact point in m, rounded down
+    carries: bool = False  # Whether a tool hangs on it
 
     @property
     def lasting(self) -> Fraction:

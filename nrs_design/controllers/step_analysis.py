@@ -19,21 +19,11 @@ ONE = Fraction(1)
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A term of a sum that the processor forms.
+    """A term of a sum that the processor forms."""
 
-    Parameters
-    ----------
-    name : str
-        Such as ``b F``.
-    form : LinearForm
-        What it is without rounding, of the state.
-    roundings : int
-        In how many it takes part.
-    """
-
-    name: str
-    form: LinearForm
-    roundings: int
+    name: str  # Such as ``b F``
+    form: LinearForm  # What it is without rounding, of the state
+    roundings: int  # In how many it takes part
 
     def times(self, factor: Fraction, prefix: str, more: int) -> Term:
         """Return the term times a factor, which is named in front, with more roundings.

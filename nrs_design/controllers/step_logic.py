@@ -24,21 +24,11 @@ UNITS = {"command": "rad/s", "torque": "N*m"}
 
 @dataclass(frozen=True, slots=True)
 class SignalBound:
-    """One side of a threshold.
+    """One side of a threshold."""
 
-    Parameters
-    ----------
-    signal : str
-        ``command`` or ``torque``, positive towards the tissue.
-    above : bool
-        Whether the signal has to be at least, or at most, the threshold.
-    threshold : Fraction
-        A single-precision number in rad/s or N m.
-    """
-
-    signal: str
-    above: bool
-    threshold: Fraction
+    signal: str  # ``command`` or ``torque``, positive towards the tissue
+    above: bool  # Whether the signal has to be at least, or at most, the threshold
+    threshold: Fraction  # A single-precision number in rad/s or N m
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,24 +42,12 @@ class StepSwitch:
 
 @dataclass(frozen=True, slots=True)
 class StepLogic:
-    """Which mode is active, sample by sample.
+    """Which mode is active, sample by sample."""
 
-    Parameters
-    ----------
-    start : int
-        Mode at first.
-    signals : tuple of str
-        What it sees.
-    switches : tuple of StepSwitch
-        The first that may be made is.
-    stays : tuple of int
-        For how many samples each mode is held.
-    """
-
-    start: int
-    signals: tuple[str, ...]
-    switches: tuple[StepSwitch, ...]
-    stays: tuple[int, ...]
+    start: int  # Mode at first
+    signals: tuple[str, ...]  # What it sees
+    switches: tuple[StepSwitch, ...]  # The first that may be made is
+    stays: tuple[int, ...]  # For how many samples each mode is held
 
     @classmethod
     def of(cls, logic: ThresholdLogicSpec, modes: Sequence[str], period: Fraction) -> Self:

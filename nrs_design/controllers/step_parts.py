@@ -16,20 +16,11 @@ BEYOND = Fraction(1_000_000)
 
 @dataclass(frozen=True, slots=True)
 class StepLimits:
-    """Where inputs are refused and where signals saturate; single-precision numbers.
+    """Where inputs are refused and where signals saturate; single-precision numbers."""
 
-    Parameters
-    ----------
-    angle : Fraction
-        Joint angle and reference beyond it are refused, rad.
-    velocity : Fraction
-        The velocity command saturates there, rad/s.
-    command : Fraction or None
-        The speed command of the motor saturates there, rpm; None for nowhere.
-    """
-
-    angle: Fraction = BEYOND
-    velocity: Fraction = BEYOND
+    angle: Fraction = BEYOND  # Joint angle and reference beyond it are refused, rad
+    velocity: Fraction = BEYOND  # The velocity command saturates there, rad/s
+    # The speed command of the motor saturates there, rpm; None for nowhere.
     command: Fraction | None = None
 
     @property
@@ -73,20 +64,11 @@ def error_before(limit: Fraction) -> Value:
 
 @dataclass(frozen=True, slots=True)
 class StepFrame:
-    """What all laws of a program have in common.
+    """What all laws of a program have in common."""
 
-    Parameters
-    ----------
-    motion : SampledMotion
-        The motion controller below them.
-    low_pass : SampledLowPass or None
-        Through which the force passes on its way to them.
-    limits : StepLimits
-        By default nothing saturates, and inputs are refused where no robot gets.
-    """
-
-    motion: SampledMotion
-    low_pass: SampledLowPass | None = None
+    motion: SampledMotion  # The motion controller below them
+    low_pass: SampledLowPass | None = None  # Through which the force passes on its way to them
+    # By default nothing saturates, and inputs are refused where no robot gets.
     limits: StepLimits = StepLimits()
 
     @property

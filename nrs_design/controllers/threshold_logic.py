@@ -12,18 +12,10 @@ from nrs_design.spec.threshold_logic import LogicSwitchSpec, ThresholdLogicSpec
 
 @dataclass(frozen=True, slots=True)
 class LogicState:
-    """What the logic remembers from one step to the next.
+    """What the logic remembers from one step to the next."""
 
-    Parameters
-    ----------
-    controller : str
-        The active one.
-    since : float
-        Time since the switch to it, or since the start, in s.
-    """
-
-    controller: str
-    since: float = 0.0
+    controller: str  # The active one
+    since: float = 0.0  # Time since the switch to it, or since the start, in s
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,20 +35,12 @@ class ThresholdLogic:
 
     Thresholds are rounded away from each other, and timers up: what is shown for those of the spec
     holds for these.
-
-    Parameters
-    ----------
-    initial : str
-        Controller at first.
-    switches : mapping of str to tuple
-        From each controller, in order: targets and bounds of the signals.
-    stays : mapping of str to float
-        For how long the timer holds a controller, in s.
     """
 
-    initial: str
+    initial: str  # Controller at first
+    # From each controller, in order: targets and bounds of the signals.
     switches: Mapping[str, tuple[_Switch, ...]]
-    stays: Mapping[str, float]
+    stays: Mapping[str, float]  # For how long the timer holds a controller, in s
 
     @classmethod
     def of(cls, logic: ThresholdLogicSpec) -> Self:

@@ -116,21 +116,11 @@ Operand = Any
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Traced:
-    """A value of a step that is not known yet, or the negative of one.
+    """A value of a step that is not known yet, or the negative of one."""
 
-    Parameters
-    ----------
-    trace : Trace
-        Where what is computed with it is recorded.
-    name : str
-        Of the value.
-    negative : bool
-        Whether it is meant with the other sign.
-    """
-
-    trace: Trace
-    name: str
-    negative: bool = False
+    trace: Trace  # Where what is computed with it is recorded
+    name: str  # Of the value
+    negative: bool = False  # Whether it is meant with the other sign
 
     def positive(self) -> str:
         """Return the name of the value with its sign, which is computed if it is negative."""

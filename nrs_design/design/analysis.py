@@ -32,26 +32,13 @@ E = TypeVar("E", bound=AbstractControllerAnalysis)
 
 @dataclass(frozen=True, slots=True)
 class DesignAnalysis:
-    """Everything a person wants to see beside the gains.
+    """Everything a person wants to see beside the gains."""
 
-    Parameters
-    ----------
-    wanted : PdDesign
-        What the root locus asks for.
-    motion : TransferFunction
-        The motion loop G in use.
-    motion_source : {"designed", "given"}
-        Whether G follows from the PD gains, or the spec states it.
-    reached : MotionLoopResponse
-        Poles, damping and overshoot that G really has.
-    measured : tuple of AbstractControllerAnalysis
-        One for each controller that goals are for, law by law.
-    """
-
-    wanted: PdDesign
-    motion: TransferFunction
-    motion_source: str
-    reached: MotionLoopResponse
+    wanted: PdDesign  # What the root locus asks for
+    motion: TransferFunction  # The motion loop G in use
+    motion_source: str  # Whether G follows from the PD gains, or the spec states it
+    reached: MotionLoopResponse  # Poles, damping and overshoot that G really has
+    # One for each controller that goals are for, law by law.
     measured: tuple[AbstractControllerAnalysis, ...]
 
     @property

@@ -30,21 +30,13 @@ from nrs_design.spec.controllers import AbstractControllerSpec
 
 @dataclass(frozen=True, slots=True)
 class Creep:
-    """How a controller moves the robot in free motion.
+    """How a controller moves the robot in free motion."""
 
-    Parameters
-    ----------
-    velocity : Fraction
-        Bound on the lasting velocity in rad/s; zero with a spring.
-    angle : Fraction or None
-        Bound on the angle in rad; None without a spring, where it grows as long as the error lasts.
-    noise : float or None
-        Standard deviation of the velocity of the admittance in rad/s by the noise of the sensor;
-        None where nothing is said of noise, or where it has no bound.
-    """
-
-    velocity: Fraction
+    velocity: Fraction  # Bound on the lasting velocity in rad/s; zero with a spring
+    # Bound on the angle in rad; None without a spring, where it grows as long as the error lasts.
     angle: Fraction | None
+    # Standard deviation of the velocity of the admittance in rad/s by the noise of the sensor; None
+    # where nothing is said of noise, or where it has no bound.
     noise: float | None
 
 

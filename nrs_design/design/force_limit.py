@@ -25,23 +25,12 @@ _REST = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Approach:
-    """How the limit is reached.
+    """How the limit is reached."""
 
-    Parameters
-    ----------
-    offset : {"none", "reference", "measured"}
-        What is added to the correction.
-    velocity : float
-        At which the axis arrives, rad/s.
-    force : float
-        Fd, and the force at the switch, N m.
-    integral : float
-        Ki of a PI controller in rad/(N m s), for the peak; 0 is a proportional one.
-    """
-
-    offset: Offset = "none"
-    velocity: float = 0.0
-    force: float = 1.0
+    offset: Offset = "none"  # What is added to the correction
+    velocity: float = 0.0  # At which the axis arrives, rad/s
+    force: float = 1.0  # Fd, and the force at the switch, N m
+    # Ki of a PI controller in rad/(N m s), for the peak; 0 is a proportional one.
     integral: float = 0.0
 
 

@@ -22,27 +22,13 @@ from nrs_design.errors import DesignError
 
 @dataclass(frozen=True)
 class ForceLoop:
-    """What a proportional force gain really gives.
+    """What a proportional force gain really gives."""
 
-    Parameters
-    ----------
-    gain : float
-        ``Kp``, rad/(N m).
-    poles : tuple of complex
-        Closed-loop poles, rad/s, rightmost first.
-    damping_ratio : float
-        Of the dominant pair.
-    natural_frequency : float
-        Of the dominant pair, rad/s.
-    steady_state_ratio : float
-        Steady force error over the commanded force, ``1/(1 + Kp k G(0))``, of the law without
-        offset.
-    """
-
-    gain: float
-    poles: tuple[complex, ...]
-    damping_ratio: float
-    natural_frequency: float
+    gain: float  # ``Kp``, rad/(N m)
+    poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
+    damping_ratio: float  # Of the dominant pair
+    natural_frequency: float  # Of the dominant pair, rad/s
+    # Steady force error over the commanded force, ``1/(1 + Kp k G(0))``, of the law without offset.
     steady_state_ratio: float
 
 

@@ -10,6 +10,7 @@ Values between corners are not looked at. All of it is floating point, and no pr
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -23,11 +24,12 @@ from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
 from nrs_design.design.loop_family import LoopFamily
-from nrs_design.design.loops import Loops, gain_extremes, multiply
+from nrs_design.design.loops import Loops, gain_extremes
 from nrs_design.design.measures import (
     AT_HOME,
     CREEP,
     CREEP_ANGLE,
+    CREEP_MEASURES,
     DELAY_MARGIN,
     DISK_MARGIN,
     FORCE_ERROR,
@@ -39,6 +41,7 @@ from nrs_design.design.measures import (
     TRANSPARENCY,
     Measure,
 )
+from nrs_design.design.polynomials import multiply
 from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, TransferFunction
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
@@ -51,24 +54,12 @@ NOT_COMPUTED = "not computed: the force is sampled more often than the motion lo
 
 @dataclass(frozen=True, slots=True)
 class Achieved:
-    """The worst value of one measure.
+    """The worst value of one measure."""
 
-    Parameters
-    ----------
-    measure : Measure
-        What is measured.
-    value : float
-        The worst value, in SI units.
-    where : str
-        The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``.
-    goal : float or None
-        What the spec asks for, in SI units.
-    """
-
-    measure: Measure
-    value: float
-    where: str
-    goal: float | None = None
+    measure: Measure  # What is measured
+    value: float  # The worst value, in SI units
+    where: str  # The corner at which it is taken, such as ``soft, k = 44.2466 N*m/rad``
+    goal: float | None = None  # What the spec asks for, in SI units
 
     @property
     def met(self) -> bool:
@@ -78,66 +69,78 @@ class Achieved:
 
 @dataclass(frozen=True, slots=True)
 class ContactCorner:
-    """One contact that a controller is measured in, and where gains and motor are then.
+    """One contact that a controller is measured in, and where gains and motor are then."""
 
-    Parameters
-    ----------
-    label : str
-        For people.
-    environment : str
-        Its name.
-    contact : AbstractLinearLaw
-        The environment there.
-    place : Place
-        Of the motor, and the age of the force sample.
-    designed : bool
-        Whether the gains are the designed ones.
-    home : bool
-        Whether they are, and this is the environment that the controller is designed for.
-    Mt, Bt : float or None
-        End of a declared range of the gain; None is the designed gain.
-    Kt : Fraction
-        Spring of the admittance, N m/rad; zero is none.
-    """
-
-    label: str
-    environment: str
-    contact: AbstractLinearLaw
-    place: Place
-    designed: bool
-    home: bool
+    label: str  # For people
+    environment: str  # Its name
+    contact: AbstractLinearLaw  # The environment there
+    place: Place  # Of the motor, and the age of the force sample
+    designed: bool  # Whether the gains are the designed ones
+    home: bool  # Whether they are, and this is the environment that the controller is designed for
+    # Mt, Bt: end of a declared range of the gain; None is the designed gain.
     Mt: float | None = None
     Bt: float | None = None
-    Kt: Fraction = Fraction(0)
+    Kt: Fraction = Fraction(0)  # Spring of the admittance, N m/rad; zero is none
 
 
 @dataclass(frozen=True)
-class Requirement:
-    """Goals of one impedance controller, and all that is needed to measure it.
+class AbstractRequirement(ABC):
+    """Goals of one controller, and all that is needed to measure it."""
 
-    Parameters
-    ----------
-    axis : AbstractAxis or None
-        From which the modes follow; None where no loop is cut at one place. What takes a loop is
-        then not computed: NaN.
-    corners : tuple of ContactCorner
-        As `corners_of` gives them.
-    goals : tuple of (Measure, float)
-        Goals in SI units.
-    desired : float
-        Desired impedance, N m s/rad.
-    bandwidth : float
-        Highest frequency of the command, rad/s.
-    force_error : float
-        Bound on the lasting error of the force signal, N m.
-    """
-
+    # From which the modes follow; None where no loop is cut at one place. What takes a loop is then
+    # not computed: NaN.
     axis: AbstractAxis | None
-    corners: tuple[ContactCorner, ...]
-    goals: tuple[tuple[Measure, float], ...] = ()
-    desired: float = 0.0
-    bandwidth: float = 0.0
-    force_error: float = 0.0
+    corners: tuple[ContactCorner, ...]  # As `corners_of` gives them
+    goals: tuple[tuple[Measure, float], ...]  # Goals in SI units
+
+    def values(self, measure: Measure, *gains: FloatArray) -> tuple[FloatArray, list[str]]:
+        """Return the worst value of a measure for every set of gains, and at which corner.
+
+        Parameters
+        ----------
+        measure : Measure
+            What is measured.
+        *gains : ndarray, shape (m,)
+            Those that are chosen by the goals: Mt and Bt of an admittance, in SI units.
+        """
+        count = len(gains[0]) if gains else 1
+        if self.axis is None and measure not in CREEP_MEASURES:
+            return np.full(count, np.nan), [NOT_COMPUTED] * count
+        corners = [c for c in self.corners if c.home or measure not in AT_HOME]
+        table = np.array([self._at(corner, measure, *gains) for corner in corners])
+        worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
+        values = np.take_along_axis(table, worst[None, :], axis=0)[0]
+        in_the_air = measure in CREEP_MEASURES
+        return values, ["free motion" if in_the_air else corners[i].label for i in worst]
+
+    def achieved(self, measures: tuple[Measure, ...], *gains: float) -> tuple[Achieved, ...]:
+        """Return the worst value of every measure, beside its goal.
+
+        Parameters
+        ----------
+        measures : tuple of Measure
+            What is measured.
+        *gains : float
+            As for `values`.
+        """
+        goals, found = dict(self.goals), []
+        for measure in measures:
+            (value,), (where,) = self.values(measure, *(np.array([gain]) for gain in gains))
+            found.append(Achieved(measure, float(value), where, goals.get(measure)))
+        return tuple(found)
+
+    @abstractmethod
+    def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray: ...
+
+
+@dataclass(frozen=True)
+class Requirement(AbstractRequirement):
+    """Goals of one impedance controller."""
+
+    goals: tuple[tuple[Measure, float], ...] = ()  # Goals in SI units
+    desired: float = 0.0  # Desired impedance, N m s/rad
+    bandwidth: float = 0.0  # Highest frequency of the command, rad/s
+    force_error: float = 0.0  # Bound on the lasting error of the force signal, N m
 
     @cached_property
     def nominal(self) -> tuple[ContactCorner, ...]:
@@ -174,27 +177,6 @@ class Requirement:
             missed = [measure.violation(float(value), goal) for value in values]
             worst = np.maximum(worst, missed)
         return worst
-
-    def values(
-        self, measure: Measure, Mt: FloatArray, Bt: FloatArray
-    ) -> tuple[FloatArray, list[str]]:
-        """Return the worst value of a measure for every admittance, and at which corner.
-
-        Parameters
-        ----------
-        measure : Measure
-            What is measured.
-        Mt, Bt : ndarray, shape (m,)
-            The admittances, kg m^2 and N m s/rad.
-        """
-        if self.axis is None and measure not in (CREEP, CREEP_ANGLE):
-            return np.full(len(Mt), np.nan), [NOT_COMPUTED] * len(Mt)
-        corners = [c for c in self.corners if c.home or measure not in AT_HOME]
-        table = np.array([self._at(corner, measure, Mt, Bt) for corner in corners])
-        worst = table.argmax(axis=0) if measure.upper else table.argmin(axis=0)
-        values = np.take_along_axis(table, worst[None, :], axis=0)[0]
-        in_the_air = measure in (CREEP, CREEP_ANGLE)
-        return values, ["free motion" if in_the_air else corners[i].label for i in worst]
 
     def loops(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
         """Return the open loops at a corner.
@@ -276,10 +258,8 @@ class Requirement:
     def _families(self) -> dict[tuple[AbstractLinearLaw, Fraction, Place], LoopFamily]:
         return {}
 
-    def _at(
-        self, corner: ContactCorner, measure: Measure, Mt: FloatArray, Bt: FloatArray
-    ) -> FloatArray:
-        Mt, Bt = _gains(corner, Mt, Bt)
+    def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
+        Mt, Bt = _gains(corner, *gains)
         if measure is CREEP:
             return np.zeros_like(Bt) if corner.Kt else self.force_error / Bt
         if measure is CREEP_ANGLE:
@@ -338,79 +318,35 @@ def _gains(corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> tuple[Float
     )
 
 
-def achieve_impedance(
-    requirement: Requirement, measures: tuple[Measure, ...], Mt: float, Bt: float
-) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one admittance.
-
-    Parameters
-    ----------
-    requirement : Requirement
-        Where it is measured, and what is wanted.
-    measures : tuple of Measure
-        What is measured.
-    Mt : float
-        Virtual mass, kg m^2.
-    Bt : float
-        Virtual damping, N m s/rad.
-    """
-    goals = dict(requirement.goals)
-    found = []
-    for measure in measures:
-        (value,), (where,) = requirement.values(measure, np.array([Mt]), np.array([Bt]))
-        found.append(Achieved(measure, float(value), where, goals.get(measure)))
-    return tuple(found)
-
-
 @dataclass(frozen=True)
-class ForceRequirement:
-    """Goals of one force controller, and all that is needed to measure it.
+class ForceRequirement(AbstractRequirement):
+    """Goals of one force controller."""
 
-    Parameters
-    ----------
-    axis, corners, goals
-        As for `Requirement`.
-    law : CompliantLaw
-        With the gains that ship.
-    motion : TransferFunction
-        Closed motion loop G, from commanded to actual position, for the steady error.
-    """
-
-    axis: AbstractAxis | None
-    corners: tuple[ContactCorner, ...]
-    goals: tuple[tuple[Measure, float], ...]
-    law: CompliantLaw
+    law: CompliantLaw  # With the gains that ship
+    # Closed motion loop G, from commanded to actual position, for the steady error.
     motion: TransferFunction
+    approach: Approach = NO_OFFSET  # How the limit is reached, for the steady error
 
+    def _at(self, corner: ContactCorner, measure: Measure, *gains: FloatArray) -> FloatArray:
+        loops = self._loops[corner.label]
+        if measure is not FORCE_ERROR:
+            return _margin(loops, measure)
+        gain, stiffness = float(self.law.gains["Kp"]), corner.contact.stiffness
+        error = steady_force_error(self.motion, stiffness, gain, self.approach)
+        return np.where(loops.stable, error, np.inf)
 
-def achieve_force(
-    requirement: ForceRequirement, measures: tuple[Measure, ...], approach: Approach = NO_OFFSET
-) -> tuple[Achieved, ...]:
-    """Return the worst value of every measure of one force controller.
-
-    Parameters
-    ----------
-    requirement : ForceRequirement
-        Where it is measured, and what is wanted.
-    measures : tuple of Measure
-        What is measured.
-    approach : Approach
-        How the limit is reached, for the steady error; by default there is no offset.
-    """
-    goals = dict(requirement.goals)
-    if requirement.axis is None:
-        return tuple(Achieved(m, np.nan, NOT_COMPUTED, goals.get(m)) for m in measures)
-    loops = {corner.label: _force_loops(requirement, corner) for corner in requirement.corners}
-    found = []
-    for measure in measures:
-        values = {
-            corner.label: _force_value(requirement, corner, measure, loops[corner.label], approach)
-            for corner in requirement.corners
-            if corner.home or measure is not FORCE_ERROR
-        }
-        where = (max if measure.upper else min)(values, key=values.__getitem__)
-        found.append(Achieved(measure, values[where], where, goals.get(measure)))
-    return tuple(found)
+    @cached_property
+    def _loops(self) -> dict[str, Loops]:
+        """The open loops at all corners."""
+        assert self.axis is not None, "without an axis there are no loops"
+        period, found = self.axis.period, {}
+        for corner in self.corners:
+            cut = self.axis.cut(self.law, corner.contact, corner.place)
+            exact = [c - o for c, o in zip(cut.closed, cut.opened, strict=True)], cut.opened
+            numerator, denominator = (np.array([p], dtype=np.float64) for p in exact)
+            sampled = None if period is None else float(period)
+            found[corner.label] = Loops(numerator, denominator, sampled)
+        return found
 
 
 def corners_of(
@@ -473,35 +409,6 @@ def _corners(
             None if Bt is None else float(Bt),
             spring if Kt is None else Kt,
         )
-
-
-def _force_loops(requirement: ForceRequirement, corner: ContactCorner) -> Loops:
-    """Return the open loop of a force controller in one contact."""
-    assert requirement.axis is not None, "without an axis there are no loops"
-    cut = requirement.axis.cut(requirement.law, corner.contact, corner.place)
-    numerator = [float(c - o) for c, o in zip(cut.closed, cut.opened, strict=True)]
-    period = requirement.axis.period
-    return Loops(
-        np.array([numerator]),
-        np.array([[float(c) for c in cut.opened]]),
-        None if period is None else float(period),
-    )
-
-
-def _force_value(
-    requirement: ForceRequirement,
-    corner: ContactCorner,
-    measure: Measure,
-    loops: Loops,
-    approach: Approach,
-) -> float:
-    """Return a measure of a force loop in one contact."""
-    if measure is not FORCE_ERROR:
-        return float(_margin(loops, measure)[0])
-    if not loops.stable[0]:
-        return np.inf
-    gain = float(requirement.law.gains["Kp"])
-    return steady_force_error(requirement.motion, corner.contact.stiffness, gain, approach)
 
 
 def _margin(loops: Loops, measure: Measure) -> FloatArray:

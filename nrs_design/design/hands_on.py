@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nrs_design.design.loops import Loops, gain_extremes, multiply
+from nrs_design.design.loops import Loops, gain_extremes
+from nrs_design.design.polynomials import multiply
 from nrs_design.design.transfer import FloatArray
 from nrs_design.models.contact import AbstractLinearLaw
 

@@ -29,26 +29,17 @@ from nrs_design.models.contact import AbstractLinearLaw
 class ImpedanceLoop:
     """Motion loop in contact with a linear environment.
 
-    Parameters
-    ----------
-    motion : TransferFunction
-        Closed motion loop G, from commanded to actual velocity.
-    contact : AbstractLinearLaw
-        The environment as a rotation about the pivot, N m/rad and N m s/rad.
-    Kt : float
-        Spring of the admittance in N m/rad; zero is none.
-    lags : tuple of float
-        Denominator of the filter H of the force, whose numerator is 1: highest power of s first.
-
     Raises
     ------
     DesignError
         If a parameter is outside its domain, or there is a spring and no rest position.
     """
 
-    motion: TransferFunction
+    motion: TransferFunction  # Closed motion loop G, from commanded to actual velocity
+    # The environment as a rotation about the pivot, N m/rad and N m s/rad.
     contact: AbstractLinearLaw
-    Kt: float = 0.0
+    Kt: float = 0.0  # Spring of the admittance in N m/rad; zero is none
+    # Denominator of the filter H of the force, whose numerator is 1: highest power of s first.
     lags: tuple[float, ...] = (1.0,)
 
     def __post_init__(self) -> None:

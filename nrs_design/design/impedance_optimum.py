@@ -38,36 +38,25 @@ _STEP_TOLERANCE = 1e-5
 class ImpedanceProblem:
     """What the admittance is chosen for.
 
-    Parameters
-    ----------
-    loop : ImpedanceLoop
-        Motion loop and nominal environment.
-    desired : float
-        Desired impedance Zdes, N m s/rad, positive.
-    bandwidth : float
-        Highest frequency of the command, rad/s, positive.
-    mass_bounds, damping_bounds : tuple of float
-        Lowest and highest Mt (kg m^2, not negative) and Bt (N m s/rad, positive). Equal bounds
-        fix the parameter.
-    weight_displayed, weight_sensitivity : float
-        Weights wD and wR of the two parts of the cost, not negative and not both zero.
-    stable : callable, optional
-        Tells for which Mt and Bt nominal contact is stable, of the loop that is proved; by default
-        that of the `loop` is asked for.
-
     Raises
     ------
     DesignError
         If a parameter is outside its domain.
     """
 
-    loop: ImpedanceLoop
-    desired: float
-    bandwidth: float
+    loop: ImpedanceLoop  # Motion loop and nominal environment
+    desired: float  # Desired impedance Zdes, N m s/rad, positive
+    bandwidth: float  # Highest frequency of the command, rad/s, positive
+    # mass_bounds, damping_bounds: lowest and highest Mt (kg m^2, not negative) and Bt (N m s/rad,
+    # positive). Equal bounds fix the parameter.
     mass_bounds: tuple[float, float]
     damping_bounds: tuple[float, float]
+    # weight_displayed, weight_sensitivity: weights wD and wR of the two parts of the cost, not
+    # negative and not both zero.
     weight_displayed: float = 0.5
     weight_sensitivity: float = 0.5
+    # Tells for which Mt and Bt nominal contact is stable, of the loop that is proved; by default
+    # that of the `loop` is asked for.
     stable: Callable[[FloatArray, FloatArray], BoolArray] | None = None
 
     def __post_init__(self) -> None:

@@ -30,49 +30,28 @@ _LEAST = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class CostMap:
-    """The cost over both gains.
+    """The cost over both gains."""
 
-    Parameters
-    ----------
-    Mt, Bt : ndarray, shapes (m,) and (b,)
-        Virtual masses in kg m^2 and dampings in N m s/rad, ascending.
-    cost : ndarray, shape (b, m)
-        NaN where the nominal loop is not stable.
-    abscissa : ndarray, shape (b, m)
-        Largest real part of the roots of the nominal loop that is proved, in 1/s: it is zero on the
-        border.
-    """
-
+    # Mt, Bt: virtual masses in kg m^2 and dampings in N m s/rad, ascending.
     Mt: FloatArray
     Bt: FloatArray
-    cost: FloatArray
+    cost: FloatArray  # Shape (b, m). NaN where the nominal loop is not stable.
+    # Shape (b, m). Largest real part of the roots of the nominal loop that is proved, in 1/s: it is
+    # zero on the border.
     abscissa: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """Another admittance, and what it costs.
+    """Another admittance, and what it costs."""
 
-    Parameters
-    ----------
-    name : str
-        What it is best for.
-    Mt, Bt : float
-        In kg m^2 and N m s/rad.
-    cost : float
-        With the weights of the design.
-    displayed : float
-        Mean distance of the displayed impedance from the desired one, in decades.
-    sensitivity : float
-        Mean sensitivity.
-    """
-
-    name: str
+    name: str  # What it is best for
+    # Mt, Bt: in kg m^2 and N m s/rad.
     Mt: float
     Bt: float
-    cost: float
-    displayed: float
-    sensitivity: float
+    cost: float  # With the weights of the design
+    displayed: float  # Mean distance of the displayed impedance from the desired one, in decades
+    sensitivity: float  # Mean sensitivity
 
 
 def map_cost(problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt: float) -> CostMap:
@@ -179,7 +158,7 @@ def _priced(problem: ImpedanceProblem, name: str, Mt: float, Bt: float) -> Alter
 def delay_borne(
     requirement: Requirement, Mt: float, Bt: float, stiffness: FloatArray
 ) -> FloatArray:
-    """Return the smallest dead time in s that destabilizes, over the stiffness of the contact.
+    """Return the delay margin in s over the stiffness of the contact.
 
     At the worst corner of all other ranges, with the designed gains in the environment that they
     are designed for. Zero where the loop is unstable without any; infinite where no dead time

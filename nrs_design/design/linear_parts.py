@@ -27,58 +27,35 @@ FORCE = "N*m"
 
 @dataclass(frozen=True, slots=True)
 class LinearPart:
-    """A linear system with one input.
+    """A linear system with one input."""
 
-    Parameters
-    ----------
-    name : str
-        What it is.
-    A, B, C, D : array
-        ``x' = A x + B u``, ``y = C x + D u``; shapes (n, n), (n, 1), (m, n), (m, 1).
-    input : (str, str)
-        Name and unit of u.
-    outputs : tuple of (str, str)
-        Name and unit of each y.
-    """
-
-    name: str
+    name: str  # What it is
+    # ``x' = A x + B u``, ``y = C x + D u``; shapes (n, n), (n, 1), (m, n), (m, 1).
     A: Matrix
     B: Matrix
     C: Matrix
     D: Matrix
-    input: tuple[str, str]
-    outputs: tuple[tuple[str, str], ...]
+    input: tuple[str, str]  # Name and unit of u
+    outputs: tuple[tuple[str, str], ...]  # Name and unit of each y
 
 
 @dataclass(frozen=True, slots=True)
 class LinearParts:
-    """All of one axis.
+    """All of one axis."""
 
-    Parameters
-    ----------
-    actuator, motion_loop : LinearPart
-        From the command of the motor to the position, and from commanded to measured motion.
-    controllers : tuple of LinearPart
-        From the force that a law gets to what it adds to the command.
-    force_filter : LinearPart or None
-        Through which the laws get the force.
-    contacts : tuple of LinearPart
-        What is touched, from motion to force.
-    loops : tuple of LinearPart
-        Of each controller at each contact: a torque that acts on the sensor beside that of the
-        contact makes a motion and a torque of the contact. States are those of the motion loop, the
-        contact, the filter and the controller.
-    left_out : tuple of str
-        Which loops are not there, and why.
-    """
-
+    # actuator, motion_loop: from the command of the motor to the position, and from commanded to
+    # measured motion.
     actuator: LinearPart
     motion_loop: LinearPart
+    # From the force that a law gets to what it adds to the command.
     controllers: tuple[LinearPart, ...]
-    force_filter: LinearPart | None
-    contacts: tuple[LinearPart, ...]
+    force_filter: LinearPart | None  # Through which the laws get the force
+    contacts: tuple[LinearPart, ...]  # What is touched, from motion to force
+    # Of each controller at each contact: a torque that acts on the sensor beside that of the
+    # contact makes a motion and a torque of the contact. States are those of the motion loop, the
+    # contact, the filter and the controller.
     loops: tuple[LinearPart, ...]
-    left_out: tuple[str, ...]
+    left_out: tuple[str, ...]  # Which loops are not there, and why
 
 
 def linear_parts(plant: Plant, design: ControllerDesign) -> LinearParts:

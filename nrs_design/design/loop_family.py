@@ -16,13 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.design.loops import Loops
-from nrs_design.design.transfer import (
-    FloatArray,
-    hurwitz,
-    positive_roots,
-    product_parts,
-    squared_magnitude,
-)
+from nrs_design.design.polynomials import frequencies, product_parts, ratio
+from nrs_design.design.transfer import FloatArray, hurwitz
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.switched.cut_loop import AbstractAxis, Place, ProcessorAxis
 
@@ -34,24 +29,12 @@ _LEAST = 1e-12
 
 @dataclass(frozen=True)
 class LoopFamily:
-    """The loops of all admittances with one spring, in contacts that differ in stiffness alone.
+    """The loops of all admittances with one spring, in contacts that differ in stiffness alone."""
 
-    Parameters
-    ----------
-    axis : AbstractAxis
-        Whose modes they are.
-    contact : AbstractLinearLaw
-        Its own stiffness is not used.
-    spring : Fraction
-        Kt in N m/rad; zero is none.
-    place : Place
-        Of the motor, and the age of the force.
-    """
-
-    axis: AbstractAxis
-    contact: AbstractLinearLaw
-    spring: Fraction
-    place: Place
+    axis: AbstractAxis  # Whose modes they are
+    contact: AbstractLinearLaw  # Its own stiffness is not used
+    spring: Fraction  # Kt in N m/rad; zero is none
+    place: Place  # Of the motor, and the age of the force
 
     def loops(self, Mt: FloatArray, Bt: FloatArray, stiffness: FloatArray | float) -> Loops:
         """Return the open loops, cut where the law takes the force.
@@ -95,9 +78,8 @@ class LoopFamily:
         """
         one = np.array([Mt]), np.array([Bt])
         free, contact = (self._polynomials(_CLOSED, *one)[i][0] for i in (0, 1))
-        real, imaginary = product_parts(free.tolist(), contact.tolist())
-        x = positive_roots(imaginary)
-        critical = -np.polyval(real, x) / np.polyval(squared_magnitude(contact.tolist()), x)
+        rows = free[None], contact[None]
+        critical = -ratio(*rows, frequencies(product_parts(*rows)[1]))[0].real
         ends = [-free[0] / contact[0]] if contact[0] else []
         limit = min((float(k) for k in (*critical, *ends) if k > 0), default=math.inf)
         probe = limit / 2 if math.isfinite(limit) else 1.0

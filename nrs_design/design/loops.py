@@ -1,8 +1,7 @@
 """Margins of many open loops at once, for a search that must respect them.
 
-Each margin is taken at the exact stationary or crossover frequencies of its loop, which are roots
-of a polynomial in ``x = omega^2``; there is no frequency grid. By hand, as python-control takes one
-loop after the other, on a grid; the tests hold it against these.
+Each margin is taken at the exact stationary or crossover frequencies of its loop. By hand, as
+python-control takes one loop after the other, on a grid; the tests hold it against these.
 """
 
 from __future__ import annotations
@@ -12,25 +11,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nrs_design.design.polynomials import (
+    frequencies,
+    product_parts,
+    ratio,
+    squared,
+    stationary,
+)
 from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, hurwitz
-
-# A leading coefficient this small beside the others counts as zero; its root is out of any band.
-_NEGLIGIBLE = 1e-60
-# How near to the axis a root counts as real, relative to its size; see `positive_roots`.
-_REAL = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class Loops:
     """Many open loops ``N/D``.
-
-    Parameters
-    ----------
-    numerator, denominator : ndarray, shape (n, m + 1)
-        One polynomial in s per row, highest power first, padded to one length.
-    period : float or None
-        Sampled: the time between two samples in s, and the polynomials are in
-        ``(2/T) (z - 1)/(z + 1)`` instead of s.
 
     Notes
     -----
@@ -38,8 +31,12 @@ class Loops:
     where it should be small, 0 where it should be large. A margin that nothing limits is infinite.
     """
 
+    # numerator, denominator: shape (n, m + 1). One polynomial in s per row, highest power first,
+    # padded to one length.
     numerator: FloatArray
     denominator: FloatArray
+    # Sampled: the time between two samples in s, and the polynomials are in ``(2/T) (z - 1)/(z +
+    # 1)`` instead of s.
     period: float | None = None
 
     @property
@@ -59,8 +56,8 @@ class Loops:
 
     def peak_frequency(self) -> FloatArray:
         """Return where Ms is reached, rad/s; infinite where it is only approached."""
-        omega = _stationary(self.denominator, self.closed)
-        magnitude = np.nan_to_num(np.abs(_ratio(self.denominator, self.closed, omega)))
+        omega = stationary(self.denominator, self.closed)
+        magnitude = np.nan_to_num(np.abs(ratio(self.denominator, self.closed, omega)))
         padded = np.concatenate([magnitude, np.ones((len(omega), 1))], axis=1)
         places = np.concatenate([omega, np.full((len(omega), 1), np.inf)], axis=1)
         best = padded.argmax(axis=1)[:, None]
@@ -73,8 +70,8 @@ class Loops:
 
     def gain_margin(self) -> FloatArray:
         """Return the smallest factor above 1 on the loop gain that destabilizes."""
-        _, imaginary = _product(self.numerator, self.denominator)
-        omega = _frequencies(imaginary)
+        _, imaginary = product_parts(self.numerator, self.denominator)
+        omega = frequencies(imaginary)
         last = _at_infinity(self.numerator, self.denominator)[:, None]
         response = np.concatenate([self._at(omega).real, last], axis=1)
         inside = (response < 0) & (response > -1)
@@ -87,10 +84,9 @@ class Loops:
         return np.where(self.stable, _smallest(np.abs(phase)), 0.0)
 
     def delay_margin(self) -> FloatArray:
-        """Return the smallest dead time that destabilizes, in s.
+        """Return the longest dead time up to which none destabilizes, in s.
 
-        Sampled, a dead time is a whole number of samples by which the force is older, and the
-        largest one up to which none destabilizes is returned.
+        Sampled, dead times are whole samples by which the force is older.
         """
         phase, omega = self._crossovers()
         dead = _smallest(phase % (2 * math.pi) / self._true(omega))
@@ -112,12 +108,12 @@ class Loops:
 
     def _crossovers(self) -> tuple[FloatArray, FloatArray]:
         """Return the phase over -180 degrees, and the frequency, of every gain crossover."""
-        excess = _squared(self.numerator) - _squared(self.denominator)
-        omega = _frequencies(excess)
+        excess = squared(self.numerator) - squared(self.denominator)
+        omega = frequencies(excess)
         return np.angle(-self._at(omega)), omega
 
     def _at(self, omega: FloatArray) -> ComplexArray:
-        return _ratio(self.numerator, self.denominator, omega)
+        return ratio(self.numerator, self.denominator, omega)
 
 
 def _at_infinity(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
@@ -139,105 +135,20 @@ def gain_extremes(
     bandwidth : float
         Highest frequency, rad/s.
     """
-    omega = _stationary(numerator, denominator)
+    omega = stationary(numerator, denominator)
     omega = np.where(omega < bandwidth, omega, np.nan)
     ends = np.broadcast_to([0.0, bandwidth], (len(omega), 2))
     omega = np.concatenate([omega, ends], axis=1)
-    magnitude = np.abs(_ratio(numerator, denominator, omega))
+    magnitude = np.abs(ratio(numerator, denominator, omega))
     return np.fmin.reduce(magnitude, axis=1), np.fmax.reduce(magnitude, axis=1)
 
 
-def _ratio(numerator: FloatArray, denominator: FloatArray, omega: FloatArray) -> ComplexArray:
-    with np.errstate(invalid="ignore"):  # NaN stands for no frequency
-        return _evaluate(numerator, omega) / _evaluate(denominator, omega)
-
-
-def _evaluate(polynomials: FloatArray, omega: FloatArray) -> ComplexArray:
-    """Evaluate polynomials in s at ``j omega``: row i at all frequencies of row i."""
-    s = np.asarray(1j * omega, dtype=np.complex128)
-    value = np.zeros(omega.shape, dtype=np.complex128)
-    for coefficient in polynomials.T:
-        value = value * s + coefficient[:, None]
-    return value
-
-
-def multiply(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Multiply polynomials row by row."""
-    product = np.zeros((len(a), a.shape[1] + b.shape[1] - 1))
-    for i in range(a.shape[1]):
-        product[:, i : i + b.shape[1]] += a[:, i : i + 1] * b
-    return product
-
-
 def _peak(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
-    omega = _stationary(numerator, denominator)
-    magnitude = np.abs(_ratio(numerator, denominator, omega))
+    omega = stationary(numerator, denominator)
+    magnitude = np.abs(ratio(numerator, denominator, omega))
     last = np.abs(_at_infinity(numerator, denominator))
     return np.fmax(last, np.fmax.reduce(magnitude, axis=1, initial=0.0))
 
 
 def _smallest(values: FloatArray) -> FloatArray:
     return np.asarray(np.fmin.reduce(values, axis=1, initial=np.inf))
-
-
-def _stationary(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
-    """Return where ``|numerator/denominator|`` is stationary; NaN fills the rows."""
-    n, d = _squared(numerator), _squared(denominator)
-    return _frequencies(multiply(_derivative(n), d) - multiply(n, _derivative(d)))
-
-
-def _derivative(polynomials: FloatArray) -> FloatArray:
-    return polynomials[:, :-1] * np.arange(polynomials.shape[1] - 1, 0, -1)
-
-
-def _even_odd(polynomials: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Split ``p(j omega) = E(x) + j omega O(x)``, highest power of x first."""
-    ascending = polynomials[:, ::-1]
-    even, odd = ascending[:, 0::2], ascending[:, 1::2]
-    signs = (-1.0) ** np.arange(even.shape[1])
-    return (even * signs)[:, ::-1], (odd * signs[: odd.shape[1]])[:, ::-1]
-
-
-def _product(a: FloatArray, b: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Split ``a conj(b) = R(x) + j omega I(x)`` on the imaginary axis."""
-    (a_even, a_odd), (b_even, b_odd) = _even_odd(a), _even_odd(b)
-    odd = multiply(a_odd, b_odd)
-    shifted = np.concatenate([odd, np.zeros((len(odd), 1))], axis=1)
-    imaginary = multiply(a_odd, b_even) - multiply(a_even, b_odd)
-    return _sum(multiply(a_even, b_even), shifted), imaginary
-
-
-def _sum(a: FloatArray, b: FloatArray) -> FloatArray:
-    width = max(a.shape[1], b.shape[1])
-    total = np.zeros((len(a), width))
-    total[:, width - a.shape[1] :] += a
-    total[:, width - b.shape[1] :] += b
-    return total
-
-
-def _squared(polynomials: FloatArray) -> FloatArray:
-    return _product(polynomials, polynomials)[0]
-
-
-def _frequencies(polynomials: FloatArray) -> FloatArray:
-    """Return the square roots of the positive roots of polynomials in x; NaN fills the rows."""
-    roots = _roots(polynomials)
-    real = (np.abs(roots.imag) <= _REAL * np.abs(roots)) & (roots.real > 0)
-    return np.sqrt(np.where(real, roots.real, np.nan))
-
-
-def _roots(polynomials: FloatArray) -> ComplexArray:
-    """Return all roots as eigenvalues of companion matrices; NaN fills the rows."""
-    count, degree = len(polynomials), polynomials.shape[1] - 1
-    roots = np.full((count, degree), np.nan, dtype=np.complex128)
-    size = np.abs(polynomials)
-    known = size > _NEGLIGIBLE * size.max(axis=1, keepdims=True)
-    leading = np.where(known.any(axis=1), known.argmax(axis=1), degree)
-    for first in np.unique(leading[leading < degree]):
-        rows = np.flatnonzero(leading == first)
-        order = degree - int(first)
-        companion = np.zeros((len(rows), order, order))
-        companion[:, 1:, :-1] = np.eye(order - 1)
-        companion[:, 0, :] = -polynomials[rows, first + 1 :] / polynomials[rows, first : first + 1]
-        roots[rows, :order] = np.linalg.eigvals(companion)
-    return roots

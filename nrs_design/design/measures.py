@@ -38,30 +38,15 @@ ONE_AXIS = "Of axes that act on each other, this is one by itself."
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """One measure of a controller.
+    """One measure of a controller."""
 
-    Parameters
-    ----------
-    goal : str
-        Key of the goal in a spec.
-    title : str
-        In a few words, such as ``phase margin``.
-    unit : str
-        In which it is shown; empty for a number.
-    scale : float
-        Shown value over SI value.
-    upper : bool
-        Whether a goal is the largest value that is accepted; else it is the smallest.
-    doubtful : float or None
-        SI value beyond which a design without a goal is doubted.
-    """
-
-    goal: str
-    title: str
-    unit: str = ""
-    scale: float = 1.0
+    goal: str  # Key of the goal in a spec
+    title: str  # In a few words, such as ``phase margin``
+    unit: str = ""  # In which it is shown; empty for a number
+    scale: float = 1.0  # Shown value over SI value
+    # Whether a goal is the largest value that is accepted; else it is the smallest.
     upper: bool = False
-    doubtful: float | None = None
+    doubtful: float | None = None  # SI value beyond which a design without a goal is doubted
 
     def text(self, value: float) -> str:
         """Write a value with four digits, rounded to its unfavorable side."""

@@ -4,8 +4,8 @@ A surgeon who holds the tool applies a torque and meets the admittance ``Y = N/D
 velocity of the tool: what the law makes of the torque, and what the torque itself turns of a motor
 with a load. D is the characteristic polynomial of the assembled mode that touches nothing, and
 ``D + b N`` that with a damper b, so both are exact. Y is passive at omega where
-``Re N conj(D) >= 0``, a polynomial in ``x = omega^2`` with rational coefficients. Its sign is
-decided by Sturm's theorem, without a grid. With a strictly proper motion loop of relative degree
+``Re N conj(D) >= 0``, a polynomial in ``x = omega^2`` with rational coefficients. Its roots are
+isolated rigorously, without a grid. With a strictly proper motion loop of relative degree
 one and no load, Y has relative degree two with an inertia, so it is never passive at all
 frequencies (thesis 7): what counts is the band.
 
@@ -20,18 +20,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise, product
-from math import gcd, isqrt, lcm
+from itertools import product
+from math import isqrt, lcm
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.models.contact import KelvinVoigt
-from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
+from nrs_design.proof.spectrum import is_stable
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.cut_loop import ContinuousAxis, Place
+from nrs_design.switched.cut_loop import ContinuousAxis, Place, multiply
 
-# Frequencies are bracketed to this share, in rad/s.
+if TYPE_CHECKING:
+    from flint import arb
+
+# How far beyond a root it is looked for a negative value, at first, as a share of the root.
 RESOLUTION = Fraction(1, 10**5)
 # How often the point beyond the first root is halved towards it.
 HALVINGS = 40
@@ -41,19 +45,13 @@ Polynomial = list[Fraction]
 
 @dataclass(frozen=True)
 class PassiveBand:
-    """Where a displayed admittance is passive.
+    """Where a displayed admittance is passive."""
 
-    Parameters
-    ----------
-    passive : Fraction or None
-        Wherever the parameters are in their ranges, it is passive at every frequency up to this
-        one, in rad/s; None for all frequencies, zero where nothing is shown.
-    broken : Fraction or None
-        At this one it is not, with parameters at a corner of the ranges: an exact refutation of
-        passivity. None where none was found.
-    """
-
+    # Wherever the parameters are in their ranges, it is passive at every frequency up to this one,
+    # in rad/s; None for all frequencies, zero where nothing is shown.
     passive: Fraction | None
+    # At this one it is not, with parameters at a corner of the ranges: an exact refutation of
+    # passivity. None where none was found.
     broken: Fraction | None
 
 
@@ -115,7 +113,7 @@ def real_part(
     factor = tau * (held.gains["Mt"] or held.gains["Bt"])
     N = [factor * (b - a) for a, b in zip(D, damped, strict=True)]
     mirrored = [factor * c * (-1) ** k for k, c in enumerate(reversed(D))][::-1]
-    even = list(reversed(_times(N, mirrored)))[::2]
+    even = list(reversed(multiply(N, mirrored)))[::2]
     return [c * (-1) ** k for k, c in enumerate(even)][::-1]
 
 
@@ -142,80 +140,27 @@ def _without_zeros(P: Polynomial) -> Polynomial:
 def first_root(P: Sequence[Fraction]) -> tuple[Fraction, Fraction] | None:
     """Return numbers between which the smallest positive root is, or None if there is none.
 
-    There is no root up to the first one, and the second is `RESOLUTION` above it at most.
+    Ball arithmetic isolates all roots rigorously, multiple ones as well.
 
     Parameters
     ----------
     P : sequence of Fraction
         Coefficients, highest power first; neither the first nor the last is zero.
     """
-    chain = _simple_chain(P)
-    none, high = _changes(chain, Fraction(0)), 1 + max(map(abs, P)) / abs(P[0])
-    if none == _changes(chain, high):
-        return None
-    low = Fraction(0)
-    while high - low > RESOLUTION * high:
-        middle = _rounded((low + high) / 2)
-        low, high = (low, middle) if none > _changes(chain, middle) else (middle, high)
-    return low, high
+    from flint import fmpz_poly
 
-
-def count_positive_roots(P: Sequence[Fraction], end: Fraction) -> int:
-    """Count the different roots in (0, end] by Sturm's theorem.
-
-    Parameters
-    ----------
-    P : sequence of Fraction
-        Coefficients, highest power first; not zero at 0.
-    end : Fraction
-        Positive.
-    """
-    chain = _simple_chain(P)
-    return _changes(chain, Fraction(0)) - _changes(chain, end)
-
-
-def _simple_chain(P: Sequence[Fraction]) -> list[Polynomial]:
-    """Return the chain of a polynomial, or of one that has the same roots, each of them once."""
-    chain = _sturm_chain(list(P))
-    if len(chain[-1]) > 1:
-        # Roots that are multiple ones are those of the last element: without it, each is single.
-        chain = _sturm_chain(_divided(P, chain[-1])[0])
-    return chain
-
-
-def _sturm_chain(P: Polynomial) -> list[Polynomial]:
-    """Return P, its derivative and the negative remainders; the last is a common divisor.
-
-    Positive factors change no sign, so each has integers without a common divisor.
-    """
-    chain = [_primitive(P), _primitive(_derivative(P))]
-    if not any(chain[1]):
-        return chain[:1]
-    while any(rest := [-c for c in _divided(chain[-2], chain[-1])[1]]):
-        chain.append(_primitive(rest))
-    return chain
-
-
-def _primitive(P: Sequence[Fraction]) -> Polynomial:
-    """Divide a polynomial by a positive number, so that its coefficients are short integers."""
     common = lcm(*(c.denominator for c in P))
-    numerators = [int(c * common) for c in P]
-    divisor = gcd(*numerators) or 1
-    return [Fraction(n // divisor) for n in numerators]
+    # The stubs of python-flint leave out the multiplicities.
+    roots: Any = fmpz_poly([int(c * common) for c in reversed(P)]).complex_roots()
+    real = (root.real for root, _ in roots if root.imag == 0)
+    positive = [(_exact(root.lower()), _exact(root.upper())) for root in real if root > 0]
+    return min(positive, default=None)
 
 
-def _changes(chain: Sequence[Polynomial], x: Fraction) -> int:
-    signs = [value > 0 for value in (_sign(P, x) for P in chain) if value]
-    return sum(a != b for a, b in pairwise(signs))
-
-
-def _sign(P: Polynomial, x: Fraction) -> int:
-    """Return the value of a polynomial with integers, times a positive number."""
-    value, power = 0, 1
-    for c in P:
-        value = value * x.numerator + c.numerator * power
-        power *= x.denominator
-    return value
+def _exact(number: arb) -> Fraction:
+    """Return a ball without radius as a fraction."""
+    mantissa, exponent = number.man_exp()
+    return int(mantissa) * Fraction(2) ** int(exponent)
 
 
 def evaluate(P: Sequence[Fraction], x: Fraction) -> Fraction:
@@ -224,38 +169,6 @@ def evaluate(P: Sequence[Fraction], x: Fraction) -> Fraction:
     for c in P:
         value = value * x + c
     return value
-
-
-def _derivative(P: Sequence[Fraction]) -> Polynomial:
-    n = len(P) - 1
-    return [c * (n - k) for k, c in enumerate(P[:-1])] or [Fraction(0)]
-
-
-def _divided(P: Sequence[Fraction], Q: Sequence[Fraction]) -> tuple[Polynomial, Polynomial]:
-    """Return quotient and remainder."""
-    quotient, rest = [], list(P)
-    while len(rest) >= len(Q):
-        factor = rest[0] / Q[0]
-        quotient.append(factor)
-        for k, entry in enumerate(Q):
-            rest[k] -= factor * entry
-        rest.pop(0)
-    while len(rest) > 1 and rest[0] == 0:
-        rest.pop(0)
-    return quotient, rest or [Fraction(0)]
-
-
-def _times(P: Sequence[Fraction], Q: Sequence[Fraction]) -> Polynomial:
-    product = [Fraction(0)] * (len(P) + len(Q) - 1)
-    for i, a in enumerate(P):
-        for j, b in enumerate(Q):
-            product[i + j] += a * b
-    return product
-
-
-def _rounded(x: Fraction) -> Fraction:
-    """Keep few digits, at which the sign is decided just as well."""
-    return x.limit_denominator(10**9) if x > Fraction(1, 1000) else x
 
 
 def root_below(x: Fraction, digits: int = 6) -> Fraction:

@@ -21,25 +21,14 @@ _LEAST_PROGRESS = 1e-10
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Points of the unit square that are searched side by side.
+    """Points of the unit square that are searched side by side."""
 
-    Parameters
-    ----------
-    u, v : ndarray, shape (m,)
-        Coordinates, 0 to 1.
-    step : ndarray, shape (2,)
-        Size of the pattern in u and v; 0 holds a coordinate.
-    slope : ndarray, shape (m,)
-        Direction dv/du of the valley at each point.
-    evaluations : int
-        Objective values spent so far.
-    """
-
+    # u, v: shape (m,). Coordinates, 0 to 1.
     u: FloatArray
     v: FloatArray
-    step: FloatArray
-    slope: FloatArray
-    evaluations: int
+    step: FloatArray  # Shape (2,). Size of the pattern in u and v; 0 holds a coordinate.
+    slope: FloatArray  # Shape (m,). Direction dv/du of the valley at each point.
+    evaluations: int  # Objective values spent so far
 
 
 def refine(objective: Objective, start: Points, tolerance: float) -> Points:

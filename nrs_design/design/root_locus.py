@@ -9,15 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.design.polynomials import frequencies, squared
 from nrs_design.design.transfer import (
     ComplexArray,
     FloatArray,
     TransferFunction,
     hurwitz,
     poles,
-    positive_roots,
-    ratio_slope,
-    squared_magnitude,
     static_gain,
     to_control,
 )
@@ -32,51 +30,24 @@ _LOCUS_DECADES = 9
 
 @dataclass(frozen=True)
 class PdDesign:
-    """PD controller ``Kd (s + zero)`` that puts the closed-loop poles where they are wanted.
+    """PD controller ``Kd (s + zero)`` that puts the closed-loop poles where they are wanted."""
 
-    Parameters
-    ----------
-    zero : float
-        Distance of the zero from the origin, 1/s.
-    derivative_gain : float
-        ``Kd``, in commands per rad/s.
-    zero_angle : float
-        Angle of the upper wanted pole seen from the zero, rad (thesis 4.28).
-    wanted_poles : tuple of complex
-        Upper and lower wanted pole, rad/s.
-    natural_frequency : float
-        Their distance from the origin, rad/s.
-    """
-
-    zero: float
-    derivative_gain: float
-    zero_angle: float
-    wanted_poles: tuple[complex, complex]
-    natural_frequency: float
+    zero: float  # Distance of the zero from the origin, 1/s
+    derivative_gain: float  # ``Kd``, in commands per rad/s
+    zero_angle: float  # Angle of the upper wanted pole seen from the zero, rad (thesis 4.28)
+    wanted_poles: tuple[complex, complex]  # Upper and lower wanted pole, rad/s
+    natural_frequency: float  # Their distance from the origin, rad/s
 
 
 @dataclass(frozen=True)
 class MotionLoopResponse:
-    """What a closed motion loop really does.
+    """What a closed motion loop really does."""
 
-    Parameters
-    ----------
-    poles : tuple of complex
-        Closed-loop poles, rad/s, rightmost first.
-    damping_ratio : float
-        Of the dominant pair.
-    natural_frequency : float
-        Of the dominant pair, rad/s.
-    overshoot : float
-        Of the unit step response, as a fraction of its final value, zeros included.
-    bandwidth : float
-        Lowest frequency where the gain has fallen by ``sqrt(2)``, rad/s; infinite if none.
-    """
-
-    poles: tuple[complex, ...]
-    damping_ratio: float
-    natural_frequency: float
-    overshoot: float
+    poles: tuple[complex, ...]  # Closed-loop poles, rad/s, rightmost first
+    damping_ratio: float  # Of the dominant pair
+    natural_frequency: float  # Of the dominant pair, rad/s
+    overshoot: float  # Of the unit step response, as a fraction of its final value, zeros included
+    # Lowest frequency where the gain has fallen by ``sqrt(2)``, rad/s; infinite if none.
     bandwidth: float
 
 
@@ -263,10 +234,11 @@ class _StepResponse:
 
 def _bandwidth(tf: TransferFunction) -> float:
     # By hand: python-control looks on a grid, and finds none where the magnitude rises first.
-    half = 0.5 * static_gain(tf) ** 2
-    excess = np.polysub(squared_magnitude(tf.numerator), half * squared_magnitude(tf.denominator))
-    crossings = np.sqrt(positive_roots(excess))
-    return float(crossings[0]) if len(crossings) else math.inf
+    rows = np.zeros((2, tf.order + 1))
+    rows[0, tf.order + 1 - len(tf.numerator) :], rows[1] = tf.numerator, tf.denominator
+    above, below = squared(rows)
+    crossings = frequencies((above - 0.5 * static_gain(tf) ** 2 * below)[None])
+    return float(np.fmin.reduce(crossings[0], initial=math.inf))
 
 
 def root_locus(open_loop: TransferFunction, gains: ArrayLike) -> ComplexArray:
@@ -370,9 +342,9 @@ def _closed_poles(open_loop: TransferFunction, gain: float) -> ComplexArray:
 
 def _breakaway(open_loop: TransferFunction, last: float) -> FloatArray:
     """Return the gains up to the last one where two real poles meet."""
-    num, den = open_loop.numerator, open_loop.denominator
-    points = np.roots(ratio_slope(den, num))
-    points = points.real[np.abs(points.imag) <= 1e-7 * np.abs(points)]
+    num, den = np.poly1d(open_loop.numerator), np.poly1d(open_loop.denominator)
+    roots: ComplexArray = (den.deriv() * num - den * num.deriv()).roots.astype(np.complex128)
+    points = roots.real[np.abs(roots.imag) <= 1e-7 * np.abs(roots)]
     below = np.polyval(num, points)
     gains = -np.polyval(den, points[below != 0]) / below[below != 0]
     return np.asarray(gains[(gains > 0) & (gains < last)])

@@ -21,8 +21,8 @@ With ``z = (1 + w)/(1 - w)`` and ``w = j t``, ``t = tan(omega T/2)``, the sign o
 which is a polynomial in ``x = t^2``, but for ``omega t = (2/T) x h`` with ``h = atan(t)/t``. It is
 affine in h, so its sign is shown for a number below h and one above: convergents of Gauss's
 continued fraction of atan. ``exp(-T/tau)`` is enclosed, too. So every coefficient lies between
-rational numbers, and since x is positive, the polynomial lies between two rational ones. Sturm's
-theorem decides those.
+rational numbers, and since x is positive, the polynomial lies between two rational ones, whose
+roots are isolated rigorously.
 """
 
 from __future__ import annotations
@@ -60,24 +60,14 @@ ZERO, ONE = Fraction(0), Fraction(1)
 
 @dataclass(frozen=True)
 class SampledBand:
-    """Where the admittance that a processor displays is passive.
+    """Where the admittance that a processor displays is passive."""
 
-    Parameters
-    ----------
-    age : int
-        Of the force sample, always the same, in samples.
-    passive : Fraction
-        It is passive at every frequency up to this one, in rad/s; zero where that is not shown.
-    broken : Enclosed or None
-        Between these frequencies in rad/s is one at which it is not; None where none was found.
-    tangent : Fraction or None
-        The ``tan(omega T/2)`` of that frequency omega, exactly.
-    """
-
-    age: int
+    age: int  # Of the force sample, always the same, in samples
+    # It is passive at every frequency up to this one, in rad/s; zero where that is not shown.
     passive: Fraction
+    # Between these frequencies in rad/s is one at which it is not; None where none was found.
     broken: Enclosed | None = None
-    tangent: Fraction | None = None
+    tangent: Fraction | None = None  # The ``tan(omega T/2)`` of that frequency omega, exactly
 
 
 def sampled_bands(

@@ -26,11 +26,6 @@ BoolArray = NDArray[np.bool_]
 class TransferFunction:
     """A proper continuous-time transfer function.
 
-    Parameters
-    ----------
-    numerator, denominator : tuple of float
-        Coefficients, highest power of s first.
-
     Raises
     ------
     DesignError
@@ -38,6 +33,7 @@ class TransferFunction:
         numerator is zero, or the numerator has the higher degree.
     """
 
+    # numerator, denominator: coefficients, highest power of s first.
     numerator: tuple[float, ...]
     denominator: tuple[float, ...]
 
@@ -175,55 +171,6 @@ def _routh(rows: FloatArray) -> BoolArray:
         pairs = zip_longest(above[1:], below[1:], fillvalue=0.0)
         above, below = below, [upper - ratio * lower for upper, lower in pairs]
     return stable
-
-
-def even_odd(polynomial: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    """Split ``p(j omega) = E(x) + j omega O(x)`` with ``x = omega^2``.
-
-    Returns
-    -------
-    E, O : ndarray
-        Real polynomials in x, highest power first.
-    """
-    ascending = np.asarray(polynomial, dtype=np.float64)[::-1]
-    signs = (-1.0) ** np.arange(len(ascending))
-    even, odd = ascending[0::2], ascending[1::2]
-    if not len(odd):
-        odd = np.zeros(1)
-    return (even * signs[: len(even)])[::-1], (odd * signs[: len(odd)])[::-1]
-
-
-def product_parts(a: Sequence[float], b: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    """Split ``a(j omega) conj(b(j omega)) = R(x) + j omega I(x)`` with ``x = omega^2``.
-
-    Returns
-    -------
-    R, I : ndarray
-        Real polynomials in x, highest power first.
-    """
-    (a_even, a_odd), (b_even, b_odd) = even_odd(a), even_odd(b)
-    odd_product = np.polymul([1.0, 0.0], np.polymul(a_odd, b_odd))
-    real = np.polyadd(np.polymul(a_even, b_even), odd_product)
-    imaginary = np.polysub(np.polymul(a_odd, b_even), np.polymul(a_even, b_odd))
-    return np.asarray(real, dtype=np.float64), np.asarray(imaginary, dtype=np.float64)
-
-
-def squared_magnitude(polynomial: Sequence[float]) -> FloatArray:
-    """Return ``|p(j omega)|^2`` as a polynomial in ``omega^2``, highest power first."""
-    return product_parts(polynomial, polynomial)[0]
-
-
-def ratio_slope(numerator: ArrayLike, denominator: ArrayLike) -> FloatArray:
-    """Return ``n' d - n d'``, whose roots are the stationary points of ``n/d``."""
-    n, d = np.asarray(numerator, dtype=np.float64), np.asarray(denominator, dtype=np.float64)
-    terms = np.convolve(_derivative(n), d), np.convolve(n, _derivative(d))
-    return np.asarray(np.polysub(*terms), dtype=np.float64)
-
-
-def _derivative(polynomial: FloatArray) -> FloatArray:
-    # A constant keeps one coefficient, so that products with it stay defined.
-    powers = np.arange(len(polynomial) - 1, 0, -1)
-    return np.asarray(polynomial[:-1] * powers) if len(powers) else np.zeros(1)
 
 
 def positive_roots(polynomial: ArrayLike) -> FloatArray:

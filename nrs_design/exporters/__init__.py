@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from nrs_design.output import (
-    C_AXES,
-    C_AXES_HEADER,
     C_HEADER,
     C_MONITOR,
     C_MONITOR_HEADER,
@@ -30,34 +28,18 @@ from nrs_design.output import (
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """What a format is for, and which files it has.
+    """What a format is for, and which files it has."""
 
-    Parameters
-    ----------
-    module : str
-        Of this package; it has ``render``.
-    purpose : str
-        What the files are for, in a few words.
-    needs : str
-        What there must be before they are written.
-    files : mapping of str to bytes
-        What follows the name of the spec in the name of each file, and how that file begins: one
-        that begins otherwise is another's, and is not overwritten.
-    executable : bool
-        Whether a processor runs it, so that the proof must be about the sampled loop.
-    remarks : bool
-        Whether the module also has ``remarks``, which says what rendered files lack.
-    provable : bool
-        Whether a proof of the sampled loop is about these files.
-    """
-
-    module: str
-    purpose: str
-    needs: str
+    module: str  # Of this package; it has ``render``
+    purpose: str  # What the files are for, in a few words
+    needs: str  # What there must be before they are written
+    # What follows the name of the spec in the name of each file, and how that file begins: one that
+    # begins otherwise is another's, and is not overwritten.
     files: Mapping[str, bytes]
+    # Whether a processor runs it, so that the proof must be about the sampled loop.
     executable: bool = False
+    # Whether the module also has ``remarks``, which says what rendered files lack.
     remarks: bool = False
-    provable: bool = True
 
 
 DESIGN = "a proof of the design"
@@ -77,15 +59,6 @@ FORMATS: Mapping[str, Format] = MappingProxyType(
             SAMPLED,
             {".h": C_HEADER, ".c": C_SOURCE},
             executable=True,
-        ),
-        "axes": Format(
-            "axes",
-            "C99: the admittances of three axes in one step, without the motor loop",
-            "--unproved: no proof is about this step",
-            {"_axes.h": C_AXES_HEADER, "_axes.c": C_AXES},
-            executable=True,
-            remarks=True,
-            provable=False,
         ),
         "vectors": Format(
             "vectors",

@@ -8,15 +8,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.c_logic import logic_declarations, logic_definitions, logic_lines
+from nrs_design.controllers.step_logic import UNITS
 from nrs_design.exporters.c_names import CNames, block_comment
-from nrs_design.exporters.c_step import FLAGS, REFUSALS, declarations, definitions, helpers
+from nrs_design.exporters.c_step import FLAGS, declarations, definitions, guards
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.start import start_lines
+from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
+
+# What the mode logic sees, in words.
+_SEEN = {"command": "velocity command", "torque": "torque"}
 
 
 def render(export: Export) -> dict[str, bytes]:
@@ -49,16 +53,15 @@ def header_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
     names : CNames
         Of this spec.
     """
-    guard = f"{names.upper}_H"
-    lines = [
-        block_comment(_header_lines(record, law, names), C_HEADER),
-        f"#ifndef {guard}\n#define {guard}\n",
-        "#include <stdbool.h>\n#include <stdint.h>\n",
-        *declarations(law, names),
-        *logic_declarations(law, names),
-        "#endif\n",
-    ]
-    return "\n".join(lines)
+    return fill_template(
+        "law.h.j2",
+        comment=block_comment(_header_lines(record, law, names), C_HEADER),
+        names=names,
+        law=law,
+        declarations=declarations(law, names),
+        units=UNITS,
+        seen=_SEEN,
+    )
 
 
 def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
@@ -73,15 +76,15 @@ def source_text(record: ExportRecord, law: StepLaw, names: CNames) -> str:
     names : CNames
         Of this spec.
     """
-    lines = [
-        block_comment((*header_lines(record), f"More is in {record.spec.name}.h."), C_SOURCE),
-        f'#include "{record.spec.name}.h"\n\n#include <float.h>\n',
-        REFUSALS,
-        *helpers(law),
-        *definitions(law, names),
-        *logic_definitions(law, names),
-    ]
-    return "\n".join(lines)
+    about = (*header_lines(record), f"More is in {record.spec.name}.h.")
+    return fill_template(
+        "law.c.j2",
+        comment=block_comment(about, C_SOURCE),
+        names=names,
+        law=law,
+        guards=guards(law),
+        definitions=definitions(law, names),
+    )
 
 
 def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator[str]:
@@ -110,7 +113,16 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
             "Reset: what is set to zero when an impedance controller is left stays zero until the "
             "next one is active, so D is 0 in the modes of the others, not the d of the proof."
         )
-    yield from logic_lines(law, names)
+    if law.logic is not None:
+        yield ""
+        yield (
+            f"Mode logic: {names.lower}_logic_step returns the mode that is to be stepped, once a "
+            "sample. Its signals are those of mode_logic in the spec, positive towards the tissue; "
+            "one that is no number is no reason to switch. Thresholds are rounded away from each "
+            "other, times up to whole samples: the time that a mode is held rests on one call a "
+            "sample. A mode that does not exist becomes the first one. The proof does not rest on "
+            "the signals: what it says of switching is among what it takes for granted."
+        )
     if record.proof is not None:
         yield ""
         yield "Taken for granted by the proof:"

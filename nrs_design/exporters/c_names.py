@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
-from nrs_design.controllers.step_logic import SignalBound, StepLogic
+from nrs_design.controllers.step_logic import SignalBound
 from nrs_design.errors import DesignError
 from nrs_design.printable import printable
 
@@ -18,15 +18,9 @@ WIDTH = 100
 
 @dataclass(frozen=True, slots=True)
 class CNames:
-    """What belongs to one law begins with its name.
+    """What belongs to one law begins with its name."""
 
-    Parameters
-    ----------
-    spec : str
-        Name of the spec.
-    """
-
-    spec: str
+    spec: str  # Name of the spec
 
     @property
     def lower(self) -> str:
@@ -61,8 +55,7 @@ class CNames:
         modes = {self.mode(mode): k for k, mode in enumerate(law.modes)}
         coefficients = {name: value for name, (_, value) in self.coefficients(law).items()}
         limits = {self.limit(value): value.limit for value in law.guarded}
-        logic = {} if law.logic is None else self.logic(law.logic, law.modes)
-        return {self.modes: len(law.modes), **modes, **coefficients, **limits, **logic}
+        return {self.modes: len(law.modes), **modes, **coefficients, **limits, **self.logic(law)}
 
     def threshold(self, index: int, bound: SignalBound) -> str:
         """Return the macro of a bound of the switch with that number, counted from one."""
@@ -78,13 +71,22 @@ class CNames:
         """The macro of the mode at first."""
         return f"{self.upper}_LOGIC_START"
 
-    def logic(self, logic: StepLogic, modes: Sequence[str]) -> dict[str, int | Fraction]:
-        """Return the macros of a mode logic with their numbers."""
-        found: dict[str, int | Fraction] = {self.start: logic.start}
-        found |= {self.hold(m): stay for m, stay in zip(modes, logic.stays, strict=True)}
-        for index, switch in enumerate(logic.switches, 1):
-            found |= {self.threshold(index, bound): bound.threshold for bound in switch.bounds}
-        return found
+    def stays(self, law: StepLaw) -> dict[str, int]:
+        """Return the macros of mode and stays of a mode logic with their numbers."""
+        assert law.logic is not None
+        holds = zip(law.modes, law.logic.stays, strict=True)
+        return {self.start: law.logic.start, **{self.hold(mode): stay for mode, stay in holds}}
+
+    def logic(self, law: StepLaw) -> dict[str, int | Fraction]:
+        """Return the macros of a mode logic with their numbers; none without one."""
+        if law.logic is None:
+            return {}
+        thresholds = {
+            self.threshold(index, bound): bound.threshold
+            for index, switch in enumerate(law.logic.switches, 1)
+            for bound in switch.bounds
+        }
+        return {**self.stays(law), **thresholds}
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
         """Return every coefficient of a law that has a macro, by it."""

@@ -29,18 +29,11 @@ Element = tuple[str, tuple[tuple[str, str], ...], str]
 
 @dataclass(frozen=True, slots=True)
 class Archive:
-    """What an archive holds.
+    """What an archive holds."""
 
-    Parameters
-    ----------
-    entries : mapping of str to bytes
-        By path.
-    documents : mapping of str to (list of tuple or str)
-        The elements of each XML document with their attributes, without the release that wrote it;
-        or what is wrong with it.
-    """
-
-    entries: Mapping[str, bytes]
+    entries: Mapping[str, bytes]  # By path
+    # The elements of each XML document with their attributes, without the release that wrote it; or
+    # what is wrong with it.
     documents: Mapping[str, list[Element] | str]
 
 
@@ -57,20 +50,12 @@ def read_archive(path: Path) -> Archive | None:
     with open_regular(path) as file:
         if os.fstat(file.fileno()).st_size > LARGEST_FILE:
             return None
-        name = f"{__name__}:{unpack_archive.__name__}"
-        found = read_confined(name, (), file, path, "export it again")
+        found = read_confined(unpack_archive, (), file, path, "export it again")
     if found is None:
         return None
-    entries, documents = found
-    return Archive(
-        entries,
-        {
-            name: document
-            if isinstance(document, str)
-            else [(tag, tuple((k, v) for k, v in held), text) for tag, held, text in document]
-            for name, document in documents.items()
-        },
-    )
+    archive = Archive(*found)
+    parsed = {name for name in archive.entries if name.endswith(".xml")}
+    return archive if parsed == archive.documents.keys() else None
 
 
 def unpack_archive(

@@ -12,7 +12,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline import Designed, run_certification, run_design, wrong_kind
+from nrs_design.pipeline import Designed, interaction_of, run_certification, run_design
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -20,34 +20,17 @@ from nrs_design.spec import InteractionDesignSpec, LoadedSpec
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """What may be exported, or why nothing may.
+    """What may be exported, or why nothing may."""
 
-    Parameters
-    ----------
-    verdict : {"proved", "refuted", "inconclusive", "rejected"}
-        Of what the files are for. Rejected: the given certificate does not hold, or does not cover
-        the design.
-    record : ExportRecord or None
-        With the verdict proved, or where an unproved one was asked for.
-    certificate : Certificate or None
-        The proof of the record, or what refutes it.
-    reason : str
-        Why it is not proved; empty if it is.
-    design : ControllerDesign or None
-        The gains of the record.
-    spec : InteractionDesignSpec or None
-        What the record is of.
-    designed : Designed or None
-        The plant and the gains of a proved design.
-    """
-
+    # Of what the files are for. Rejected: the given certificate does not hold, or does not cover
+    # the design.
     verdict: str
-    record: ExportRecord | None
-    certificate: Certificate | None
-    reason: str = ""
-    design: ControllerDesign | None = None
-    spec: InteractionDesignSpec | None = None
-    designed: Designed | None = None
+    record: ExportRecord | None  # With the verdict proved, or where an unproved one was asked for
+    certificate: Certificate | None  # The proof of the record, or what refutes it
+    reason: str = ""  # Why it is not proved; empty if it is
+    design: ControllerDesign | None = None  # The gains of the record
+    spec: InteractionDesignSpec | None = None  # What the record is of
+    designed: Designed | None = None  # The plant and the gains of a proved design
 
     def shipped(self) -> ExportRecord:
         """Return the record.
@@ -64,18 +47,10 @@ class Export:
 
 @dataclass(frozen=True, slots=True)
 class Execution:
-    """That a processor will run the export.
+    """That a processor will run the export."""
 
-    Parameters
-    ----------
-    sample_time : Fraction or None
-        In s; None takes that of the spec.
-    unproved : bool
-        Export what is not proved, too, and say so in it.
-    """
-
-    sample_time: Fraction | None = None
-    unproved: bool = False
+    sample_time: Fraction | None = None  # In s; None takes that of the spec
+    unproved: bool = False  # Export what is not proved, too, and say so in it
 
 
 def export_design(
@@ -105,20 +80,15 @@ def export_design(
     CertificateError
         If the given file is not a certificate at all.
     """
-    if not isinstance(loaded.spec, InteractionDesignSpec):
-        raise wrong_kind(
-            loaded,
-            f"a spec of kind {loaded.spec.kind} has no gains to export",
-            "use a spec of kind interaction-design",
-        )
-    _check_one_period(loaded, loaded.spec)
-    period = None if execution is None else _period(loaded, loaded.spec, execution.sample_time)
+    spec = interaction_of(loaded, "has no gains to export")
+    _check_one_period(loaded, spec)
+    period = None if execution is None else _period(loaded, spec, execution.sample_time)
     export = (
         _certified_afresh(loaded, progress)
         if certificate is None
         else _certified_by(loaded, certificate, progress)
     )
-    export = replace(export, spec=loaded.spec)
+    export = replace(export, spec=spec)
     if execution is None or period is None or export.verdict == "rejected":
         return export
     return _executable(loaded, export, period, unproved=execution.unproved)

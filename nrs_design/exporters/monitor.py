@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
-from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.exporters.c_names import CNames, block_comment, harmless, literal
-from nrs_design.exporters.c_step import FINITE
+from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
-from nrs_design.exporters.monitor_source import SOURCE
 from nrs_design.exporters.program import Program, program_of
+from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
 
 KINDS = {
@@ -63,13 +61,16 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
         What it must keep.
     """
     names = program.names
-    guard = f"{names.upper}_MONITOR_H"
-    macros = "".join(_macro(*row) for row in _limits(names, limits))
-    text = _HEADER.replace("@KINDS@", _kinds(names, limits)).replace("@MACROS@", macros)
-    text = text.replace("@SPEED@", "" if limits.speed is None else _SPEED)
-    text = text.replace("@GUARD@", guard).replace("@OWN@", names.lower)
-    text = text.replace("@UP@", names.upper).replace("@SPEC@", names.spec)
-    return block_comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER) + text
+    return fill_template(
+        "monitor.h.j2",
+        comment=block_comment((*program.about, *_words(program, limits)), C_MONITOR_HEADER),
+        spec=names.spec,
+        own=names.lower,
+        up=names.upper,
+        kinds=_told(limits),
+        macros=[*_limits(names, limits)],
+        limits=limits,
+    )
 
 
 def source_text(program: Program, limits: MonitorLimits) -> str:
@@ -83,12 +84,25 @@ def source_text(program: Program, limits: MonitorLimits) -> str:
         What it must keep.
     """
     names = program.names
-    text = SOURCE.replace("@FINITE@", FINITE)
-    text = text.replace("@STAYS@", _tables(program, limits))
-    text = text.replace("@CHECKS@", _checks(limits))
-    text = text.replace("@OWN@", names.lower).replace("@UP@", names.upper)
+    follows = [
+        f"{{{', '.join('true' if may else 'false' for may in row)}}}" for row in limits.follows
+    ]
+    tables = [
+        ("uint32_t", "shortest", "", [f"{least}U" for least, _ in limits.stays]),
+        ("uint32_t", "longest", "", [f"{most}U" for _, most in limits.stays]),
+        ("bool", "follows", f"[{names.modes}]", follows),
+    ]
     about = (*program.about, f"More is in {names.spec}_monitor.h.")
-    return block_comment(about, C_MONITOR) + text.replace("@SPEC@", names.spec)
+    return fill_template(
+        "monitor.c.j2",
+        comment=block_comment(about, C_MONITOR),
+        spec=names.spec,
+        own=names.lower,
+        up=names.upper,
+        modes=program.law.modes,
+        tables=tables,
+        limits=limits,
+    )
 
 
 def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
@@ -121,11 +135,6 @@ def _told(limits: MonitorLimits) -> dict[str, str]:
     return {k: text for k, text in KINDS.items() if k != "SPEED" or limits.speed is not None}
 
 
-def _kinds(names: CNames, limits: MonitorLimits) -> str:
-    rows = enumerate(_told(limits).items())
-    return "".join(f"/* {text}: */\n#define {names.upper}_LEFT_{k} {i}U\n" for i, (k, text) in rows)
-
-
 def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:
     """Yield the macro of each limit, its number, and what stands beside it."""
     up = f"{names.upper}_MONITOR"
@@ -139,97 +148,3 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
         least, most = limits.age
         yield f"{up}_YOUNGEST", least, "samples, from the spec"
         yield f"{up}_OLDEST", most, ""
-
-
-def _macro(name: str, value: int | Fraction, words: str) -> str:
-    if isinstance(value, int):
-        return f"#define {name} {value}U /* {words} */\n" if words else f"#define {name} {value}U\n"
-    return f"#define {name} {literal(value)} /* {exact_decimal(value)} {words} */\n"
-
-
-def _tables(program: Program, limits: MonitorLimits) -> str:
-    """Write what each mode has."""
-    modes, count = program.law.modes, f"{program.names.upper}_MODES"
-    allowed = [", ".join("true" if may else "false" for may in row) for row in limits.follows]
-    rows = {
-        ("uint32_t", "shortest", ""): [f"{n}U" for n, _ in limits.stays],
-        ("uint32_t", "longest", ""): [f"{n}U" for _, n in limits.stays],
-        ("bool", "follows", f"[{count}]"): [f"{{{row}}}" for row in allowed],
-    }
-    return "".join(_table(head, each, modes, count) for head, each in rows.items())
-
-
-def _table(head: tuple[str, str, str], rows: list[str], modes: tuple[str, ...], count: str) -> str:
-    type_, name, shape = head
-    lines = "".join(
-        f"        {row}, /* {harmless(mode)} */\n" for row, mode in zip(rows, modes, strict=True)
-    )
-    return f"    static const {type_} {name}[{count}]{shape} = {{\n{lines}    }};\n"
-
-
-def _checks(limits: MonitorLimits) -> str:
-    """Write the checks that the spec has a limit for."""
-    text = ""
-    if limits.age is not None:
-        least, _ = limits.age
-        young = "(in->age < @UP@_MONITOR_YOUNGEST) || " if least else ""
-        text += _check(f"{young}(in->age > @UP@_MONITOR_OLDEST)", "DELAY")
-    else:
-        text += "    (void)in->age;\n"
-    if limits.command is not None:
-        below = "(in->command > -@UP@_MONITOR_COMMAND) && (in->command < @UP@_MONITOR_COMMAND)"
-        text += _check(f"!({below})", "SATURATION")
-    if limits.speed is not None:
-        text += _check("!(size_of(in->speed) < @UP@_MONITOR_SPEED)", "SPEED")
-    return text
-
-
-def _check(condition: str, kind: str) -> str:
-    return f"    note(m, {condition}, @UP@_LEFT_{kind});\n"
-
-
-_SPEED = "    float speed; /* rad/s: root of the sum of squares of all joint speeds */\n"
-_HEADER = """\
-
-#ifndef @GUARD@
-#define @GUARD@
-
-#include "@SPEC@.h"
-
-#include <stdbool.h>
-#include <stdint.h>
-
-@KINDS@
-/* Limits. */
-@MACROS@
-/* What the loop measured and commanded in a sample. */
-typedef struct {
-    uint32_t mode;
-    float step; /* s since the sample before; in the first one, the sample time */
-    uint32_t age; /* samples: how old the torque is */
-    float angle; /* rad */
-    float torque; /* N*m */
-    float command; /* of the motor */
-@SPEED@} @OWN@_monitor_input_t;
-
-/* What it remembers. */
-typedef struct {
-    float jitter;
-    uint32_t left;
-    uint32_t sample;
-    uint32_t mode;
-    uint32_t stay;
-    bool begun;
-    bool switched;
-} @OWN@_monitor_t;
-
-/* Begin anew; steps of time may be off by so many s. */
-void @OWN@_monitor_init(@OWN@_monitor_t *m, float jitter);
-
-/* Return what was left first; `sample` counts the samples before it. */
-uint32_t @OWN@_monitor_step(
-    const @OWN@_monitor_input_t *in,
-    @OWN@_monitor_t *m);
-
-#endif
-"""

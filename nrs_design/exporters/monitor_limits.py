@@ -17,36 +17,17 @@ FOREVER = 2**32 - 1
 
 @dataclass(frozen=True, slots=True)
 class MonitorLimits:
-    """Limits of a loop.
+    """Limits of a loop."""
 
-    Parameters
-    ----------
-    period : Fraction
-        Sample time in s.
-    torque : Fraction
-        Largest torque in N m.
-    command : Fraction or None
-        Where the command saturates; None where the spec does not say.
-    speed : Fraction or None
-        Below which the joint speeds of all axes stay together, in rad/s; None without one.
-    age : (int, int) or None
-        Smallest and largest age of the force sample, in samples.
-    stays : tuple of (int, int)
-        Shortest and longest time in each mode, in samples.
-    follows : tuple of tuple of bool
-        For each mode, which may follow it.
-    left_out : tuple of str
-        What is not monitored, and why.
-    """
-
-    period: Fraction
-    torque: Fraction
-    command: Fraction | None
+    period: Fraction  # Sample time in s
+    torque: Fraction  # Largest torque in N m
+    command: Fraction | None  # Where the command saturates; None where the spec does not say
+    # Below which the joint speeds of all axes stay together, in rad/s; None without one.
     speed: Fraction | None
-    age: tuple[int, int] | None
-    stays: tuple[tuple[int, int], ...]
-    follows: tuple[tuple[bool, ...], ...]
-    left_out: tuple[str, ...]
+    age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
+    stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
+    follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
+    left_out: tuple[str, ...]  # What is not monitored, and why
 
 
 def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:

@@ -15,21 +15,11 @@ from nrs_design.exporters.record import ExportRecord
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A law that a processor runs.
+    """A law that a processor runs."""
 
-    Parameters
-    ----------
-    record : ExportRecord
-        What the law is, and what is proved of it.
-    law : StepLaw
-        Its operations.
-    names : CNames
-        Of its spec.
-    """
-
-    record: ExportRecord
-    law: StepLaw
-    names: CNames
+    record: ExportRecord  # What the law is, and what is proved of it
+    law: StepLaw  # Its operations
+    names: CNames  # Of its spec
 
     @property
     def about(self) -> tuple[str, ...]:

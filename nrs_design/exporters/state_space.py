@@ -22,21 +22,13 @@ Rows = Sequence[Sequence[Fraction]]
 
 @dataclass(frozen=True, slots=True)
 class StateSpaces:
-    """The parts of one robot axis in continuous time, at nominal values, in SI units.
+    """The parts of one robot axis in continuous time, at nominal values, in SI units."""
 
-    Parameters
-    ----------
-    actuator : control.StateSpace
-        From the command, in rpm or V as the spec says, to the position in rad.
-    motion_loop : control.StateSpace
-        From the commanded velocity in rad/s to the velocity, and likewise for positions.
-    controllers : mapping of str to control.StateSpace
-        By name: from the force of the environment in N m, as the law gets it, to what the law adds
-        to the command of the motion loop, in rad/s or, for laws that command a position, in rad.
-    """
-
-    actuator: Any
+    actuator: Any  # From the command, in rpm or V as the spec says, to the position in rad
+    # From the commanded velocity in rad/s to the velocity, and likewise for positions.
     motion_loop: Any
+    # By name: from the force of the environment in N m, as the law gets it, to what the law adds to
+    # the command of the motion loop, in rad/s or, for laws that command a position, in rad.
     controllers: Mapping[str, Any]
 
 

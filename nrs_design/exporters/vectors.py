@@ -22,6 +22,7 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.logic_cases import logic_document
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.self_test import program_macro, self_test
+from nrs_design.exporters.template import fill_template
 from nrs_design.output import VECTOR_TABLE
 
 COUNT, SEED = 1000, 2026
@@ -32,18 +33,11 @@ SPECIAL = (0, 1, 0x007FFFFF, 0x00800000, 0x7F7FFFFF, 0x3F800000, 0x7F800000, 0x7
 
 @dataclass(frozen=True, slots=True)
 class Vectors:
-    """Cases as bits.
+    """Cases as bits."""
 
-    Parameters
-    ----------
-    columns : tuple of str
-        Mode, inputs, states before, outputs, whether the step is valid, states after.
-    rows : ndarray of uint32
-        Shape (n, columns).
-    """
-
+    # Mode, inputs, states before, outputs, whether the step is valid, states after.
     columns: tuple[str, ...]
-    rows: NDArray[np.uint32]
+    rows: NDArray[np.uint32]  # Shape (n, columns)
 
 
 def render(export: Export) -> dict[str, bytes]:
@@ -195,70 +189,7 @@ def pytest_text(names: CNames, about: tuple[str, ...]) -> str:
     about : tuple of str
         What every exported file says of itself.
     """
-    comments = "\n".join(f"# {harmless(line)}" for line in about)
-    text = _PYTEST.replace("SPEC_NAME", names.spec).replace("TEST_PROGRAM", program_macro(names))
-    return text.replace("# ABOUT", comments)
-
-
-_PYTEST = '''\
-"""nrs-design test of conformance vectors: pytest SPEC_NAME_test.py
-
-The C beside this file is compiled with cc and tested where it is there. An implementation in Python
-is tested where NRS_STEP=module:function names one: it is called as
-function(mode, inputs, states) with dictionaries of floats, and returns (outputs, valid, states).
-"""
-# ABOUT
-
-import importlib
-import json
-import os
-import shutil
-import struct
-import subprocess
-from pathlib import Path
-
-import pytest
-
-HERE = Path(__file__).resolve().parent
-DOCUMENT = json.loads((HERE / "SPEC_NAME.vectors.json").read_text(encoding="utf-8"))
-
-
-def number(bits):
-    return struct.unpack(">f", bytes.fromhex(bits))[0]
-
-
-def same(value, bits):
-    """One that is not a number is as good as another: Python does not keep its bits."""
-    wanted = number(bits)
-    try:
-        packed = struct.pack(">f", value)
-    except OverflowError:
-        return False
-    return packed.hex() == bits or (value != value and wanted != wanted)
-
-
-@pytest.mark.skipif("NRS_STEP" not in os.environ, reason="NRS_STEP names no implementation")
-def test_an_implementation_in_python():
-    module, _, name = os.environ["NRS_STEP"].partition(":")
-    step = getattr(importlib.import_module(module), name)
-    for case in DOCUMENT["cases"]:
-        row = dict(zip(DOCUMENT["columns"], case))
-        before = {k[7:]: number(v) for k, v in row.items() if k.startswith("before.")}
-        after = {k[6:]: v for k, v in row.items() if k.startswith("after.")}
-        inputs = {k: number(row[k]) for k in DOCUMENT["inputs"]}
-        outputs, valid, states = step(row["mode"], inputs, before)
-        assert bool(valid) == bool(row["valid"]), row
-        assert all(same(outputs[k], row[k]) for k in DOCUMENT["outputs"]), row
-        assert all(same(states[k], bits) for k, bits in after.items()), row
-
-
-@pytest.mark.skipif(not (HERE / "SPEC_NAME.c").exists(), reason="there is no SPEC_NAME.c")
-@pytest.mark.skipif(shutil.which("cc") is None, reason="there is no compiler cc")
-@pytest.mark.parametrize("level", ["-O0", "-O2", "-O3"])
-def test_the_exported_c(tmp_path, level):
-    program = tmp_path / "test"
-    files = [str(HERE / "SPEC_NAME.c"), str(HERE / "SPEC_NAME_test.c")]
-    flags = ["-std=c99", "-ffp-contract=off", "-DTEST_PROGRAM", level, "-I", str(HERE)]
-    subprocess.run(["cc", *flags, *files, "-o", str(program)], check=True)
-    subprocess.run([str(program)], check=True)
-'''
+    about_lines = "\n".join(f"# {harmless(line)}" for line in about)
+    return fill_template(
+        "test.py.j2", spec=names.spec, program=program_macro(names), about=about_lines
+    )

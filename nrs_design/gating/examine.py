@@ -36,15 +36,11 @@ from nrs_design.gating.rules import (
 from nrs_design.proof.bounds import upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import rate_text
-from nrs_design.proof.evidence.unstable_mode import (
-    affordable,
-    decides,
-    is_stable,
-    worst_eigenvalue,
-)
+from nrs_design.proof.evidence.growing_sequence import decides
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.spectrum import affordable, is_stable, worst_eigenvalue
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.peaks import PEAKS, UNITS
+from nrs_design.simulation.peak_metrics import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
 from nrs_design.spec.document import Position
 from nrs_design.wings import load_wing
@@ -60,18 +56,10 @@ _NO_NUMBERS = frozenset({"settles", "largest"})
 
 @dataclass(frozen=True)
 class Examiner:
-    """Makes obligations about one spec, each with its place.
+    """Makes obligations about one spec, each with its place."""
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec.
-    places : Places
-        Its lines and columns.
-    """
-
-    loaded: LoadedSpec
-    places: Places
+    loaded: LoadedSpec  # The spec
+    places: Places  # Its lines and columns
 
     @classmethod
     def of(cls, loaded: LoadedSpec) -> Examiner:

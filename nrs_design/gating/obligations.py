@@ -29,29 +29,14 @@ class Status(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Obligation:
-    """One thing that must hold for one spec.
+    """One thing that must hold for one spec."""
 
-    Parameters
-    ----------
-    rule : Rule
-        What must hold.
-    path : Path
-        The spec, as it was named.
-    subject : str
-        What it must hold for: a mode, a controller, the system, a file.
-    status : Status
-        How it ended.
-    message : str
-        What was found; one line.
-    line, column : int or None
-        Place in the spec, counted from 1, as far as it is known.
-    """
-
-    rule: Rule
-    path: Path
-    subject: str
-    status: Status
-    message: str
+    rule: Rule  # What must hold
+    path: Path  # The spec, as it was named
+    subject: str  # What it must hold for: a mode, a controller, the system, a file
+    status: Status  # How it ended
+    message: str  # What was found; one line
+    # line, column: place in the spec, counted from 1, as far as it is known.
     line: int | None = None
     column: int | None = None
 
@@ -70,20 +55,11 @@ class Obligation:
 
 @dataclass(frozen=True, slots=True)
 class Caution:
-    """Something doubtful that does not keep the gate from passing.
+    """Something doubtful that does not keep the gate from passing."""
 
-    Parameters
-    ----------
-    path : Path
-        The spec, as it was named.
-    message : str
-        What is doubtful; one line.
-    line, column : int
-        Place in the spec, counted from 1.
-    """
-
-    path: Path
-    message: str
+    path: Path  # The spec, as it was named
+    message: str  # What is doubtful; one line
+    # line, column: place in the spec, counted from 1.
     line: int
     column: int
 
@@ -100,101 +76,53 @@ _SEVERITY = {
 
 @dataclass(frozen=True, slots=True)
 class SpecOutcome:
-    """Everything that was found about one spec.
+    """Everything that was found about one spec."""
 
-    Parameters
-    ----------
-    path : Path
-        The spec, as it was named.
-    obligations : tuple of Obligation
-        At least one.
-    sha256 : str or None
-        Hash of the spec, if it could be read.
-    verdict, common_quadratic : str or None
-        Of the certification; None if there was none.
-    refuted_in : str or None
-        In which contact alone it is refuted, where that leaves its loss open.
-    rate : str or None
-        Certified rate with six digits, rounded to its safe side.
-    rate_name : str or None
-        ``alpha`` (1/s, continuous time) or ``rho`` (per step, discrete time).
-    modes : int or None
-        Number of modes.
-    certificate : Path or None
-        Its file.
-    certificate_id : str or None
-        Its id.
-    gains : mapping
-        What the obligations are about: designed gains (float32, as exact decimals) by controller;
-        empty for given matrices.
-    units : mapping
-        Of these gains, likewise.
-    certifiable : bool
-        False for a spec that is valid and makes no claim about switching, such as a robot: there
-        is no verdict, and nothing to lock.
-    cautions : tuple of Caution
-        What is doubtful, and breaks no obligation.
-    bounds : sequence of mapping
-        As `nrs_design.certificates.bounds.bounds_summary` gives them.
-    recorded : mapping
-        As `nrs_design.gating.recorded.hash_recorded` gives it.
-    """
-
-    path: Path
-    obligations: tuple[Obligation, ...]
-    sha256: str | None = None
+    path: Path  # The spec, as it was named
+    obligations: tuple[Obligation, ...]  # At least one
+    sha256: str | None = None  # Hash of the spec, if it could be read
+    # verdict, common_quadratic: of the certification; None if there was none.
     verdict: str | None = None
     common_quadratic: str | None = None
+    # In which contact alone it is refuted, where that leaves its loss open.
     refuted_in: str | None = None
-    rate: str | None = None
+    rate: str | None = None  # Certified rate with six digits, rounded to its safe side
+    # ``alpha`` (1/s, continuous time) or ``rho`` (per step, discrete time).
     rate_name: str | None = None
-    modes: int | None = None
-    certificate: Path | None = None
-    certificate_id: str | None = None
+    modes: int | None = None  # Number of modes
+    certificate: Path | None = None  # Its file
+    certificate_id: str | None = None  # Its id
+    # What the obligations are about: designed gains (float32, as exact decimals) by controller;
+    # empty for given matrices.
     gains: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    # Of these gains, likewise.
     units: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    # False for a spec that is valid and makes no claim about switching, such as a robot: there is
+    # no verdict, and nothing to lock.
     certifiable: bool = True
-    cautions: tuple[Caution, ...] = ()
+    cautions: tuple[Caution, ...] = ()  # What is doubtful, and breaks no obligation
+    # As `nrs_design.certificates.bounds.bounds_summary` gives them.
     bounds: Sequence[Mapping[str, Any]] = ()
+    # As `nrs_design.gating.recorded.hash_recorded` gives it.
     recorded: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class BaseChanges:
-    """What differs from the specs of a base, beside what is weaker, which breaks an obligation.
+    """What differs from the specs of a base, beside what is weaker, which breaks an obligation."""
 
-    Parameters
-    ----------
-    base : Path
-        Folder of the base.
-    weaker : int
-        Number of obligations that it breaks.
-    others : tuple of Caution
-        What is stronger, or neither; versions.
-    """
-
-    base: Path
-    weaker: int
-    others: tuple[Caution, ...]
+    base: Path  # Folder of the base
+    weaker: int  # Number of obligations that it breaks
+    others: tuple[Caution, ...]  # What is stronger, or neither; versions
 
 
 @dataclass(frozen=True, slots=True)
 class GateOutcome:
-    """What one run of the gate found.
+    """What one run of the gate found."""
 
-    Parameters
-    ----------
-    specs : tuple of SpecOutcome
-        In the order of their paths.
-    notes : tuple of str
-        What a person should know beside it.
-    changes : BaseChanges or None
-        What differs from a base; None if it was not asked for.
-    """
-
-    specs: tuple[SpecOutcome, ...]
-    notes: tuple[str, ...] = ()
-    changes: BaseChanges | None = None
+    specs: tuple[SpecOutcome, ...]  # In the order of their paths
+    notes: tuple[str, ...] = ()  # What a person should know beside it
+    changes: BaseChanges | None = None  # What differs from a base; None if it was not asked for
 
     @property
     def broken(self) -> tuple[Obligation, ...]:

@@ -13,24 +13,17 @@ from types import MappingProxyType
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One kind of finding.
+    """One kind of finding."""
 
-    Parameters
-    ----------
-    id : str
-        Such as ``NRS102``.
-    title : str
-        What should be the case, in a few words.
-    explanation : str
-        What the rule means and how it is decided.
-    remedy : str
-        What to do if it is broken.
-    """
+    id: str  # Such as ``NRS102``
+    title: str  # What should be the case, in a few words
+    explanation: str  # What the rule means and how it is decided
+    remedy: str  # What to do if it is broken
 
-    id: str
-    title: str
-    explanation: str
-    remedy: str
+    @property
+    def heading(self) -> str:
+        """Its id and title."""
+        return f"{self.id}: {self.title}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +33,11 @@ class Word:
     word: str
     explanation: str
     remedy: str
+
+    @property
+    def heading(self) -> str:
+        """The word itself."""
+        return self.word
 
 
 COMMAND = Rule(

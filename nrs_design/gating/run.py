@@ -50,24 +50,14 @@ BUDGET = 1800.0
 
 @dataclass(frozen=True, slots=True)
 class Files:
-    """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``.
+    """Where the files of a spec go: ``NAME.cert.json`` and, if asked for, ``NAME.html``."""
 
-    Parameters
-    ----------
-    folder : Path
-        For all of them.
-    html : bool
-        Whether reports are asked for.
-    locked : mapping of Path to Path
-        Which spec a certificate file is locked for, as real paths.
-    bounds : mapping of str to LockedGoal
-        What a gate of this release locked of the bounds of a robot that it computed again, by the
-        hash of the spec, which holds theirs.
-    """
-
-    folder: Path
-    html: bool = True
+    folder: Path  # For all of them
+    html: bool = True  # Whether reports are asked for
+    # Which spec a certificate file is locked for, as real paths.
     locked: Mapping[Path, Path] = field(default_factory=dict)
+    # What a gate of this release locked of the bounds of a robot that it computed again, by the
+    # hash of the spec, which holds theirs.
     bounds: Mapping[str, LockedGoal] = field(default_factory=dict)
 
     def certificate(self, name: str) -> Path:
@@ -95,15 +85,10 @@ class Files:
 
 @dataclass(frozen=True, slots=True)
 class Robots:
-    """Whose bounds this run has computed again: once for all specs that name a robot.
+    """Whose bounds this run has computed again: once for all specs that name a robot."""
 
-    Parameters
-    ----------
-    checked : dict
-        The file of the bounds and what is wrong with them, or the error that kept them undecided,
-        by the real path of the robot.
-    """
-
+    # The file of the bounds and what is wrong with them, or the error that kept them undecided, by
+    # the real path of the robot.
     checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
 
     def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:

@@ -11,6 +11,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, BinaryIO, NoReturn
 
+from typing_extensions import TypeAliasType
+
 from nrs_design.confined import read_confined
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular, read_json_text, unique_keys
@@ -25,27 +27,21 @@ _NUMBERED = re.compile("A[0-9]{1,6}")
 _OPTIONAL = ("rate", "time")
 _CONTENT = "it holds `P`, and the modes as `A` (or A1, A2, ...), and may hold `rate` and `time`"
 
+# What a file holds, by name: nested lists of numbers and texts.
+Plain = TypeAliasType(
+    "Plain", "bool | int | float | complex | str | bytes | list[Plain] | dict[str, Plain] | None"
+)
+Content = dict[str, Plain]
+
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """A quadratic function that somebody proposes for a family of modes.
+    """A quadratic function that somebody proposes for a family of modes."""
 
-    Parameters
-    ----------
-    modes : mapping
-        Name to matrix.
-    P : object
-        The matrix of ``x' P x``.
-    rate : object
-        At which rate it is said to decrease; None if nothing is said.
-    time : str or None
-        ``continuous``, ``discrete``, or None if nothing is said.
-    """
-
-    modes: Mapping[str, object]
-    P: object
-    rate: object
-    time: str | None
+    modes: Mapping[str, object]  # Name to matrix
+    P: object  # The matrix of ``x' P x``
+    rate: object  # At which rate it is said to decrease; None if nothing is said
+    time: str | None  # ``continuous``, ``discrete``, or None if nothing is said
 
 
 def read_proposal(path: Path) -> Proposal:
@@ -83,22 +79,19 @@ def read_proposal(path: Path) -> Proposal:
         ) from error
 
 
-def _read(file: BinaryIO, kind: str, path: Path) -> dict[str, Any]:
+def _read(file: BinaryIO, kind: str, path: Path) -> Mapping[str, Any]:
     if os.fstat(file.fileno()).st_size > MAX_BYTES:
         raise DataError(f"is larger than {MAX_BYTES} bytes", path=path, remedy="name a smaller one")
     if kind in _FOREIGN:
         reader, libraries = _FOREIGN[kind]
-        found: dict[str, Any] = read_confined(
-            f"{__name__}:{reader.__name__}", libraries, file, path, _CONTENT
-        )
-        return found
+        return read_confined(reader, libraries, file, path, _CONTENT)
     try:
         return _read_json(file.read(MAX_BYTES))
     except (ValueError, RecursionError) as error:
         raise DataError(f"cannot be read ({error})", path=path, remedy=_CONTENT) from error
 
 
-def _proposal(content: dict[str, Any], path: Path) -> Proposal:
+def _proposal(content: Mapping[str, Any], path: Path) -> Proposal:
     if "P" not in content:
         raise DataError("holds no `P`", path=path, remedy=_CONTENT)
     modes = _modes(content, path)
@@ -115,7 +108,7 @@ def _scalar(value: object) -> object:
     return value
 
 
-def _modes(content: dict[str, Any], path: Path) -> dict[str, object]:
+def _modes(content: Mapping[str, Any], path: Path) -> dict[str, object]:
     numbered = sorted(filter(_NUMBERED.fullmatch, content), key=lambda key: int(key[1:]))
     if "A" in content and numbered:
         raise DataError("holds both `A` and numbered modes", path=path, remedy="keep one of them")
@@ -153,7 +146,7 @@ def _read_json(raw: bytes) -> dict[str, Any]:
     return content
 
 
-def unpack_npz(file: BinaryIO, path: Path) -> dict[str, Any]:
+def unpack_npz(file: BinaryIO, path: Path) -> Content:
     """Return the arrays of a NumPy archive as lists; in a process of its own."""
     import numpy as np
 
@@ -166,7 +159,7 @@ def unpack_npz(file: BinaryIO, path: Path) -> dict[str, Any]:
     return {key: array.tolist() for key, array in arrays.items()}
 
 
-def unpack_mat(file: BinaryIO, path: Path) -> dict[str, Any]:
+def unpack_mat(file: BinaryIO, path: Path) -> Content:
     """Return the variables of a MATLAB file as lists; in a process of its own."""
     from scipy.io import loadmat
 
@@ -209,7 +202,7 @@ def _plain(value: Any) -> Any:
 
 
 # By ending: who reads such a file, and the libraries that he loads.
-_FOREIGN: Mapping[str, tuple[Callable[[BinaryIO, Path], dict[str, Any]], tuple[str, ...]]] = (
+_FOREIGN: Mapping[str, tuple[Callable[[BinaryIO, Path], Content], tuple[str, ...]]] = (
     MappingProxyType({".npz": (unpack_npz, ("numpy",)), ".mat": (unpack_mat, ("scipy.io",))})
 )
 

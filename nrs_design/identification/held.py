@@ -23,21 +23,11 @@ _APART = 1e-4
 
 @dataclass(frozen=True)
 class Held:
-    """A command as it acts: constant between the times of a grid that holds all samples.
+    """A command as it acts: constant between the times of a grid that holds all samples."""
 
-    Parameters
-    ----------
-    grid : ndarray, shape (m,)
-        Times in s.
-    command : ndarray, shape (m - 1,)
-        From each time to the next.
-    samples : ndarray of int, shape (n,)
-        Where the samples are in the grid.
-    """
-
-    grid: Array
-    command: Array
-    samples: NDArray[np.int64]
+    grid: Array  # Shape (m,). Times in s.
+    command: Array  # Shape (m - 1,). From each time to the next.
+    samples: NDArray[np.int64]  # Shape (n,). Where the samples are in the grid.
 
     @classmethod
     def of(cls, time: Array, command: Array, delay: float) -> Self:
@@ -68,18 +58,10 @@ class Held:
 
 @dataclass(frozen=True, slots=True)
 class Lags:
-    """A linear model of unit gain as a sum of first-order lags.
+    """A linear model of unit gain as a sum of first-order lags."""
 
-    Parameters
-    ----------
-    times : tuple of complex
-        Time constants in s.
-    shares : tuple of complex
-        They add up to 1.
-    """
-
-    times: tuple[complex, ...]
-    shares: tuple[complex, ...]
+    times: tuple[complex, ...]  # Time constants in s
+    shares: tuple[complex, ...]  # They add up to 1
 
     @classmethod
     def first_order(cls, time_constant: float) -> Self:

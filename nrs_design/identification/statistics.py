@@ -26,17 +26,10 @@ _SINGULAR = 1e-14
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A parameter with its 95 % confidence interval.
+    """A parameter with its 95 % confidence interval."""
 
-    Parameters
-    ----------
-    value : float
-        The estimate.
-    low, high : float
-        Ends of the interval; 0 and infinity where the data say nothing.
-    """
-
-    value: float
+    value: float  # The estimate
+    # low, high: ends of the interval; 0 and infinity where the data say nothing.
     low: float
     high: float
 
@@ -82,21 +75,11 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Uncertainty:
-    """How well a fit knows its parameters.
+    """How well a fit knows its parameters."""
 
-    Parameters
-    ----------
-    covariance : ndarray, shape (p, p)
-        Of the logarithms of the parameters.
-    degrees : int
-        Degrees of freedom of the intervals.
-    whiteness : float
-        p-value of the test that the residuals are white.
-    """
-
-    covariance: Array
-    degrees: int
-    whiteness: float
+    covariance: Array  # Shape (p, p). Of the logarithms of the parameters.
+    degrees: int  # Degrees of freedom of the intervals
+    whiteness: float  # p-value of the test that the residuals are white
 
     @property
     def errors(self) -> Array:

@@ -33,35 +33,19 @@ _OUTLIER = 5.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ToolIdentification:
-    """What poses at rest say about a tool, with 95 % intervals.
+    """What poses at rest say about a tool, with 95 % intervals."""
 
-    Parameters
-    ----------
-    records : tuple of PoseRecord
-        The data.
-    gravity : float
-        In m/s^2.
-    mass : Estimate
-        In kg.
-    center : tuple of Estimate
-        Center of mass from the origin of the sensor, in m: x, y, z.
-    force_bias, torque_bias : tuple of Estimate
-        What the sensor shows without the tool, in N and N m: x, y, z.
-    force_errors, torque_errors : ndarray, shape (n, 3)
-        Measured less fitted, in N and N m.
-    doubts : tuple of str
-        What speaks against it.
-    """
-
-    records: tuple[PoseRecord, ...]
-    gravity: float
-    mass: Estimate
-    center: tuple[Estimate, ...]
+    records: tuple[PoseRecord, ...]  # The data
+    gravity: float  # In m/s^2
+    mass: Estimate  # In kg
+    center: tuple[Estimate, ...]  # Center of mass from the origin of the sensor, in m: x, y, z
+    # force_bias, torque_bias: what the sensor shows without the tool, in N and N m: x, y, z.
     force_bias: tuple[Estimate, ...]
     torque_bias: tuple[Estimate, ...]
+    # force_errors, torque_errors: shape (n, 3). Measured less fitted, in N and N m.
     force_errors: Array
     torque_errors: Array
-    doubts: tuple[str, ...]
+    doubts: tuple[str, ...]  # What speaks against it
 
     @property
     def rmse(self) -> tuple[float, float]:

@@ -12,41 +12,22 @@ from nrs_design.spec.interval import Interval
 
 @dataclass(frozen=True, slots=True)
 class Actuator:
-    """Identified actuator ``theta_m(s)/delta(s) = gain / (s (time_constant s + 1))``.
+    """Identified actuator ``theta_m(s)/delta(s) = gain / (s (time_constant s + 1))``."""
 
-    Parameters
-    ----------
-    gain : Fraction
-        In (rad/s)/rpm: gearhead speed over the speed command of the motor driver; or per
-        whatever it takes instead.
-    time_constant : Fraction
-        In s.
-    command : str
-        Unit of the commands that it takes.
-    """
-
+    # In (rad/s)/rpm: gearhead speed over the speed command of the motor driver; or per whatever it
+    # takes instead.
     gain: Fraction
-    time_constant: Fraction
-    command: str = "rpm"
+    time_constant: Fraction  # In s
+    command: str = "rpm"  # Unit of the commands that it takes
 
 
 @dataclass(frozen=True, slots=True)
 class ActuatorRanges:
-    """Where the actuator may be.
+    """Where the actuator may be."""
 
-    Parameters
-    ----------
-    gain : Interval
-        In rad/s per unit of the command.
-    time_constant : Interval
-        In s.
-    command : str
-        That unit.
-    """
-
-    gain: Interval
-    time_constant: Interval
-    command: str
+    gain: Interval  # In rad/s per unit of the command
+    time_constant: Interval  # In s
+    command: str  # That unit
 
     @classmethod
     def point(cls, actuator: Actuator) -> ActuatorRanges:
@@ -85,24 +66,12 @@ class ActuatorRanges:
 
 @dataclass(frozen=True, slots=True)
 class MotorConstants:
-    """Data-sheet constants of motor and gearhead (thesis table 4.1).
+    """Data-sheet constants of motor and gearhead (thesis table 4.1)."""
 
-    Parameters
-    ----------
-    torque_constant : float
-        K_T in N m/A.
-    back_emf_constant : float
-        K_B in V s/rad.
-    inertia : float
-        Motor and gearhead, at the motor shaft, in kg m^2.
-    reduction : float
-        Gearhead ratio N.
-    """
-
-    torque_constant: float
-    back_emf_constant: float
-    inertia: float
-    reduction: float
+    torque_constant: float  # K_T in N m/A
+    back_emf_constant: float  # K_B in V s/rad
+    inertia: float  # Motor and gearhead, at the motor shaft, in kg m^2
+    reduction: float  # Gearhead ratio N
 
 
 def voltage_gain(actuator: Actuator, motor: MotorConstants) -> float:

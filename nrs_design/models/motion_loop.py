@@ -12,19 +12,12 @@ from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 
 @dataclass(frozen=True, slots=True)
 class MotionLoop:
-    """An exact strictly proper transfer function G(s).
+    """An exact strictly proper transfer function G(s)."""
 
-    Parameters
-    ----------
-    numerator, denominator : tuple of Fraction
-        Coefficients, highest power first.
-    given : bool
-        Stated by the spec, instead of following from actuator and motion gains.
-    """
-
+    # numerator, denominator: coefficients, highest power first.
     numerator: tuple[Fraction, ...]
     denominator: tuple[Fraction, ...]
-    given: bool = False
+    given: bool = False  # Stated by the spec, instead of following from actuator and motion gains
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,24 +91,14 @@ class JointMotionLoop:
     commanded velocity and F the torque of the environment. Error and velocity are continuous
     whatever gain and time constant do, which the canonical form is not true of; and the rates are
     affine in Km, 1/tau and 1/J, each for itself.
-
-    Parameters
-    ----------
-    Kp, Kd : Fraction
-        PD gains in rpm/rad and rpm s/rad.
-    Km : Fraction
-        Gain of the actuator in (rad/s)/rpm.
-    tau : Fraction
-        Its time constant in s.
-    J : Fraction or None
-        Inertia at the joint in kg m^2 that the environment works against; None leaves its torque
-        out.
     """
 
+    # Kp, Kd: PD gains in rpm/rad and rpm s/rad.
     Kp: Fraction
     Kd: Fraction
-    Km: Fraction
-    tau: Fraction
+    Km: Fraction  # Gain of the actuator in (rad/s)/rpm
+    tau: Fraction  # Its time constant in s
+    # Inertia at the joint in kg m^2 that the environment works against; None leaves its torque out.
     J: Fraction | None
 
     @property

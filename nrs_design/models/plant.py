@@ -16,27 +16,16 @@ from nrs_design.spec.interval import Interval
 
 @dataclass(frozen=True, slots=True)
 class Plant:
-    """Actuator and environments of one axis.
+    """Actuator and environments of one axis."""
 
-    Parameters
-    ----------
-    actuator : Actuator
-        Identified model.
-    environments : tuple of Environment
-        In the order of the spec, and after them those that are several of them, touched at once.
-    given_loop : MotionLoop or None
-        The closed motion loop, if the spec states it.
-    actuator_ranges : ActuatorRanges or None
-        Where the actuator may be, if that is more than a point.
-    load_inertia : Fraction or None
-        Inertia at the joint in kg m^2 against which the torque of an environment works; None where
-        that torque is left out.
-    """
-
-    actuator: Actuator
+    actuator: Actuator  # Identified model
+    # In the order of the spec, and after them those that are several of them, touched at once.
     environments: tuple[Environment, ...]
-    given_loop: MotionLoop | None = None
+    given_loop: MotionLoop | None = None  # The closed motion loop, if the spec states it
+    # Where the actuator may be, if that is more than a point.
     actuator_ranges: ActuatorRanges | None = None
+    # Inertia at the joint in kg m^2 against which the torque of an environment works; None where
+    # that torque is left out.
     load_inertia: Fraction | None = None
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:

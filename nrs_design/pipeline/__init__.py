@@ -17,9 +17,11 @@ from nrs_design.pipeline.certification import (
 )
 from nrs_design.pipeline.design import (
     Designed,
+    interaction_of,
     placed,
     run_analysis,
     run_design,
+    run_interaction,
     wrong_kind,
 )
 
@@ -29,11 +31,13 @@ __all__ = [
     "Result",
     "assemble_spec",
     "find_relief",
+    "interaction_of",
     "placed",
     "run_analysis",
     "run_certification",
     "run_comparison",
     "run_design",
+    "run_interaction",
     "run_recorded",
     "run_verification",
     "search_limits",

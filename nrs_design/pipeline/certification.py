@@ -29,27 +29,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """One spec, all the way through.
+    """One spec, all the way through."""
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec and where it came from.
-    designed : Designed or None
-        The plant and the gains that ship; None for given matrices.
-    coordinates : str or None
-        Of the assembled modes; None for given matrices.
-    certification : Certification
-        The verdict with every attempt.
-    certificate : Certificate or None
-        What may be written to a file; None if nothing was shown.
-    """
-
-    loaded: LoadedSpec
-    designed: Designed | None
-    coordinates: str | None
-    certification: Certification
-    certificate: Certificate | None
+    loaded: LoadedSpec  # The spec and where it came from
+    designed: Designed | None  # The plant and the gains that ship; None for given matrices
+    coordinates: str | None  # Of the assembled modes; None for given matrices
+    certification: Certification  # The verdict with every attempt
+    certificate: Certificate | None  # What may be written to a file; None if nothing was shown
 
     @property
     def design(self) -> ControllerDesign | None:
@@ -59,21 +45,11 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """What a command sets about the search, over what the spec says; None leaves it.
+    """What a command sets about the search, over what the spec says; None leaves it."""
 
-    Parameters
-    ----------
-    max_degree : int or None
-        Highest degree of a polynomial function.
-    budget : float or None
-        Work, in units.
-    memory : float or None
-        In GB.
-    """
-
-    max_degree: int | None = None
-    budget: float | None = None
-    memory: float | None = None
+    max_degree: int | None = None  # Highest degree of a polynomial function
+    budget: float | None = None  # Work, in units
+    memory: float | None = None  # In GB
 
 
 def search_limits(

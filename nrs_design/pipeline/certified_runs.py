@@ -16,47 +16,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CertifiedBound:
-    """A certified bound beside a run.
+    """A certified bound beside a run."""
 
-    Parameters
-    ----------
-    output, unit : str
-        What is bounded.
-    level : float
-        Not below what is proved.
-    uncovered : tuple of str
-        What happens in the run that the proof says nothing about; empty if the bound holds for it.
-    """
-
+    # output, unit: what is bounded.
     output: str
     unit: str
-    level: float
+    level: float  # Not below what is proved
+    # What happens in the run that the proof says nothing about; empty if the bound holds for it.
     uncovered: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class CertifiedRate:
-    """A certified rate of decay beside a run.
+    """A certified rate of decay beside a run."""
 
-    Parameters
-    ----------
-    rate : float
-        Not better than what is proved: in 1/s, or the factor per sample.
-    unit : str
-        ``1/s``, or empty for a factor.
-    attained : bool
-        Whether it is proved itself, not only what is slower.
-    start : float or None
-        From when on nothing is commanded, in s; None where the run ends before.
-    uncovered : tuple of str
-        Why it is not about the run from then on; empty if it is.
-    """
-
-    rate: float
-    unit: str
-    attained: bool
-    start: float | None
-    uncovered: tuple[str, ...]
+    rate: float  # Not better than what is proved: in 1/s, or the factor per sample
+    unit: str  # ``1/s``, or empty for a factor
+    attained: bool  # Whether it is proved itself, not only what is slower
+    start: float | None  # From when on nothing is commanded, in s; None where the run ends before
+    uncovered: tuple[str, ...]  # Why it is not about the run from then on; empty if it is
 
 
 def hold_bounds(

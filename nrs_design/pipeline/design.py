@@ -17,27 +17,18 @@ if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
 
+# What other kinds of specs are for.
+_FOR_KIND = {"robot": "`nrs-design robot`", "switched-system": "`nrs-design certify-switching`"}
+
 
 @dataclass(frozen=True, slots=True)
 class Designed:
-    """An interaction design with all that follows from its spec alone.
+    """An interaction design with all that follows from its spec alone."""
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        The spec and where it came from.
-    spec : InteractionDesignSpec
-        What it says.
-    plant : Plant
-        That it describes; the later stages take this one.
-    design : ControllerDesign
-        The gains that ship.
-    """
-
-    loaded: LoadedSpec
-    spec: InteractionDesignSpec
-    plant: Plant
-    design: ControllerDesign
+    loaded: LoadedSpec  # The spec and where it came from
+    spec: InteractionDesignSpec  # What it says
+    plant: Plant  # That it describes; the later stages take this one
+    design: ControllerDesign  # The gains that ship
 
 
 @contextmanager
@@ -82,6 +73,39 @@ def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
     return DesignError(
         message, path=loaded.path, line=place.line, column=place.column, remedy=remedy
     )
+
+
+def interaction_of(loaded: LoadedSpec, lacks: str) -> InteractionDesignSpec:
+    """Return an interaction design, for what needs one.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    lacks : str
+        Why a spec of another kind does not do, such as ``has nothing to tune``.
+
+    Raises
+    ------
+    DesignError
+        If the spec is of another kind.
+    """
+    spec = loaded.spec
+    if spec.kind == "interaction-design":
+        return spec
+    raise wrong_kind(
+        loaded,
+        f"a spec of kind {spec.kind} {lacks}",
+        f"use {_FOR_KIND[spec.kind]}, or a spec of kind interaction-design",
+    )
+
+
+def run_interaction(loaded: LoadedSpec, lacks: str) -> Designed:
+    """Design an interaction; refuse other kinds of specs, as `interaction_of` does."""
+    interaction_of(loaded, lacks)
+    designed = run_design(loaded)
+    assert designed is not None
+    return designed
 
 
 def run_design(loaded: LoadedSpec) -> Designed | None:

@@ -31,21 +31,11 @@ def quick_limits(result: Result, limits: Limits | None) -> Limits:
 
 @dataclass(frozen=True, slots=True)
 class ProofMargins:
-    """How far a proof reaches, as far as that was asked for.
+    """How far a proof reaches, as far as that was asked for."""
 
-    Parameters
-    ----------
-    loop : MarginBrackets or None
-        Of delay, period and disturbances.
-    box : BoxMargin or None
-        Of the declared ranges.
-    dwell : DwellMargin or None
-        Of the time between switches.
-    """
-
-    loop: MarginBrackets | None = None
-    box: BoxMargin | None = None
-    dwell: DwellMargin | None = None
+    loop: MarginBrackets | None = None  # Of delay, period and disturbances
+    box: BoxMargin | None = None  # Of the declared ranges
+    dwell: DwellMargin | None = None  # Of the time between switches
 
 
 def run_proof_margins(

@@ -86,7 +86,7 @@ def _sampled(designed: Designed, system: SwitchedSystem) -> Outputs:
 
 def _following_velocities(designed: Designed, system: SwitchedSystem) -> Outputs:
     """Return what a loop shows whose controllers command velocities."""
-    from nrs_design.switched.commanded import force_rows
+    from nrs_design.switched.free_motion import force_rows
 
     plant, motion = designed.plant, designed.design.motion
     touched = plant.among(designed.design.contacts)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from nrs_design.progress import Progress, silent
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
+    from nrs_design.simulation.draw import Drawn
     from nrs_design.simulation.run import Run
     from nrs_design.simulation.scenario import Scenario
     from nrs_design.spec import InteractionDesignSpec
@@ -22,49 +23,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Simulated:
-    """A scenario that has been simulated.
+    """A scenario that has been simulated."""
 
-    Parameters
-    ----------
-    scenario : Scenario
-        In SI.
-    run : Run
-        As far as it came.
-    metrics : mapping
-        Of the run, in SI.
-    """
-
-    scenario: Scenario
-    run: Run
-    metrics: Mapping[str, Any]
+    scenario: Scenario  # In SI
+    run: Run  # As far as it came
+    metrics: Mapping[str, Any]  # Of the run, in SI
+    # What was drawn from its range, in SI.
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """How scenarios are run; None leaves what the spec says.
+    """How scenarios are run; None leaves what the spec says."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Which; empty for all.
-    engine : {"exact", "sampled", "mujoco"} or None
-        By default sampled where the spec has sampling or tissue is not linear, else exact.
-    period : float or None
-        Of the sampled engine, in s; 2 ms where nothing says it.
-    delay : int or None
-        Age of its force samples, in samples; none where nothing says it.
-    outer_period : float or None
-        Of force, filter and admittance, in s; that of the motion loop where nothing says it.
-    max_steps : int or None
-        Of each run.
-    """
-
-    names: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()  # Which; empty for all
+    # By default sampled where the spec has sampling or tissue is not linear, else exact.
     engine: str | None = None
-    period: float | None = None
-    delay: int | None = None
-    max_steps: int | None = None
+    period: float | None = None  # Of the sampled engine, in s; 2 ms where nothing says it
+    delay: int | None = None  # Age of its force samples, in samples; none where nothing says it
+    max_steps: int | None = None  # Of each run
+    # Of force, filter and admittance, in s; that of the motion loop where nothing says it.
     outer_period: float | None = None
+    # Seed with which parameters are drawn from their ranges; None for those of the scenario.
+    draw: int | None = None
 
 
 def run_scenarios(
@@ -94,41 +75,35 @@ def run_scenarios(
     wanted = wanted or Runs()
     with placed(designed.loaded):
         for name, group in scenarios_of(designed, wanted):
-            yield from simulate_group(designed, name, group, wanted, progress)
+            if wanted.draw is None:
+                yield from _simulate(designed, name, group, wanted, progress)
+                continue
+            drawn = _drawn(designed, name, group, wanted.draw)
+            own = replace(designed, plant=drawn.plant, design=drawn.design)
+            (one,) = _simulate(own, name, (drawn.scenario,), wanted, progress)
+            yield replace(one, parameters=drawn.parameters)
 
 
-def simulate_group(
+def _drawn(designed: Designed, name: str, group: Sequence[Scenario], seed: int) -> Drawn:
+    from nrs_design.simulation.draw import draw
+
+    if len(group) > 1:
+        raise DesignError(
+            f"{name} moves three axes, and parameters are drawn for one",
+            remedy="name scenarios of one axis",
+            at=("scenarios", name, "axes"),
+        )
+    return draw(designed.spec, designed.plant, designed.design, group[0], seed)
+
+
+def _simulate(
     designed: Designed,
     name: str,
     group: Sequence[Scenario],
     wanted: Runs,
     progress: Progress = silent,
 ) -> Iterator[Simulated]:
-    """Simulate what one axis does, or three of a robot at once, and measure the runs.
-
-    Parameters
-    ----------
-    designed : Designed
-        The spec, its plant and its gains.
-    name : str
-        Of the scenario.
-    group : sequence of Scenario
-        In SI, one for each axis.
-    wanted : Runs
-        How.
-    progress : callable
-        Told how far the run is.
-
-    Yields
-    ------
-    Simulated
-        For each axis.
-
-    Raises
-    ------
-    DesignError
-        If it cannot be simulated.
-    """
+    """Simulate what one axis does, or three of a robot at once, and measure the runs."""
     from nrs_design.simulation.bodies import simulate_on_body
     from nrs_design.simulation.exact import simulate_exactly
     from nrs_design.simulation.run import LOGIC_LEFT_OUT, MAX_STEPS

@@ -28,32 +28,17 @@ ROWS = 6
 
 @dataclass(frozen=True, slots=True)
 class StabilityMap:
-    """Verdicts over the range of stiffness and the range of ages of the force sample.
+    """Verdicts over the range of stiffness and the range of ages of the force sample."""
 
-    Parameters
-    ----------
-    shortest : int
-        Shortest age in samples; every cell has all ages from here to its own.
-    delays : tuple of int
-        Longest ages.
-    factors : tuple of Fraction
-        Upper end of the stiffness of every contact over the declared one.
-    verdicts : mapping of (int, int) to Verdict
-        By the places of delay and factor.
-    contacts : tuple of (str, Fraction, Fraction)
-        Name, lower end of the stiffness in every cell, and declared upper end, in N m/rad.
-    delay : int
-        Longest declared age.
-    refuted_in : str
-        In which contact alone some cells are refuted, where its loss must be covered; or empty.
-    """
-
-    shortest: int
-    delays: tuple[int, ...]
+    shortest: int  # Shortest age in samples; every cell has all ages from here to its own
+    delays: tuple[int, ...]  # Longest ages
+    # Upper end of the stiffness of every contact over the declared one.
     factors: tuple[Fraction, ...]
-    verdicts: Mapping[tuple[int, int], Verdict]
+    verdicts: Mapping[tuple[int, int], Verdict]  # By the places of delay and factor
+    # Name, lower end of the stiffness in every cell, and declared upper end, in N m/rad.
     contacts: tuple[tuple[str, Fraction, Fraction], ...]
-    delay: int
+    delay: int  # Longest declared age
+    # In which contact alone some cells are refuted, where its loss must be covered; or empty.
     refuted_in: str = ""
 
 

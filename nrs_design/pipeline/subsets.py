@@ -18,21 +18,11 @@ _OUTER = "the outer_period"
 
 @dataclass(frozen=True, slots=True)
 class Subset:
-    """What is proved of a spec where not all of it is.
+    """What is proved of a spec where not all of it is."""
 
-    Parameters
-    ----------
-    left_out : tuple of str
-        Parts of the spec that the proof is not about.
-    claim : str
-        What is proved without them; empty where nothing is that was looked for.
-    needs : tuple of str
-        What that takes for granted, and the spec as it stands does not.
-    """
-
-    left_out: tuple[str, ...]
-    claim: str
-    needs: tuple[str, ...] = ()
+    left_out: tuple[str, ...]  # Parts of the spec that the proof is not about
+    claim: str  # What is proved without them; empty where nothing is that was looked for
+    needs: tuple[str, ...] = ()  # What that takes for granted, and the spec as it stands does not
 
 
 def are_wanted(result: Result) -> bool:

@@ -17,31 +17,18 @@ if TYPE_CHECKING:
     from nrs_design.simulation.worst_case import WorstRun
     from nrs_design.spec import InteractionDesignSpec
 
-_REMEDY = "use --monte-carlo, which simulates every controller"
+_REMEDY = "use `simulate` without --worst-case, which runs every controller"
 
 
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """The worst runs that an adversary found, beside limits and certified bounds.
+    """The worst runs that an adversary found, beside limits and certified bounds."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        That he played against.
-    runs : tuple of WorstRun
-        One for each quantity: force, velocity and deflection.
-    limits : mapping of str to float
-        Of these quantities, as far as the spec has any; SI.
-    bounds : mapping of str to float
-        Not below what is certified; SI.
-    declared : bool
-        Whether the spec says what disturbs; otherwise it is any command up to its limit.
-    """
-
-    system: SwitchedSystem
-    runs: tuple[WorstRun, ...]
-    limits: Mapping[str, float]
-    bounds: Mapping[str, float]
+    system: SwitchedSystem  # That he played against
+    runs: tuple[WorstRun, ...]  # One for each quantity: force, velocity and deflection
+    limits: Mapping[str, float]  # Of these quantities, as far as the spec has any; SI
+    bounds: Mapping[str, float]  # Not below what is certified; SI
+    # Whether the spec says what disturbs; otherwise it is any command up to its limit.
     declared: bool
 
 
@@ -123,19 +110,12 @@ def _commanded(designed: Designed) -> SwitchedSystem:
         return assemble_spec(designed.loaded, designed, at)
     text = {"command": spec.limits.velocity.text}
     disturbances = DisturbancesSpec.model_validate(text)
+    spec = spec.model_copy(update={"disturbances": disturbances})
     if spec.sampling is not None:
-        spec = spec.model_copy(update={"disturbances": disturbances})
         return assemble_spec(designed.loaded, replace(designed, spec=spec), at)
     # In continuous time a run may be on tissue for which no bound is stated.
+    from nrs_design.switched.assemble import state_of
     from nrs_design.switched.commanded import with_command
-    from nrs_design.switched.joint import Joint
 
-    plant, motion = designed.plant, designed.design.motion
-    return with_command(
-        assemble_spec(designed.loaded, designed, at),
-        spec,
-        disturbances,
-        plant.motion_loop(motion.Kp, motion.Kd),
-        Joint.of(plant, motion),
-        plant.among(designed.design.contacts),
-    )
+    state = state_of(spec, designed.plant, designed.design, at)
+    return with_command(assemble_spec(designed.loaded, designed, at), state, spec)

@@ -10,61 +10,38 @@ from nrs_design.proof.matrix import RationalMatrix
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A disturbance d that acts on the state: ``x' = A x + B d``, or ``x+ = A x + B d``.
+    """A disturbance d that acts on the state: ``x' = A x + B d``, or ``x+ = A x + B d``."""
 
-    Parameters
-    ----------
-    name, unit : str
-        What it is, such as ``velocity command`` in ``rad/s``.
-    bound : Fraction
-        Its size is at most this, at every time; in discrete time, at every step.
-    columns : tuple of RationalMatrix, each of shape (n, 1)
-        The B of every mode, and after them those of the free modes.
-    """
-
+    # What it is, such as ``velocity command`` in ``rad/s``.
     name: str
     unit: str
-    bound: Fraction
+    bound: Fraction  # Its size is at most this, at every time; in discrete time, at every step
+    # Shape (n, 1). The B of every mode, and after them those of the free modes.
     columns: tuple[RationalMatrix, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """A quantity that is one of some rows times the state, and within a range any mixture of them.
+    """A quantity: one of some rows times the state, within a range any mixture of them."""
 
-    Parameters
-    ----------
-    name, unit : str
-        What it is, such as ``force`` in ``N*m``.
-    rows : tuple of RationalMatrix, each of shape (1, n)
-        At the corners of its ranges. In free motion the deflection counts as zero.
-    limit : Fraction or None
-        What its size is meant to keep; for words only.
-    """
-
+    # What it is, such as ``force`` in ``N*m``.
     name: str
     unit: str
+    # Shape (1, n). At the corners of its ranges. In free motion the deflection counts as zero.
     rows: tuple[RationalMatrix, ...]
-    limit: Fraction | None = None
+    limit: Fraction | None = None  # What its size is meant to keep; for words only
 
 
 @dataclass(frozen=True, slots=True)
 class Rounding:
-    """An error r of one operation of the law: ``x+ = A x + B d + C r`` with ``|r| <= |q (x, d)|``.
+    """An error r of an operation of the law: ``x+ = A x + B d + C r``, ``|r| <= |q (x, d)|``."""
 
-    Parameters
-    ----------
-    name : str
-        What is rounded, such as ``Kp e``.
-    columns : tuple of RationalMatrix, each of shape (n, 1)
-        The C of every mode, and after them those of the free modes.
-    rows : tuple of RationalMatrix, each of shape (1, n + number of channels)
-        The q of every mode, and after them those of the free modes, over the state and all
-        disturbances of the system; in free motion nothing in them stands for the deflection.
-    """
-
-    name: str
+    name: str  # What is rounded, such as ``Kp e``
+    # Shape (n, 1). The C of every mode, and after them those of the free modes.
     columns: tuple[RationalMatrix, ...]
+    # Shape (1, n + number of channels). The q of every mode, and after them those of the free
+    # modes, over the state and all disturbances of the system; in free motion nothing in them
+    # stands for the deflection.
     rows: tuple[RationalMatrix, ...]
 
 
@@ -75,18 +52,12 @@ class Coupling:
     Of any number of axes each is in a mode of its own, and ``sum |w_i|^2 <= sum |q_i z_i|^2`` over
     all of them, with the B_i and q_i of their modes, where z_i is x_i and, after it, what disturbs
     the axis and what its arithmetic rounds. In discrete time, that is said of every step.
-
-    Parameters
-    ----------
-    name : str
-        What acts, such as ``inertia of the links``.
-    columns : tuple of RationalMatrix, each of shape (n, 1)
-        The B of every mode, and after them those of the free modes.
-    rows : tuple of RationalMatrix, each of shape (1, n + disturbances + roundings)
-        The q in the same order, over the state, all disturbances and all roundings of the system;
-        in free motion nothing in them stands for the deflection.
     """
 
-    name: str
+    name: str  # What acts, such as ``inertia of the links``
+    # Shape (n, 1). The B of every mode, and after them those of the free modes.
     columns: tuple[RationalMatrix, ...]
+    # Shape (1, n + disturbances + roundings). The q in the same order, over the state, all
+    # disturbances and all roundings of the system; in free motion nothing in them stands for the
+    # deflection.
     rows: tuple[RationalMatrix, ...]

@@ -10,6 +10,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import exact_text
 
 
 def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
@@ -70,6 +71,15 @@ def _common_stay(switching: Switching, modes: Sequence[str]) -> Stay:
     stays = [switching.stay(mode) for mode in modes]
     ends = [stay.longest for stay in stays if stay.longest is not None]
     return Stay(max(stay.shortest for stay in stays), min(ends, default=None))
+
+
+def value_text(system: SwitchedSystem, share: Fraction) -> str:
+    """Say which value of the constant parameter it is, such as ``At k = 12.5``."""
+    parameter = system.switching.fixed_parameter
+    if parameter is None:
+        return f"At {share} of the way from the low to the high end of the parameter"
+    value = parameter.low + share * (parameter.high - parameter.low)
+    return f"At {parameter.name} = {exact_text(value)}"
 
 
 def name_between(low: str, high: str) -> str:

@@ -15,32 +15,24 @@ class Contact:
 
     The last state is the deflection delta, the others are y. While delta is positive, the modes of
     the system are in force; while it is not, nothing pushes, and one of the free modes is.
-
-    Parameters
-    ----------
-    free : tuple of Mode
-        The motion without force, each of shape (n, n), with any switching among them. In its last
-        column, what the deflection does to the other states, there are zeros; in its last row, what
-        the motion does to the deflection.
-    pulls : tuple of RationalMatrix, each of shape (1, n)
-        For an environment that could pull: forces ``q x`` at the corners of its ranges. While
-        delta is positive and a force within these ranges is not, there is no force, and one of the
-        free modes is in force. Empty for springs, whose force has the sign of the deflection.
-    required : bool
-        Stability must be shown through any loss of contact; otherwise a proof may take for granted
-        that contact is kept, and its claim says so.
-    pushed : bool
-        A constant force may push into contact: the deflection at which its force is that one is
-        the same in all modes that follow each other, and a statement may be about it.
-    loss : str
-        All this in words: what is taken for granted by what covers the loss of contact, and by
-        nothing else.
     """
 
+    # The motion without force, each of shape (n, n), with any switching among them. In its last
+    # column, what the deflection does to the other states, there are zeros; in its last row, what
+    # the motion does to the deflection.
     free: tuple[Mode, ...]
+    # Shape (1, n). For an environment that could pull: forces ``q x`` at the corners of its ranges.
+    # While delta is positive and a force within these ranges is not, there is no force, and one of
+    # the free modes is in force. Empty for springs, whose force has the sign of the deflection.
     pulls: tuple[RationalMatrix, ...] = ()
+    # Stability must be shown through any loss of contact; otherwise a proof may take for granted
+    # that contact is kept, and its claim says so.
     required: bool = False
+    # A constant force may push into contact: the deflection at which its force is that one is the
+    # same in all modes that follow each other, and a statement may be about it.
     pushed: bool = False
+    # All this in words: what is taken for granted by what covers the loss of contact, and by
+    # nothing else.
     loss: str = ""
 
 
@@ -50,21 +42,14 @@ class Flights:
 
     That is more than happens: the environment pushes in contact only, and where it would pull there
     is free motion. What holds for all signals holds for those; what grows must keep to them.
-
-    Parameters
-    ----------
-    touching : tuple of str
-        Modes in which the environment acts: there, the last state, the deflection, is positive.
-    flying : tuple of str
-        Modes without it: there, the deflection is not positive, or every force would pull. Modes
-        that are named nowhere are the same in contact and free.
-    pulls : tuple of RationalMatrix, each of shape (1, n)
-        As of `Contact`.
     """
 
+    # Modes in which the environment acts: there, the last state, the deflection, is positive.
     touching: tuple[str, ...]
+    # Modes without it: there, the deflection is not positive, or every force would pull. Modes that
+    # are named nowhere are the same in contact and free.
     flying: tuple[str, ...]
-    pulls: tuple[RationalMatrix, ...] = ()
+    pulls: tuple[RationalMatrix, ...] = ()  # Shape (1, n). As of `Contact`.
 
     def among(self, names: Iterable[str]) -> Flights:
         """Return the same for some of the modes.

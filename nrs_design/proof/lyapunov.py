@@ -36,48 +36,30 @@ DIGITS = (1, 2, 4, 8, 16)
 
 @dataclass(frozen=True, slots=True)
 class Counterexample:
-    """A vector at which a condition on the function fails.
+    """A vector at which a condition on the function fails."""
 
-    Parameters
-    ----------
-    mode : str or None
-        The mode in which the function does not decrease; None if it is not positive.
-    vector : tuple of Fraction
-        A nonzero x, exactly.
-    value : Fraction
-        ``x' P x`` if `mode` is None, which is not positive; otherwise the derivative
-        ``x' (A'P + PA + 2 alpha P) x`` along the mode at the rate that was asked for (discrete
-        time: ``x' (A'PA - rho^2 P) x``), which is not negative.
-    """
-
+    # The mode in which the function does not decrease; None if it is not positive.
     mode: str | None
-    vector: tuple[Fraction, ...]
+    vector: tuple[Fraction, ...]  # A nonzero x, exactly
+    # ``x' P x`` if `mode` is None, which is not positive; otherwise the derivative ``x' (A'P + PA +
+    # 2 alpha P) x`` along the mode at the rate that was asked for (discrete time: ``x' (A'PA -
+    # rho^2 P) x``), which is not negative.
     value: Fraction
 
 
 @dataclass(frozen=True, slots=True)
 class LyapunovCheck:
-    """What a quadratic function shows about a family of modes, decided exactly.
+    """What a quadratic function shows about a family of modes, decided exactly."""
 
-    Parameters
-    ----------
-    holds : bool
-        P is positive definite, and V decreases strictly in every mode at the rate asked for.
-    weak : bool
-        P is positive definite, and V increases in no mode: stability, but no decay, is shown.
-    rate : Fraction or None
-        A rate at which V decreases: alpha in 1/s, or rho per step in discrete time. What was asked
-        for if it holds, or else the best one on a fine grid, rounded to the side that is proved.
-        None if V does not decrease strictly at any rate, or if the numbers are too large to look
-        for one.
-    counterexample : Counterexample or None
-        Why it does not hold.
-    """
-
+    # P is positive definite, and V decreases strictly in every mode at the rate asked for.
     holds: bool
+    # P is positive definite, and V increases in no mode: stability, but no decay, is shown.
     weak: bool
+    # A rate at which V decreases: alpha in 1/s, or rho per step in discrete time. What was asked
+    # for if it holds, or else the best one on a fine grid, rounded to the side that is proved. None
+    # if V does not decrease strictly at any rate, or if the numbers are too large to look for one.
     rate: Fraction | None
-    counterexample: Counterexample | None
+    counterexample: Counterexample | None  # Why it does not hold
 
     def __bool__(self) -> bool:
         """Whether it holds."""

@@ -19,17 +19,10 @@ class RationalMatrix:
 
     One denominator for all entries keeps the exact checks in integer arithmetic: a positive
     factor changes neither definiteness nor the Hurwitz property.
-
-    Parameters
-    ----------
-    numerators : tuple of tuple of int
-        The rows.
-    denominator : int
-        Positive.
     """
 
-    numerators: tuple[tuple[int, ...], ...]
-    denominator: int = 1
+    numerators: tuple[tuple[int, ...], ...]  # The rows
+    denominator: int = 1  # Positive
 
     def __post_init__(self) -> None:
         """Take integers of any kind as those of Python, which never overflow.

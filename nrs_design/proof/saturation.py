@@ -18,43 +18,29 @@ class CutOff:
     """A signal ``s`` that saturates: ``s = min(max(a, -limit), limit)``.
 
     Its argument is ``a = q (x, s_1, ..., s_j)``, where the s_i are the signals before it.
-
-    Parameters
-    ----------
-    name, unit : str
-        What it is, such as ``velocity command`` in ``rad/s``.
-    limit : Fraction
-        Where it is cut off, both ways.
-    columns : tuple of RationalMatrix, each of shape (n, 1)
-        What it does to the state, in every mode and after them in the free modes.
-    rows : tuple of RationalMatrix, each of shape (1, n + number of signals before it)
-        The q in the same order; in free motion nothing in them stands for the deflection.
     """
 
+    # What it is, such as ``velocity command`` in ``rad/s``.
     name: str
     unit: str
-    limit: Fraction
+    limit: Fraction  # Where it is cut off, both ways
+    # Shape (n, 1). What it does to the state, in every mode and after them in the free modes.
     columns: tuple[RationalMatrix, ...]
+    # Shape (1, n + number of signals before it). The q in the same order; in free motion nothing in
+    # them stands for the deflection.
     rows: tuple[RationalMatrix, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """States that a motion begins in: a size times any mixture of some of them.
+    """States that a motion begins in: a size times any mixture of some of them."""
 
-    Parameters
-    ----------
-    name, unit : str
-        What the size is of, such as ``contact force`` in ``N*m``.
-    states : tuple of RationalMatrix, each of shape (n, 1)
-        At the size one, at the corners of the ranges.
-    wanted : Fraction or None
-        The size that a statement is meant to reach; for words and searches only.
-    """
-
+    # What the size is of, such as ``contact force`` in ``N*m``.
     name: str
     unit: str
+    # Shape (n, 1). At the size one, at the corners of the ranges.
     states: tuple[RationalMatrix, ...]
+    # The size that a statement is meant to reach; for words and searches only.
     wanted: Fraction | None = None
 
 
@@ -64,17 +50,10 @@ class Saturation:
 
     The modes say what the loop does while nothing is cut off. Beyond that it is
     ``x' = A x + sum c_i (s_i - l_i x)``, where ``l_i x`` is what ``s_i`` were if nothing was.
-
-    Parameters
-    ----------
-    signals : tuple of CutOff
-        Each may depend on those before it.
-    start : Start
-        How motions begin.
     """
 
-    signals: tuple[CutOff, ...]
-    start: Start
+    signals: tuple[CutOff, ...]  # Each may depend on those before it
+    start: Start  # How motions begin
 
     def find_oddity(self, order: int, modes: int, free: int) -> str | None:
         """TRUSTED: say what makes no sense for so many states, modes and free modes, or None.

@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.proof.constant import system_at
 from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precision
 from nrs_design.proof.evidence.abstract import AbstractEvidence
 from nrs_design.proof.evidence.flow import shifted
@@ -30,11 +29,8 @@ from nrs_design.proof.taylor import exponential_nearly
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular
     from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+    from nrs_design.proof.evidence.growing_sequence import GrowingSequence
     from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
-    from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
-    from nrs_design.proof.evidence.unstable_mode import UnstableMode
-    from nrs_design.proof.evidence.unstable_period import UnstablePeriod
-    from nrs_design.proof.evidence.unstable_value import UnstableValue
 
 # Half as many bits as are left of the diagonal where a matrix is rounded down.
 SHORT_BITS = 24
@@ -68,21 +64,14 @@ def agrees(
     return all(map(finds_positive, made))
 
 
-def _is_mode_unstable(system: SwitchedSystem, evidence: UnstableMode) -> bool:
-    from nrs_design.proof.evidence.unstable_mode import matrix_of
+def _agrees_on_growth(system: SwitchedSystem, evidence: GrowingSequence) -> bool:
+    from nrs_design.proof.evidence.growing_sequence import average
 
-    matrix = matrix_of(system, evidence.mode)
-    return matrix is not None and not _is_surely_stable(matrix, system.time)
-
-
-def _is_mixture_unstable(system: SwitchedSystem, evidence: UnstableMixture) -> bool:
-    from nrs_design.proof.evidence.unstable_mixture import mixture
-
-    return not _is_surely_stable(mixture(system, evidence.weights), system.time)
-
-
-def _is_value_unstable(system: SwitchedSystem, evidence: UnstableValue) -> bool:
-    return agrees(system_at(system, evidence.share), evidence.part)
+    if evidence.share is not None:
+        return agrees(*evidence.at_value(system))
+    if not evidence.is_average:
+        return True
+    return not _is_surely_stable(average(system, evidence.steps), system.time)
 
 
 def _agrees_on_every_part(system: SwitchedSystem, evidence: BlockTriangular) -> bool:
@@ -100,7 +89,9 @@ def _exponents(system: SwitchedSystem, evidence: AbstractEvidence) -> set[Expone
     return set(enclosed(system, evidence))
 
 
-def _steps(system: SwitchedSystem, evidence: UnstablePeriod) -> Iterator[Exponent]:
+def _steps(system: SwitchedSystem, evidence: GrowingSequence) -> Iterator[Exponent]:
+    if evidence.doublings is None or evidence.share is not None:
+        return iter(())
     modes = {mode.name: mode.A for mode in system.modes}
     return ((modes[name], time) for name, time in evidence.steps)
 
@@ -114,7 +105,7 @@ def _stays(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[Exponent
 
 
 _ENCLOSED: Mapping[str, Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
-    "unstable-period": _steps,
+    "growing-sequence": _steps,
     "mode-quadratic": _stays,
 }
 
@@ -145,9 +136,7 @@ def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> 
 _OPINIONS: Mapping[str, Callable[[SwitchedSystem, Any], bool]] = {
     "block-triangular": _agrees_on_every_part,
     "common-quadratic": _decreases_everywhere,
-    "unstable-mixture": _is_mixture_unstable,
-    "unstable-mode": _is_mode_unstable,
-    "unstable-value": _is_value_unstable,
+    "growing-sequence": _agrees_on_growth,
 }
 
 

@@ -41,61 +41,32 @@ from nrs_design.proof.system import SwitchedSystem
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """What one mode does, in units in which all of it is integer.
+    """What one mode does, in units in which all of it is integer."""
 
-    Parameters
-    ----------
-    units : sequence of int
-        One for each entry of (x, d, r, w).
-    rows : sequence of sequence of int
-        The rows of ``[A, B, C, D]``.
-    errors : sequence of sequence of int
-        The q_i of r and of w, over (x, d, r, w).
-    """
-
-    units: Sequence[int]
-    rows: IntegerMatrix
-    errors: IntegerMatrix
+    units: Sequence[int]  # One for each entry of (x, d, r, w)
+    rows: IntegerMatrix  # The rows of ``[A, B, C, D]``
+    errors: IntegerMatrix  # The q_i of r and of w, over (x, d, r, w)
 
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """The numbers of a quadratic function in discrete time.
+    """The numbers of a quadratic function in discrete time."""
 
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q, lambda and the tau are these numerators over two to this power.
-    keeps : Fraction
-        What a step leaves of the function: rho^2, or one minus the shares of the disturbances.
-    crossing : int
-        The lambda; it says nothing where contact is kept.
-    lagging : tuple of (int, int, int)
-        For each force that could pull: the mu of steps that leave the deflection positive, and mu
-        and lambda of those that do not. A mu is that of the numerators of the force.
-    roundings : tuple of int
-        The tau, in the order of the roundings of the system; none if it is to compute exactly.
-    channels : tuple of int
-        Which disturbances of the system act.
-    weights : tuple of Fraction
-        One for each of them.
-    after : tuple of tuple of int or None
-        Numerators of the function after a step, over the same power; None for Q.
-    couplings : tuple of int
-        The tau, in the order of the couplings of the system; none if axes do not act on each other.
-    """
-
-    Q: IntegerMatrix
-    denominator_log2: int
+    Q: IntegerMatrix  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q, lambda and the tau are these numerators over two to this power
+    # What a step leaves of the function: rho^2, or one minus the shares of the disturbances.
     keeps: Fraction
-    crossing: int = 0
+    crossing: int = 0  # The lambda; it says nothing where contact is kept
+    # The tau, in the order of the roundings of the system; none if it is to compute exactly.
     roundings: tuple[int, ...] = ()
-    channels: tuple[int, ...] = ()
-    weights: tuple[Fraction, ...] = ()
+    channels: tuple[int, ...] = ()  # Which disturbances of the system act
+    weights: tuple[Fraction, ...] = ()  # One for each of them
+    # For each force that could pull: the mu of steps that leave the deflection positive, and mu and
+    # lambda of those that do not. A mu is that of the numerators of the force.
     lagging: tuple[tuple[int, int, int], ...] = ()
+    # Numerators of the function after a step, over the same power; None for Q.
     after: IntegerMatrix | None = None
+    # The tau, in the order of the couplings of the system; none if axes do not act on each other.
     couplings: tuple[int, ...] = ()
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:

@@ -14,51 +14,31 @@ class Reset:
     """What happens to the state at a switch: ``x+ = map x`` (thesis 5.9).
 
     Several resets may lead from one mode to another: each is a switch of its own.
-
-    Parameters
-    ----------
-    source, target : str
-        Names of the modes before and after.
-    map : RationalMatrix, shape (n of target, n of source)
-        The linear map.
     """
 
+    # source, target: names of the modes before and after.
     source: str
     target: str
-    map: RationalMatrix
+    map: RationalMatrix  # Shape (n of target, n of source). The linear map.
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """One way from a mode to the next.
+    """One way from a mode to the next."""
 
-    Parameters
-    ----------
-    source, target : Mode
-        The modes before and after.
-    map : RationalMatrix or None, shape (n of target, n of source)
-        What becomes of the state; None leaves it as it is.
-    """
-
+    # source, target: the modes before and after.
     source: Mode
     target: Mode
+    # Shape (n of target, n of source). What becomes of the state; None leaves it as it is.
     map: RationalMatrix | None
 
 
 @dataclass(frozen=True, slots=True)
 class Stay:
-    """How long a mode stays active, in s (discrete time: steps).
+    """How long a mode stays active, in s (discrete time: steps)."""
 
-    Parameters
-    ----------
-    shortest : Fraction
-        The dwell time: no switch comes earlier.
-    longest : Fraction or None
-        The mode is left by then; None lets it stay forever.
-    """
-
-    shortest: Fraction = Fraction(0)
-    longest: Fraction | None = None
+    shortest: Fraction = Fraction(0)  # The dwell time: no switch comes earlier
+    longest: Fraction | None = None  # The mode is left by then; None lets it stay forever
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,35 +52,25 @@ class FixedParameter:
 
 @dataclass(frozen=True, slots=True)
 class Switching:
-    """Which switching signals there are.
+    """Which switching signals there are."""
 
-    Parameters
-    ----------
-    dwell_time : Fraction
-        Shortest time in a mode, in s; in discrete time the smallest number of steps, at least one.
-        Zero in continuous time leaves it free. For all modes that `stays` does not name.
-    transitions : tuple of (str, str) or None
-        Allowed switches from one mode to another; None allows all.
-    resets : tuple of Reset
-        For some transitions; the others leave the state as it is. Where several lead from one mode
-        to another, a switch takes any one of them, and never leaves the state as it is.
-    fixed_ends : tuple of (str, str)
-        Pairs of modes that are the two ends of a parameter that is unknown but does not change:
-        the mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every
-        mode is in one pair, or there are none. Transitions take no notice of it: they lead from
-        any end to any end, as if the parameter moved. What holds for all these signals holds for
-        the fewer ones of a constant parameter; a signal that grows must keep to one value.
-    fixed_parameter : FixedParameter or None
-        What that parameter is, if known; for words only.
-    stays : tuple of (str, Stay)
-        Modes with a dwell time of their own, or with a longest one.
-    """
-
+    # Shortest time in a mode, in s; in discrete time the smallest number of steps, at least one.
+    # Zero in continuous time leaves it free. For all modes that `stays` does not name.
     dwell_time: Fraction = Fraction(0)
+    # Allowed switches from one mode to another; None allows all.
     transitions: tuple[tuple[str, str], ...] | None = None
+    # For some transitions; the others leave the state as it is. Where several lead from one mode to
+    # another, a switch takes any one of them, and never leaves the state as it is.
     resets: tuple[Reset, ...] = ()
+    # Pairs of modes that are the two ends of a parameter that is unknown but does not change: the
+    # mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every mode
+    # is in one pair, or there are none. Transitions take no notice of it: they lead from any end to
+    # any end, as if the parameter moved. What holds for all these signals holds for the fewer ones
+    # of a constant parameter; a signal that grows must keep to one value.
     fixed_ends: tuple[tuple[str, str], ...] = ()
+    # What that parameter is, if known; for words only.
     fixed_parameter: FixedParameter | None = None
+    # Modes with a dwell time of their own, or with a longest one.
     stays: tuple[tuple[str, Stay], ...] = ()
 
     def stay(self, mode: str) -> Stay:
@@ -129,15 +99,8 @@ ARBITRARY = Switching()
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Modes that take turns: some at the first step of every round, all others at its other steps.
+    """Modes that take turns: some at the first step of a round, the others at its other steps."""
 
-    Parameters
-    ----------
-    length : int
-        Steps of a round, at least two. Time zero may be any of them.
-    first : tuple of str
-        Names of the modes, in contact and free, that are in force at the first steps.
-    """
-
-    length: int
+    length: int  # Steps of a round, at least two. Time zero may be any of them.
+    # Names of the modes, in contact and free, that are in force at the first steps.
     first: tuple[str, ...]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
+from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
 
@@ -17,61 +18,36 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SwitchedSystem:
-    """A linear switched system.
+    """A linear switched system."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the spec that it comes from.
-    time : Time
-        Continuous or discrete.
-    states : tuple of str
-        Name and unit of each state.
-    modes : tuple of Mode
-        At least one; all of the same size, unless resets link states of different sizes.
-    assumptions : tuple of str
-        What a statement about these matrices takes for granted about the robot.
-    switching : Switching
-        The signals that are possible.
-    contact : Contact or None
-        How contact is lost; None where it is kept, where there is none to lose, or where free
-        motion is among the modes.
-    sample_time : Fraction or None
-        Time from one step to the next in s, in discrete time, if there is such a time.
-    channels : tuple of Channel
-        Disturbances; statements about stability are about none of them.
-    outputs : tuple of Output
-        What bounds can be stated for.
-    roundings : tuple of Rounding
-        Errors of the arithmetic, in discrete time; a statement says whether it covers them.
-    couplings : tuple of Coupling
-        What axes like this one do to each other. Without any, every statement is about one axis;
-        with them, statements of stability and of bounds are about all axes at once.
-    axes : int or None
-        How many of them there are at most, where a statement depends on it, as bounds do.
-    clock : Clock or None
-        Which modes take turns, in discrete time; None lets all of them be in force at every step.
-    saturation : Saturation or None
-        Signals that are cut off at limits; only statements that say so are about that.
-    flights : Flights or None
-        Which modes are free motion, where it is among them and its loss must be covered.
-    """
-
-    name: str
-    time: Time
-    states: tuple[str, ...]
+    name: str  # Name of the spec that it comes from
+    time: Time  # Continuous or discrete
+    states: tuple[str, ...]  # Name and unit of each state
+    # At least one; all of the same size, unless resets link states of different sizes.
     modes: tuple[Mode, ...]
+    # What a statement about these matrices takes for granted about the robot.
     assumptions: tuple[str, ...]
-    switching: Switching = ARBITRARY
+    switching: Switching = ARBITRARY  # The signals that are possible
+    # How contact is lost; None where it is kept, where there is none to lose, or where free motion
+    # is among the modes.
     contact: Contact | None = None
+    # Time from one step to the next in s, in discrete time, if there is such a time.
     sample_time: Fraction | None = None
+    # Disturbances; statements about stability are about none of them.
     channels: tuple[Channel, ...] = ()
-    outputs: tuple[Output, ...] = ()
+    outputs: tuple[Output, ...] = ()  # What bounds can be stated for
+    # Errors of the arithmetic, in discrete time; a statement says whether it covers them.
     roundings: tuple[Rounding, ...] = ()
+    # What axes like this one do to each other. Without any, every statement is about one axis; with
+    # them, statements of stability and of bounds are about all axes at once.
     couplings: tuple[Coupling, ...] = ()
+    # Which modes take turns, in discrete time; None lets all of them be in force at every step.
     clock: Clock | None = None
+    # How many of them there are at most, where a statement depends on it, as bounds do.
     axes: int | None = None
+    # Signals that are cut off at limits; only statements that say so are about that.
     saturation: Saturation | None = None
+    # Which modes are free motion, where it is among them and its loss must be covered.
     flights: Flights | None = None
 
     def with_modes(
@@ -94,6 +70,29 @@ class SwitchedSystem:
     def is_losable(self) -> bool:
         """Whether a statement must cover the loss of contact."""
         return self.flights is not None or (self.contact is not None and self.contact.required)
+
+    @property
+    def free(self) -> tuple[Mode, ...]:
+        """Modes of free motion beside the modes."""
+        return () if self.contact is None else self.contact.free
+
+    @property
+    def every_mode(self) -> tuple[Mode, ...]:
+        """Modes in contact and free."""
+        return (*self.modes, *self.free)
+
+    def free_motions(self) -> tuple[Mode, ...]:
+        """TRUSTED: return the modes of free motion without the deflection, where they count.
+
+        That is where the loss of contact must be covered; where modes take turns, none of them is
+        in force for long.
+        """
+        if self.contact is None or not self.contact.required or self.clock is not None:
+            return ()
+        return tuple(
+            Mode(mode.name, RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator))
+            for mode in self.free
+        )
 
     @property
     def order(self) -> int:

@@ -93,24 +93,12 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Light:
-    """One thing that a reader looks for first, and how it stands.
+    """One thing that a reader looks for first, and how it stands."""
 
-    Parameters
-    ----------
-    name : str
-        What it is about, such as ``Proof``.
-    state : State
-        Which colour and sign it has.
-    text : str
-        The same in words.
-    section : str
-        Title of the section that says more; empty for none.
-    """
-
-    name: str
-    state: State
-    text: str
-    section: str = ""
+    name: str  # What it is about, such as ``Proof``
+    state: State  # Which colour and sign it has
+    text: str  # The same in words
+    section: str = ""  # Title of the section that says more; empty for none
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,43 +126,22 @@ class Bullets:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table of formatted cells; the first column names the row.
+    """A table of formatted cells; the first column names the row."""
 
-    Parameters
-    ----------
-    title : str
-        Caption above the table.
-    columns : tuple of str
-        Headings, with units.
-    rows : tuple of tuple of str
-        Cells; one that is `Linked` leads to its line of the spec, parts of a `Sentence` likewise.
-    """
-
-    title: str
-    columns: tuple[str, ...]
+    title: str  # Caption above the table
+    columns: tuple[str, ...]  # Headings, with units
+    # Cells; one that is `Linked` leads to its line of the spec, parts of a `Sentence` likewise.
     rows: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Illustration:
-    """A figure with what it shows.
+    """A figure with what it shows."""
 
-    Parameters
-    ----------
-    name : str
-        Unique in the report; letters, digits and hyphens, so that it can be a file name.
-    title : str
-        Heading above the figure.
-    caption : str
-        What is seen, and what it does not show.
-    figure : matplotlib.figure.Figure
-        Drawn, but not yet in a file format.
-    """
-
-    name: str
-    title: str
-    caption: str
-    figure: Figure
+    name: str  # Unique in the report; letters, digits and hyphens, so that it can be a file name
+    title: str  # Heading above the figure
+    caption: str  # What is seen, and what it does not show
+    figure: Figure  # Drawn, but not yet in a file format
 
 
 Block = Paragraph | Bullets | Table | Illustration | Listing
@@ -191,49 +158,31 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The whole report.
+    """The whole report."""
 
-    Parameters
-    ----------
-    name, title : str
-        Of the spec; the title may be empty.
-    verdict : {"proved", "refuted", "inconclusive", "identified", "inside", "outside", "same", \
-"different", "reachable", "unreachable", "simulated"}
-        Of the certification, the judgement of a run, a comparison or a robot, or that this is an
-        identification, or a gallery of runs.
-    claim : str
-        What the certificate states about stability, or that nothing is known.
-    remarks : tuple of str
-        What else is shown, such as that no common quadratic function exists.
-    facts : tuple of (str, str)
-        Label and value: hashes, versions, rates; values may lead somewhere as cells do.
-    sections : tuple of Section
-        In reading order.
-    footer : str
-        Last line of the page.
-    summary : tuple of str
-        Plain sentences on top: what was shown, and under which assumptions. The claim stands
-        below them; without them, it stands on top itself.
-    lights : tuple of Light
-        Below the sentences.
-    date : datetime.date, optional
-        As the reader gave it. Without one the report has no date, and the same spec gives the
-        same report on any day.
-    """
-
+    # name, title: of the spec; the title may be empty.
     name: str
     title: str
+    # Of the certification, the judgement of a run, a comparison or a robot, or that this is an
+    # identification, or a gallery of runs.
     verdict: str
-    claim: str
+    claim: str  # What the certificate states about stability, or that nothing is known
+    # What else is shown, such as that no common quadratic function exists.
     remarks: tuple[str, ...]
+    # Label and value: hashes, versions, rates; values may lead somewhere as cells do.
     facts: tuple[tuple[str, str], ...]
-    sections: tuple[Section, ...]
+    sections: tuple[Section, ...]  # In reading order
+    # Last line of the page.
     footer: str = (
         "Report of nrs-design. Figures are floating-point illustrations; the certificate is the "
         "proof."
     )
+    # Plain sentences on top: what was shown, and under which assumptions. The claim stands below
+    # them; without them, it stands on top itself.
     summary: tuple[str, ...] = ()
-    lights: tuple[Light, ...] = ()
+    lights: tuple[Light, ...] = ()  # Below the sentences
+    # As the reader gave it. Without one the report has no date, and the same spec gives the same
+    # report on any day.
     date: datetime.date | None = None
 
     @property

@@ -1,6 +1,6 @@
 """The assumptions of a system as a register: what each bounds, breaks and how it is tested.
 
-A sentence carries that from where it is made, see `nrs_design.switched.assumption_kinds`. One that
+A sentence carries that from where it is made, see `nrs_design.switched.assumption`. One that
 was read from a certificate has its words alone, and the register says so.
 """
 
@@ -11,34 +11,22 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from nrs_design.switched.assumption import Assumption, AssumptionKind, Standing
-from nrs_design.switched.assumption_kinds import MOTOR, NOMINAL_MOTOR, TISSUE
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 _LOST = "not in a certificate; report its spec to know"
-_UNKNOWN = AssumptionKind("taken for granted", "as the sentence says", _LOST, _LOST)
+_UNKNOWN = AssumptionKind("", "taken for granted", "", "as the sentence says", _LOST, _LOST)
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One thing that a certificate takes for granted.
+    """One thing that a certificate takes for granted."""
 
-    Parameters
-    ----------
-    statement : str
-        As the certificate says it.
-    kind : AssumptionKind
-        What breaks if it is false, and how to test it.
-    bound : str
-        Within what it must hold.
-    standing : Standing
-        Tested by records that the spec names, argued from how the product is made, or open.
-    """
-
-    statement: str
-    kind: AssumptionKind
-    bound: str
+    statement: str  # As the certificate says it
+    kind: AssumptionKind  # What breaks if it is false, and how to test it
+    bound: str  # Within what it must hold
+    # Tested by records that the spec names, argued from how the product is made, or open.
     standing: Standing
 
 
@@ -62,15 +50,15 @@ def register_of(
     return tuple(_entry(statement, tested) for statement in statements)
 
 
-def _entry(statement: str, tested: frozenset[AssumptionKind]) -> Entry:
+def _entry(statement: str, tested: frozenset[str]) -> Entry:
     if not isinstance(statement, Assumption):
-        return Entry(statement, _UNKNOWN, _UNKNOWN.bound, _UNKNOWN.standing)
+        return Entry(statement, _UNKNOWN, _UNKNOWN.within, _UNKNOWN.standing)
     kind = statement.kind
-    standing = Standing.TESTED if kind in tested else kind.standing
+    standing = Standing.TESTED if kind.id in tested else kind.standing
     return Entry(str(statement), kind, statement.bound, standing)
 
 
-def _tested(spec: InteractionDesignSpec) -> Iterator[AssumptionKind]:
+def _tested(spec: InteractionDesignSpec) -> Iterator[str]:
     measured = {
         at[-1]
         for at, item in spec.identified.items()
@@ -79,6 +67,6 @@ def _tested(spec: InteractionDesignSpec) -> Iterator[AssumptionKind]:
         and not item.doubts
     }
     if "actuator" in measured:
-        yield from (MOTOR, NOMINAL_MOTOR)
+        yield from ("motor", "nominal-motor")
     if spec.touched and measured.issuperset(spec.touched):
-        yield TISSUE
+        yield "tissue"

@@ -45,21 +45,13 @@ _TURN = 180 / math.pi
 
 @dataclass(frozen=True, slots=True)
 class WorstValue:
-    """One quantity: the worst found, its limit and what is certified; SI.
+    """One quantity: the worst found, its limit and what is certified; SI."""
 
-    Parameters
-    ----------
-    name, unit : str
-        Such as ``force`` in ``N*m``.
-    value : float
-        That was found.
-    limit, bound : float or None
-        Of the spec, and certified.
-    """
-
+    # Such as ``force`` in ``N*m``.
     name: str
     unit: str
-    value: float
+    value: float  # That was found
+    # limit, bound: of the spec, and certified.
     limit: float | None
     bound: float | None
 

@@ -32,24 +32,16 @@ BITS = 80
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What the controller runs in.
+    """What the controller runs in."""
 
-    Parameters
-    ----------
-    period : Fraction
-        Of the control loop, in s.
-    delays : tuple of int
-        Smallest and largest age of the measured offset and force, in periods.
-    stiffness, rotational : tuple of Fraction or None
-        Range of the environment for translations in N/m, and for rotations in N*m/rad.
-    lag : tuple of Fraction
-        Smallest and largest time constant in s with which the robot follows its command.
-    """
-
-    period: Fraction
+    period: Fraction  # Of the control loop, in s
+    # Smallest and largest age of the measured offset and force, in periods.
     delays: tuple[int, int]
+    # stiffness, rotational: range of the environment for translations in N/m, and for rotations in
+    # N*m/rad.
     stiffness: tuple[Fraction, Fraction] | None
     rotational: tuple[Fraction, Fraction] | None
+    # Smallest and largest time constant in s with which the robot follows its command.
     lag: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
 
     @property

@@ -46,24 +46,14 @@ _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Stat
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What is asked about a parameter file.
+    """What is asked about a parameter file."""
 
-    Parameters
-    ----------
-    delays : tuple of int
-        Smallest and largest age of what is measured, in periods.
-    stiffness, rotational : tuple of Fraction or None
-        What translations meet in N/m, and rotations in N*m/rad.
-    rate : Fraction or None
-        Of the control loop in 1/s; None for what the file says.
-    lag : tuple of Fraction
-        Smallest and largest time constant of the robot in s.
-    """
-
-    delays: tuple[int, int]
+    delays: tuple[int, int]  # Smallest and largest age of what is measured, in periods
+    # stiffness, rotational: what translations meet in N/m, and rotations in N*m/rad.
     stiffness: tuple[Fraction, Fraction] | None
     rotational: tuple[Fraction, Fraction] | None
-    rate: Fraction | None = None
+    rate: Fraction | None = None  # Of the control loop in 1/s; None for what the file says
+    # Smallest and largest time constant of the robot in s.
     lag: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
 
     def around(self, period: Fraction) -> Surroundings:

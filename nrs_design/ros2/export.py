@@ -39,26 +39,13 @@ BESIDE = (
 
 @dataclass(frozen=True, slots=True)
 class RosExport:
-    """One controller as a parameter file, or why there is none.
+    """One controller as a parameter file, or why there is none."""
 
-    Parameters
-    ----------
-    controller : str
-        Its name in the spec.
-    verdict : {"proved", "refuted", "inconclusive"}
-        Of the law that ROS 2 computes with these parameters.
-    text : str
-        The file; empty without a proof.
-    certificate : Certificate or None
-        Its modes, and what is shown of them.
-    ranged : tuple of str
-        Gains of which the spec declares a range: only their designed values are written and proved.
-    """
-
-    controller: str
-    verdict: str
-    text: str
-    certificate: Certificate | None
+    controller: str  # Its name in the spec
+    verdict: str  # Of the law that ROS 2 computes with these parameters
+    text: str  # The file; empty without a proof
+    certificate: Certificate | None  # Its modes, and what is shown of them
+    # Gains of which the spec declares a range: only their designed values are written and proved.
     ranged: tuple[str, ...] = ()
 
 

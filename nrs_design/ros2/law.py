@@ -23,25 +23,14 @@ FILTER = "ft_sensor.filter_coefficient"
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter that the law depends on.
+    """A parameter that the law depends on."""
 
-    Parameters
-    ----------
-    read : callable
-        Reads one value, and says why ROS 2 would not.
-    count : int
-        Length of the list; 1 for a single value.
-    low, high : Fraction or None
-        Bounds that the node enforces.
-    default : Fraction or None
-        None if it must be given.
-    """
-
-    read: Callable[[str], Fraction]
-    count: int = 1
+    read: Callable[[str], Fraction]  # Reads one value, and says why ROS 2 would not
+    count: int = 1  # Length of the list; 1 for a single value
+    # low, high: bounds that the node enforces.
     low: Fraction | None = None
     high: Fraction | None = None
-    default: Fraction | None = None
+    default: Fraction | None = None  # None if it must be given
 
 
 LAW: Mapping[str, Parameter] = MappingProxyType(
@@ -86,23 +75,12 @@ OTHERS = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One Cartesian axis of the law, in SI units of a translation or a rotation.
+    """One Cartesian axis of the law, in SI units of a translation or a rotation."""
 
-    Parameters
-    ----------
-    name : str
-        Out of `AXES`.
-    position : Position
-        Where its mass stands.
-    selected : bool
-        Whether the force acts on it.
-    mass, damping_ratio, stiffness : Fraction
-        As written; the damping is ``2 damping_ratio sqrt(mass stiffness)``.
-    """
-
-    name: str
-    position: Position
-    selected: bool
+    name: str  # Out of `AXES`
+    position: Position  # Where its mass stands
+    selected: bool  # Whether the force acts on it
+    # As written; the damping is ``2 damping_ratio sqrt(mass stiffness)``.
     mass: Fraction
     damping_ratio: Fraction
     stiffness: Fraction
@@ -115,29 +93,14 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class AdmittanceLaw:
-    """What one admittance controller computes.
+    """What one admittance controller computes."""
 
-    Parameters
-    ----------
-    node : RosNode
-        Its parameters.
-    axes : tuple of Axis
-        All six.
-    joint_damping : Fraction
-        In 1/s.
-    filter_coefficient : Fraction
-        Share of the new sample in the smoothed force, in each period.
-    values : mapping of str to tuple of Fraction
-        Everything that was read, defaults filled in.
-    force_from : str or None
-        Another controller, if the force comes through one, which may filter or scale it.
-    """
-
-    node: RosNode
-    axes: tuple[Axis, ...]
-    joint_damping: Fraction
-    filter_coefficient: Fraction
-    values: Mapping[str, tuple[Fraction, ...]]
+    node: RosNode  # Its parameters
+    axes: tuple[Axis, ...]  # All six
+    joint_damping: Fraction  # In 1/s
+    filter_coefficient: Fraction  # Share of the new sample in the smoothed force, in each period
+    values: Mapping[str, tuple[Fraction, ...]]  # Everything that was read, defaults filled in
+    # Another controller, if the force comes through one, which may filter or scale it.
     force_from: str | None = None
 
 

@@ -28,24 +28,12 @@ SILENT = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class PassedOver:
-    """What a file names beside the controllers that are decided.
+    """What a file names beside the controllers that are decided."""
 
-    Parameters
-    ----------
-    name : str
-        Of the node, or of the controller that a manager runs.
-    position : Position
-        Where it stands.
-    why : str
-        What it is, and what is missing.
-    silent : bool
-        Whether it commands nothing.
-    """
-
-    name: str
-    position: Position
-    why: str
-    silent: bool
+    name: str  # Of the node, or of the controller that a manager runs
+    position: Position  # Where it stands
+    why: str  # What it is, and what is missing
+    silent: bool  # Whether it commands nothing
 
 
 def managers_of(node: RosNode, nodes: Collection[RosNode]) -> list[RosNode]:

@@ -23,24 +23,12 @@ _INTEGER = re.compile(r"[+-]?[0-9]+")
 
 @dataclass(frozen=True, slots=True)
 class RosNode:
-    """A node of ROS 2 and its parameters.
+    """A node of ROS 2 and its parameters."""
 
-    Parameters
-    ----------
-    name : str
-        With its namespace, as the file says.
-    position : Position
-        Where its parameters begin.
-    values : mapping of str to Node
-        By dotted name.
-    places : mapping of str to Position
-        Where each name stands, and each level above one.
-    """
-
-    name: str
-    position: Position
-    values: Mapping[str, Node]
-    places: Mapping[str, Position]
+    name: str  # With its namespace, as the file says
+    position: Position  # Where its parameters begin
+    values: Mapping[str, Node]  # By dotted name
+    places: Mapping[str, Position]  # Where each name stands, and each level above one
 
     @property
     def namespace(self) -> str:

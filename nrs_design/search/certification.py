@@ -22,27 +22,15 @@ DEFAULT_MEMORY = 2 * GIGABYTE
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How far the searches go.
+    """How far the searches go."""
 
-    Parameters
-    ----------
-    max_degree : int or None
-        Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
-    budget : float
-        Work, in units (`nrs_design.work`). Steps that are predicted not to fit are not begun.
-    memory : float
-        Steps that are predicted to need more bytes are not begun.
-    optimize_rate : bool
-        Look for the largest provable decay rate, not only for some.
-    gradient : Gradient
-        Settings of the gradient iteration.
-    """
-
+    # Highest degree of a homogeneous polynomial function; None for as high as the budget allows.
     max_degree: int | None = None
+    # Work, in units (`nrs_design.work`). Steps that are predicted not to fit are not begun.
     budget: float = DEFAULT_BUDGET
-    memory: float = DEFAULT_MEMORY
-    optimize_rate: bool = True
-    gradient: Gradient = field(default_factory=Gradient)
+    memory: float = DEFAULT_MEMORY  # Steps that are predicted to need more bytes are not begun
+    optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
+    gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,33 +48,17 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Certification:
-    """The verdict on one system, with everything that was shown on the way.
+    """The verdict on one system, with everything that was shown on the way."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        What the verdict is about.
-    verdict : Verdict
-        Proved, refuted or inconclusive.
-    common_quadratic : CommonQuadraticStatus
-        Whether a common quadratic function exists.
-    method : str
-        The rung that settled it, or what was asked for.
-    statements : tuple of AbstractEvidence
-        The deciding evidence first, if any. Each has passed the exact check.
-    attempts : tuple of Attempt
-        Every rung in order.
-    rate_limit : float or None
-        No proof can claim a faster decay (in floating point): the slowest mode's rate, in discrete
-        time the fastest growth per step along a cycle of modes. None beyond floating point.
-    """
-
-    system: SwitchedSystem
-    verdict: Verdict
-    common_quadratic: CommonQuadraticStatus
-    method: str
+    system: SwitchedSystem  # What the verdict is about
+    verdict: Verdict  # Proved, refuted or inconclusive
+    common_quadratic: CommonQuadraticStatus  # Whether a common quadratic function exists
+    method: str  # The rung that settled it, or what was asked for
+    # The deciding evidence first, if any. Each has passed the exact check.
     statements: tuple[AbstractEvidence, ...]
-    attempts: tuple[Attempt, ...]
+    attempts: tuple[Attempt, ...]  # Every rung in order
+    # No proof can claim a faster decay (in floating point): the slowest mode's rate, in discrete
+    # time the fastest growth per step along a cycle of modes. None beyond floating point.
     rate_limit: float | None = None
 
     @property

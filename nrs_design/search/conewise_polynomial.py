@@ -42,23 +42,15 @@ BACK_OFF = 0.995
 
 @dataclass(frozen=True)
 class ConewisePolynomialProgram:
-    """The motions in contact and free, lifted to degree d, in coordinates that they share.
+    """The motions in contact and free, lifted to degree d, in coordinates that they share."""
 
-    Parameters
-    ----------
-    system, flying : SwitchedSystem
-        The exact modes in contact, and the free ones without the deflection.
-    contact, free : Lift
-        The same, lifted.
-    kept : tuple of int
-        The monomials without the deflection.
-    """
-
+    # system, flying: the exact modes in contact, and the free ones without the deflection.
     system: SwitchedSystem
     flying: SwitchedSystem
+    # contact, free: the same, lifted.
     contact: Lift
     free: Lift
-    kept: tuple[int, ...]
+    kept: tuple[int, ...]  # The monomials without the deflection
 
     @classmethod
     def of(cls, family: Family, degree: int) -> ConewisePolynomialProgram:

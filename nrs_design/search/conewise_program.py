@@ -34,24 +34,12 @@ SMALLEST_MARGIN = 1e-10
 
 @dataclass(frozen=True)
 class Motions:
-    """The maps in contact and free, in floating point.
+    """The maps in contact and free, in floating point."""
 
-    Parameters
-    ----------
-    time : Time
-        Continuous or discrete.
-    contact : ndarray, shape (m, n, n)
-        Modes in contact.
-    free : ndarray, shape (f, n, n)
-        Free modes.
-    pulls : ndarray, shape (p, n)
-        Forces of environments that could pull.
-    """
-
-    time: Time
-    contact: Array
-    free: Array
-    pulls: Array
+    time: Time  # Continuous or discrete
+    contact: Array  # Shape (m, n, n). Modes in contact.
+    free: Array  # Shape (f, n, n). Free modes.
+    pulls: Array  # Shape (p, n). Forces of environments that could pull.
 
     @classmethod
     def of(cls, family: Family) -> Motions:

@@ -36,18 +36,12 @@ Quadratic = ConewiseQuadratic | CommonQuadratic
 
 @dataclass(frozen=True)
 class RoundingErrors:
-    """What the arithmetic rounds, in floating point.
+    """What the arithmetic rounds, in floating point."""
 
-    Parameters
-    ----------
-    columns : ndarray, shape (k, r, n)
-        Where each rounding acts, for every mode and free mode, in the coordinates of a family.
-    rows : ndarray, shape (k, r, n)
-        How large it is at most, over the state.
-    """
-
+    # Shape (k, r, n). Where each rounding acts, for every mode and free mode, in the coordinates of
+    # a family.
     columns: Array
-    rows: Array
+    rows: Array  # Shape (k, r, n). How large it is at most, over the state.
 
     @classmethod
     def of(cls, family: Family) -> RoundingErrors:

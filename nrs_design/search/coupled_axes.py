@@ -48,23 +48,13 @@ class CoupledSolution:
 
 @dataclass(frozen=True)
 class CoupledProblem:
-    """Motions and couplings in floating point.
+    """Motions and couplings in floating point."""
 
-    Parameters
-    ----------
-    motions : Motions
-        In contact and free.
-    columns : ndarray, shape (k, c, n)
-        The B of the couplings, for every mode and free mode.
-    rows : ndarray, shape (k, c, n)
-        Their q.
-    scales : ndarray, shape (c,)
-        Columns are multiplied by these, and rows divided by them, so that both are of like size.
-    """
-
-    motions: Motions
-    columns: Array
-    rows: Array
+    motions: Motions  # In contact and free
+    columns: Array  # Shape (k, c, n). The B of the couplings, for every mode and free mode.
+    rows: Array  # Shape (k, c, n). Their q.
+    # Shape (c,). Columns are multiplied by these, and rows divided by them, so that both are of
+    # like size.
     scales: Array
 
     @classmethod

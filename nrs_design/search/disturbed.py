@@ -27,39 +27,22 @@ BITS = (30, 40, 50, 60)
 
 @dataclass(frozen=True)
 class DisturbedProblem:
-    """The conditions in coordinates where the state, disturbances and output are about one.
+    """The conditions in coordinates where the state, disturbances and output are about one."""
 
-    Parameters
-    ----------
-    time : Time
-        Continuous or discrete.
-    contact, free : ndarray, shapes (m, n, n + c + r) and (f, n, n + c + r)
-        Maps of state, c disturbances and r errors: what axes do to each other, then roundings.
-    contact_sizes, free_sizes : ndarray, shapes (m, r, n + c) and (f, r, n + c)
-        How large the errors are at most; of couplings over all axes. That these depend on the
-        roundings, too, is left to the exact check.
-    pulls : ndarray, shape (p, n)
-        Forces of environments that could pull.
-    rows : ndarray, shape (q, n)
-        The output.
-    disturbances : int
-        The c.
-    losable : bool
-        Whether contact may be lost.
-    couplings : int
-        How many of the errors are what axes do to each other.
-    """
-
-    time: Time
+    time: Time  # Continuous or discrete
+    # contact, free: maps of state, c disturbances and r errors: what axes do to each other, then
+    # roundings.
     contact: Array
     free: Array
+    # contact_sizes, free_sizes: how large the errors are at most; of couplings over all axes. That
+    # these depend on the roundings, too, is left to the exact check.
     contact_sizes: Array
     free_sizes: Array
-    pulls: Array
-    rows: Array
-    disturbances: int
-    losable: bool
-    couplings: int = 0
+    pulls: Array  # Shape (p, n). Forces of environments that could pull.
+    rows: Array  # Shape (q, n). The output.
+    disturbances: int  # The c
+    losable: bool  # Whether contact may be lost
+    couplings: int = 0  # How many of the errors are what axes do to each other
 
     @property
     def order(self) -> int:
@@ -141,24 +124,13 @@ class DisturbedProblem:
 
 @dataclass(frozen=True)
 class MatrixInequality:
-    """One form that must be positive: images of a stack of Q, and what the multipliers add.
+    """One form that must be positive: images of a stack of Q, and what the multipliers add."""
 
-    Parameters
-    ----------
-    images : ndarray, shape (k, s, s)
-        Of every Q.
-    order : int
-        States in it; disturbances and errors follow.
-    crossings : mapping of int to ndarray, each of shape (s, s)
-        The images of its multipliers for lost contact, by which they are.
-    sizes : ndarray or None, shape (r, s - r)
-        Of the errors.
-    """
-
-    images: Array
-    order: int
+    images: Array  # Shape (k, s, s). Of every Q.
+    order: int  # States in it; disturbances and errors follow
+    # Shape (s, s). The images of its multipliers for lost contact, by which they are.
     crossings: Mapping[int, Array] = field(default_factory=dict)
-    sizes: Array | None = None
+    sizes: Array | None = None  # Shape (r, s - r). Of the errors.
 
     def stack(self, disturbances: int, multipliers: int) -> Array:
         """Return the images of Q, lambda, shares and tau in turn."""

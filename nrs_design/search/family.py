@@ -25,33 +25,17 @@ NEARLY = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """The modes in floating point, scaled by powers of two.
+    """The modes in floating point, scaled by powers of two."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The exact modes.
-    matrices : ndarray, shape (m, n, n)
-        ``2^-d A 2^d``.
-    exponents : ndarray of int, shape (n,)
-        The d.
-    limit : float
-        Rate of the slowest mode that need never be left; without one, a rate out of reach.
-    allowance : Allowance
-        Work and memory for the searches; unlimited by default.
-    optimize_rate : bool
-        Look for the largest provable decay rate, not only for some.
-    gradient : Gradient
-        Settings of the gradient iteration.
-    """
-
-    system: SwitchedSystem
-    matrices: NDArray[np.float64]
-    exponents: NDArray[np.int64]
+    system: SwitchedSystem  # The exact modes
+    matrices: NDArray[np.float64]  # Shape (m, n, n). ``2^-d A 2^d``.
+    exponents: NDArray[np.int64]  # Shape (n,). The d.
+    # Rate of the slowest mode that need never be left; without one, a rate out of reach.
     limit: float
+    # Work and memory for the searches; unlimited by default.
     allowance: Allowance = field(default_factory=Allowance)
-    optimize_rate: bool = True
-    gradient: Gradient = field(default_factory=Gradient)
+    optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
+    gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
 
     def stand_ins(self) -> dict[str, str]:
         """Return for each mode the first that is nearly the same; nothing where rules matter.

@@ -42,25 +42,14 @@ class Jump:
 
 @dataclass(frozen=True)
 class Graph:
-    """Modes, the jumps between them, and times to try in each mode.
+    """Modes, the jumps between them, and times to try in each mode."""
 
-    Parameters
-    ----------
-    flows : Flows
-        Of the modes.
-    jumps : tuple of Jump
-        All that are allowed at one value of a constant parameter.
-    shortest, longest : ndarray, shape (m,)
-        Bounds of the time in each mode; infinite where there is none.
-    times : tuple of ndarray
-        Admissible times in each mode, in order.
-    """
-
-    flows: Flows
-    jumps: tuple[Jump, ...]
+    flows: Flows  # Of the modes
+    jumps: tuple[Jump, ...]  # All that are allowed at one value of a constant parameter
+    # shortest, longest: shape (m,). Bounds of the time in each mode; infinite where there is none.
     shortest: Array
     longest: Array
-    times: tuple[Array, ...]
+    times: tuple[Array, ...]  # Admissible times in each mode, in order
 
     @classmethod
     def of(cls, system: SwitchedSystem, matrices: Array) -> Graph:

@@ -37,18 +37,10 @@ BYTES_PER_ENTRY = 32
 
 @dataclass(frozen=True, slots=True)
 class Cones:
-    """Matrices ``X_j(y) = constant_j + sum_k y_k images_jk`` that must be positive semidefinite.
+    """Matrices ``X_j(y) = constant_j + sum_k y_k images_jk`` that must be positive semidefinite."""
 
-    Parameters
-    ----------
-    constant : ndarray, shape (cones, n, n)
-        Symmetric.
-    images : ndarray, shape (variables, cones, n, n)
-        Symmetric.
-    """
-
-    constant: Array
-    images: Array
+    constant: Array  # Shape (cones, n, n). Symmetric.
+    images: Array  # Shape (variables, cones, n, n). Symmetric.
 
     def at(self, y: Array) -> Array:
         """Return all X_j, shape (cones, n, n)."""

@@ -26,30 +26,16 @@ Pair = tuple[int, int]
 
 @dataclass(frozen=True)
 class Lift:
-    """A family lifted to degree d, in floating point and in well-conditioned coordinates.
+    """A family lifted to degree d, in floating point and in well-conditioned coordinates."""
 
-    Parameters
-    ----------
-    variables : int
-        The number of states n.
-    degree : int
-        The d.
-    matrices : ndarray, shape (m, K, K)
-        Lifted modes in the coordinates ``2^e z(x)``.
-    vanishing : ndarray, shape (p, K, K)
-        Basis of the symmetric N with ``z' N z = 0`` for all x, in the same coordinates.
-    exponents : ndarray of int, shape (K,)
-        The e.
-    unit : int
-        The modes are those in a unit of time of two to this power (discrete time: zero).
-    """
-
-    variables: int
-    degree: int
-    matrices: Array
+    variables: int  # The number of states n
+    degree: int  # The d
+    matrices: Array  # Shape (m, K, K). Lifted modes in the coordinates ``2^e z(x)``.
+    # Shape (p, K, K). Basis of the symmetric N with ``z' N z = 0`` for all x, in the same
+    # coordinates.
     vanishing: Array
-    exponents: Exponents
-    unit: int
+    exponents: Exponents  # Shape (K,). The e.
+    unit: int  # The modes are those in a unit of time of two to this power (discrete time: zero)
 
 
 def lift_family(system: SwitchedSystem, exponents: Exponents, degree: int) -> Lift:

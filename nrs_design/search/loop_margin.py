@@ -23,57 +23,34 @@ FARTHEST_DELAY = 32
 
 @dataclass(frozen=True)
 class Bracket:
-    """The largest number with a proof, and the smallest that is refuted; None where there is none.
+    """The largest number with a proof, and the smallest that is refuted, where there are any."""
 
-    Parameters
-    ----------
-    proved, refuted : Fraction or None
-        Delays in samples, periods in s.
-    end : str
-        Where the search for a refutation ended, and why there, if it found none.
-    refuted_in : str
-        In which contact alone it is refuted, where its loss must be covered; empty for any.
-    """
-
+    # proved, refuted: delays in samples, periods in s.
     proved: Fraction | None
     refuted: Fraction | None
-    end: str = ""
+    end: str = ""  # Where the search for a refutation ended, and why there, if it found none
+    # In which contact alone it is refuted, where its loss must be covered; empty for any.
     refuted_in: str = ""
 
 
 @dataclass(frozen=True)
 class CommandMargin:
-    """Disturbances at which the limit of the force is proved to be kept, and those that break it.
+    """Disturbances under which the force limit is proved to be kept, and those that break it."""
 
-    Parameters
-    ----------
-    limit : Fraction
-        Of the force, in N m.
-    bounds : mapping of str to (Fraction, Fraction, str)
-        By disturbance: kept up to the first number, in the proportion in which the spec declares
-        them; broken by a simulated run at the second one; with the unit.
-    """
-
-    limit: Fraction
+    limit: Fraction  # Of the force, in N m
+    # By disturbance: kept up to the first number, in the proportion in which the spec declares
+    # them; broken by a simulated run at the second one; with the unit.
     bounds: Mapping[str, tuple[Fraction, Fraction, str]]
 
 
 @dataclass(frozen=True)
 class MarginBrackets:
-    """What `--margin` finds beside the box of ranges.
+    """What `--margin` finds beside the box of ranges."""
 
-    Parameters
-    ----------
-    delay : Bracket or None
-        Longest delay of the force sample, from the shortest declared one on; None without sampling.
-    period : Bracket or None
-        Periods, each for itself; None without sampling.
-    command : CommandMargin or None
-        None where no bound on the force is proved under the disturbances of the spec.
-    """
-
+    # Longest delay of the force sample, from the shortest declared one on; None without sampling.
     delay: Bracket | None
-    period: Bracket | None
+    period: Bracket | None  # Periods, each for itself; None without sampling
+    # None where no bound on the force is proved under the disturbances of the spec.
     command: CommandMargin | None
 
 

@@ -32,28 +32,17 @@ Certify = Callable[[SwitchedSystem], "Certification"]
 
 @dataclass(frozen=True)
 class BoxMargin:
-    """How far the declared ranges can be stretched about their nominal values.
+    """How far the declared ranges can be stretched about their nominal values."""
 
-    Parameters
-    ----------
-    proved : Fraction or None
-        Largest scale that was proved, 1 being the declared ranges; None if not even the nominal
-        values (scale 0) were.
-    refuted : Fraction or None
-        Smallest scale that was refuted; None if the search ended without a refutation. What lies
-        between the two is undecided.
-    proof : Certification or None
-        At the scale `proved`.
-    end : str
-        Where the search for a refutation ended, and why there, if it found none.
-    refuted_in : str
-        In which contact alone it is refuted, where its loss must be covered; empty for any.
-    """
-
+    # Largest scale that was proved, 1 being the declared ranges; None if not even the nominal
+    # values (scale 0) were.
     proved: Fraction | None
+    # Smallest scale that was refuted; None if the search ended without a refutation. What lies
+    # between the two is undecided.
     refuted: Fraction | None
-    proof: Certification | None
-    end: str = ""
+    proof: Certification | None  # At the scale `proved`
+    end: str = ""  # Where the search for a refutation ended, and why there, if it found none
+    # In which contact alone it is refuted, where its loss must be covered; empty for any.
     refuted_in: str = ""
 
 
@@ -151,28 +140,15 @@ def _smallest_refuted(tried: Tried[Fraction], assemble: Assemble) -> Fraction | 
 
 @dataclass(frozen=True)
 class DwellMargin:
-    """How short the time between switches may be.
+    """How short the time between switches may be."""
 
-    Parameters
-    ----------
-    proved : Fraction or None
-        Shortest dwell time that was proved, in s; zero if arbitrary switching is stable; None if
-        none was.
-    refuted : Fraction or None
-        Longest one that was refuted.
-    proof : Certification or None
-        At `proved`.
-    longest : Fraction
-        Longest dwell time that the search has decided about, from zero on.
-    refuted_in : str
-        As of `BoxMargin`.
-    """
-
+    # Shortest dwell time that was proved, in s; zero if arbitrary switching is stable; None if none
+    # was.
     proved: Fraction | None
-    refuted: Fraction | None
-    proof: Certification | None
-    longest: Fraction
-    refuted_in: str = ""
+    refuted: Fraction | None  # Longest one that was refuted
+    proof: Certification | None  # At `proved`
+    longest: Fraction  # Longest dwell time that the search has decided about, from zero on
+    refuted_in: str = ""  # As of `BoxMargin`
 
 
 def find_shortest_dwell(

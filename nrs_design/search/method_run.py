@@ -16,30 +16,15 @@ History = tuple[tuple[int, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class MethodRun:
-    """How one method fared.
+    """How one method fared."""
 
-    Parameters
-    ----------
-    method : Method
-        ``lmi`` or ``gradient``.
-    certification : Certification
-        Its verdict; whatever it found has passed the exact check.
-    seconds : float
-        Time of the search and of the checks of its candidates.
-    coordinates : Coordinates or None
-        Where the iteration ran; None for the LMI.
-    order : Order or None
-        In which it took the modes; None for the LMI.
-    histories : tuple of tuple of (int, float)
-        The largest v over all modes against updates, for every block of the states that was
-        searched on its own.
-    """
-
-    method: Method
-    certification: Certification
-    seconds: float
-    coordinates: Coordinates | None = None
-    order: Order | None = None
+    method: Method  # ``lmi`` or ``gradient``
+    certification: Certification  # Its verdict; whatever it found has passed the exact check
+    seconds: float  # Time of the search and of the checks of its candidates
+    coordinates: Coordinates | None = None  # Where the iteration ran; None for the LMI
+    order: Order | None = None  # In which it took the modes; None for the LMI
+    # The largest v over all modes against updates, for every block of the states that was searched
+    # on its own.
     histories: tuple[History, ...] = ()
 
     @property

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import ModePolynomial, ModeQuadratic
 from nrs_design.proof.evidence.mode_polynomial import lift_system
-from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states

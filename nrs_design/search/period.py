@@ -10,7 +10,8 @@ from math import ceil, exp, isinf, log, log2
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import mean_norm_coordinates
@@ -43,7 +44,7 @@ PER_GREEDY = 8e-6
 NOTHING_GROWS = "no periodic signal tried makes solutions grow"
 
 
-def search_period(family: Family) -> Candidates[UnstablePeriod]:
+def search_period(family: Family) -> Candidates[GrowingSequence]:
     """Search for a period with a spectral radius above one.
 
     Raises
@@ -55,7 +56,7 @@ def search_period(family: Family) -> Candidates[UnstablePeriod]:
     if system.time is Time.DISCRETE and system.switching.is_arbitrary:
         for word, radius in growing_words(family.matrices, allowance):
             steps = tuple((system.modes[i].name, Fraction(1)) for i in word)
-            yield from powers(system, UnstablePeriod(steps, 0), radius)
+            yield from powers(system, steps, (), radius)
     matrices = family.matrices
     if system.switching.resets:
         # The scaled modes of a search do not fit resets.
@@ -174,7 +175,7 @@ def _refined_steps(graph: Graph, cycle: Cycle, times: Array) -> Array:
 
 def _roundings(
     system: SwitchedSystem, graph: Graph, cycle: Cycle, times: Array
-) -> Iterator[Candidate[UnstablePeriod]]:
+) -> Iterator[Candidate[GrowingSequence]]:
     """Round times to few digits, and keep them admissible."""
     names = [system.modes[mode].name for mode in graph.modes(cycle)]
     edges = tuple(graph.jumps[k].way for k in cycle)
@@ -186,8 +187,7 @@ def _roundings(
         )
         floats = np.array([float(time) for _, time in steps])
         growth = float(graph.growth(cycle, floats) * floats.sum())
-        evidence = UnstablePeriod(steps, 0, edges if has_choice else ())
-        yield from powers(system, evidence, exp(min(growth, 700.0)))
+        yield from powers(system, steps, edges if has_choice else (), exp(min(growth, 700.0)))
 
 
 def _pairs(graph: Graph) -> list[tuple[int, int]]:
@@ -201,16 +201,16 @@ def _admissible(system: SwitchedSystem, mode: str, time: Fraction) -> Fraction:
 
 
 def powers(
-    system: SwitchedSystem, evidence: UnstablePeriod, radius: float
-) -> Iterator[Candidate[UnstablePeriod]]:
+    system: SwitchedSystem, steps: Steps, edges: tuple[int, ...], radius: float
+) -> Iterator[Candidate[GrowingSequence]]:
     """Yield a period with its powers from where the trace should exceed n.
 
     Parameters
     ----------
     system : SwitchedSystem
         The modes.
-    evidence : UnstablePeriod
-        The signal.
+    steps, edges
+        The signal, as in `GrowingSequence`.
     radius : float
         Spectral radius over the period; nothing is yielded if it is not above one.
     """
@@ -218,7 +218,7 @@ def powers(
         return
     first = max(0, ceil(log2(log(2 * system.order) / log(radius))))
     for doublings in range(first, first + 4):
-        yield Candidate(UnstablePeriod(evidence.steps, doublings, evidence.edges))
+        yield Candidate(GrowingSequence(steps, doublings, edges))
 
 
 def _short(time: float, bits: int) -> Fraction:

@@ -60,23 +60,12 @@ class PeriodicSolution:
 
 @dataclass(frozen=True)
 class StepInequality:
-    """One form that must be positive, of the functions before and after a step.
+    """One form that must be positive, of the functions before and after a step."""
 
-    Parameters
-    ----------
-    step : int
-        Of the round.
-    map : ndarray, shape (m, n)
-        Of the states that there are before to those after.
-    undeflected : bool
-        Whether the deflection is none of those before.
-    crossings : tuple of (int, ndarray)
-        Which multipliers of the step enter, and their forms.
-    """
-
-    step: int
-    map: Array
-    undeflected: bool = False
+    step: int  # Of the round
+    map: Array  # Shape (m, n). Of the states that there are before to those after.
+    undeflected: bool = False  # Whether the deflection is none of those before
+    # Which multipliers of the step enter, and their forms.
     crossings: tuple[tuple[int, Array], ...] = ()
 
     def before(self, Q: Array) -> Array:

@@ -8,7 +8,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence.growth import Steps
 from nrs_design.proof.mode import Mode
 from nrs_design.search.candidates import Candidates
 from nrs_design.search.family import Family, stand_ins, to_floats
@@ -21,7 +22,7 @@ Array = NDArray[np.float64]
 LETTERS = 8
 
 
-def search_rounds(family: Family) -> Candidates[UnstablePeriod]:
+def search_rounds(family: Family) -> Candidates[GrowingSequence]:
     """Search among rounds of one mode for the first step and one for all others.
 
     Raises
@@ -44,16 +45,16 @@ def search_rounds(family: Family) -> Candidates[UnstablePeriod]:
     ]
     rounds.sort(key=lambda item: -item[0])
     for radius, names, _ in rounds[:1]:
-        yield from powers(system, _signal([names], rest), radius)
+        yield from powers(system, _signal([names], rest), (), radius)
     matrices = np.array([whole for _, _, whole in rounds[:LETTERS]])
     for word, radius in growing_words(matrices, family.allowance):
-        yield from powers(system, _signal([rounds[i][1] for i in word], rest), radius)
+        yield from powers(system, _signal([rounds[i][1] for i in word], rest), (), radius)
     return NOTHING_GROWS
 
 
-def _signal(rounds: list[tuple[str, str]], rest: int) -> UnstablePeriod:
+def _signal(rounds: list[tuple[str, str]], rest: int) -> Steps:
     pairs = (((a, Fraction(1)), (b, Fraction(rest))) for a, b in rounds)
-    return UnstablePeriod(tuple(step for pair in pairs for step in pair), 0)
+    return tuple(step for pair in pairs for step in pair)
 
 
 def _distinct(modes: list[Mode]) -> list[tuple[Mode, Array]]:

@@ -8,8 +8,8 @@ from functools import partial
 from math import inf
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
-from nrs_design.proof.evidence.unstable_mode import affordable, is_stable
 from nrs_design.proof.mode import Time
+from nrs_design.proof.spectrum import affordable, is_stable
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidates, Search
 from nrs_design.search.certification import Limits
@@ -25,17 +25,10 @@ Step = tuple[str, Search]
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What decides which rungs apply.
+    """What decides which rungs apply."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The modes and their switching.
-    leaves_stable : bool
-        The modes that must be left are stable, too, as far as the exact test goes.
-    """
-
-    system: SwitchedSystem
+    system: SwitchedSystem  # The modes and their switching
+    # The modes that must be left are stable, too, as far as the exact test goes.
     leaves_stable: bool
 
     @classmethod
@@ -121,45 +114,26 @@ def _always(facts: Facts) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Rung:
-    """One row of the ladder.
+    """One row of the ladder."""
 
-    Parameters
-    ----------
-    name : str
-        What the reader is told.
-    method : Method or None
-        What asks for it alone; None for what is tried whatever is asked for.
-    applies : callable
-        Tells whether it can decide a system.
-    search : callable
-        Yields candidates for a family, and for a degree if it rises.
-    cost : callable or None
-        Predicts what a degree takes, for a rung that is tried with ever higher ones.
-    in_auto : callable
-        Tells whether it is worth trying where it was not asked for alone.
-    only_quadratic : bool
-        Left out once it is known that there is no common quadratic function.
-    first : float
-        A degree that is predicted to take more work is tried with the higher ones, at last.
-    coupled : bool
-        What it finds of one axis says something about all axes that act on each other; other rungs
-        are not tried where they do.
-    clocked : bool
-        It is for modes that take turns, and for no others.
-    in_kept_contact : bool
-        What it finds is refuted by growth in kept contact, or is such growth itself.
-    """
-
-    name: str
-    method: Method | None
-    applies: Callable[[Facts], bool]
+    name: str  # What the reader is told
+    method: Method | None  # What asks for it alone; None for what is tried whatever is asked for
+    applies: Callable[[Facts], bool]  # Tells whether it can decide a system
+    # Yields candidates for a family, and for a degree if it rises.
     search: Callable[..., Candidates[AbstractEvidence]]
+    # Predicts what a degree takes, for a rung that is tried with ever higher ones.
     cost: Callable[[SwitchedSystem, int], tuple[Cost, str]] | None = None
+    # Tells whether it is worth trying where it was not asked for alone.
     in_auto: Callable[[Facts], bool] = _always
+    # Left out once it is known that there is no common quadratic function.
     only_quadratic: bool = False
+    # A degree that is predicted to take more work is tried with the higher ones, at last.
     first: float = inf
+    # What it finds of one axis says something about all axes that act on each other; other rungs
+    # are not tried where they do.
     coupled: bool = False
-    clocked: bool = False
+    clocked: bool = False  # It is for modes that take turns, and for no others
+    # What it finds is refuted by growth in kept contact, or is such growth itself.
     in_kept_contact: bool = True
 
     def is_idle(self, known: frozenset[Shows]) -> bool:

@@ -49,27 +49,15 @@ SMALLEST, LARGEST = 1e-7, 1e5
 
 @dataclass(frozen=True)
 class Problem:
-    """The loop in floating point; signals in units of their limits.
+    """The loop in floating point; signals in units of their limits."""
 
-    Parameters
-    ----------
-    A : ndarray, shape (k, n, n)
-        Modes in contact, and after them the free ones, which leave the deflection where it is.
-    free : int
-        How many of them are free.
-    columns : ndarray, shape (k, s, n)
-        What every signal does.
-    rows : tuple of ndarray, each of shape (k, n + signals before)
-        Their arguments.
-    starts : ndarray, shape (c, n)
-        States at the size one.
-    """
-
+    # Shape (k, n, n). Modes in contact, and after them the free ones, which leave the deflection
+    # where it is.
     A: Array
-    free: int
-    columns: Array
-    rows: tuple[Array, ...]
-    starts: Array
+    free: int  # How many of them are free
+    columns: Array  # Shape (k, s, n). What every signal does.
+    rows: tuple[Array, ...]  # Shape (k, n + signals before). Their arguments.
+    starts: Array  # Shape (c, n). States at the size one.
 
     @classmethod
     def of(cls, system: SwitchedSystem) -> Problem:

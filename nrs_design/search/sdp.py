@@ -111,18 +111,10 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """A program whose predicted work has been charged, and that a solver is to solve.
+    """A program whose predicted work has been charged, and that a solver is to solve."""
 
-    Parameters
-    ----------
-    allowance : Allowance
-        What may still be done.
-    per_step : float
-        Work of each step of the solver.
-    """
-
-    allowance: Allowance
-    per_step: float
+    allowance: Allowance  # What may still be done
+    per_step: float  # Work of each step of the solver
 
     @property
     def most_steps(self) -> int:

@@ -16,9 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.enclosure import characteristic_sign, precision
-from nrs_design.proof.evidence import UnstableContact, UnstableMode
-from nrs_design.proof.evidence.unstable_contact import product as product_of
-from nrs_design.proof.evidence.unstable_mode import free_motions
+from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence.growth import Steps, growth_matrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import scale_states
@@ -28,7 +27,6 @@ from nrs_design.search.unstable_mode import unstable_modes
 from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
-Steps = tuple[tuple[str, int], ...]
 
 NOTHING_GROWS = "no sequence of contact and flight that was tried grows and keeps its signs"
 # How many motions are followed, for how many steps, and how long sequences may get.
@@ -45,12 +43,12 @@ AT_REST = 1e-9
 AROUND, HALVINGS = 1e-7, 120
 
 
-def examine_free_motion(family: Family) -> Candidates[UnstableMode]:
+def examine_free_motion(family: Family) -> Candidates[GrowingSequence]:
     """Test exactly every mode of free motion, without the deflection."""
-    return (yield from unstable_modes(free_motions(family.system), family))
+    return (yield from unstable_modes(family.system.free_motions(), family))
 
 
-def search_contact(family: Family) -> Candidates[UnstableContact]:
+def search_contact(family: Family) -> Candidates[GrowingSequence]:
     """Search for a mode that pushes in and grows, and for sequences of contact and flight.
 
     Raises
@@ -75,36 +73,21 @@ def search_contact(family: Family) -> Candidates[UnstableContact]:
 
 @dataclass(frozen=True, slots=True)
 class _Loop:
-    """The modes in floating point, where each may be in force, and the forces.
+    """The modes in floating point, where each may be in force, and the forces."""
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        The exact one.
-    names : tuple of str
-        Of the modes that differ.
-    matrices : ndarray, shape (m, n, n)
-        Scaled.
-    touching, flying : ndarray of bool, shape (m,)
-        Modes in which the environment acts, and those without it.
-    pulls : ndarray, shape (p, n)
-        Forces.
-    turns : ndarray of bool, shape (length of a round, m)
-        Which modes are on turn at each step.
-    """
-
-    system: SwitchedSystem
-    names: tuple[str, ...]
-    matrices: Array
+    system: SwitchedSystem  # The exact one
+    names: tuple[str, ...]  # Of the modes that differ
+    matrices: Array  # Shape (m, n, n). Scaled.
+    # touching, flying: shape (m,). Modes in which the environment acts, and those without it.
     touching: NDArray[np.bool_]
     flying: NDArray[np.bool_]
-    pulls: Array
-    turns: NDArray[np.bool_]
+    pulls: Array  # Shape (p, n). Forces.
+    turns: NDArray[np.bool_]  # Shape (length of a round, m). Which modes are on turn at each step.
 
     @classmethod
     def of(cls, family: Family) -> _Loop:
         system, contact, flights = family.system, family.system.contact, family.system.flights
-        free: Sequence[Mode] = () if contact is None else contact.free
+        free = system.free
         touching = {m.name for m in system.modes} if flights is None else {*flights.touching}
         flying = {m.name for m in free} if flights is None else {*flights.flying}
         first = frozenset(() if system.clock is None else system.clock.first)
@@ -193,7 +176,7 @@ class _Loop:
             states[step + 1] = x
         return chosen, states, sizes
 
-    def candidates(self, sequence: Sequence[int]) -> Iterator[Candidate[UnstableContact]]:
+    def candidates(self, sequence: Sequence[int]) -> Iterator[Candidate[GrowingSequence]]:
         """Yield a sequence, for every eigenvalue that grows along a motion with its signs."""
         M = self.matrices[sequence[0]]
         for mode in sequence[1:]:
@@ -208,10 +191,12 @@ class _Loop:
                 continue
             v = vector.real
             if any(self._keeps_signs(sequence, x) for x in (v, -v)):
-                steps = tuple((self.names[mode], len([*same])) for mode, same in groupby(sequence))
+                steps = tuple(
+                    (self.names[mode], Fraction(len([*same]))) for mode, same in groupby(sequence)
+                )
                 factor = _bracket(self.system, steps, float(value.real))
                 if factor is not None:
-                    yield Candidate(UnstableContact(steps, factor))
+                    yield Candidate(GrowingSequence(steps, factor=factor))
 
     def _keeps_signs(self, sequence: Sequence[int], x: Array) -> bool:
         for mode in sequence:
@@ -246,7 +231,7 @@ def _bracket(
     low = max(Fraction(value * (1 - AROUND)), limit)
     high = Fraction(value * (1 + AROUND))
     with precision():
-        M = product_of(system, steps)
+        M = growth_matrix(system, steps)
         below = characteristic_sign(M, low)
         if below * characteristic_sign(M, high) >= 0:
             return None

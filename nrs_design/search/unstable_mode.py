@@ -7,14 +7,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import UnstableMode
-from nrs_design.proof.evidence.unstable_mode import (
-    affordable,
-    is_stable,
-    worst_eigenvalue,
-)
+from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.spectrum import affordable, is_stable
 from nrs_design.search.candidates import Candidate, Candidates
 from nrs_design.search.family import Family
 from nrs_design.work import Cost
@@ -25,7 +22,7 @@ SUSPICION = 1e-7
 ALWAYS_TESTED = 0.05
 
 
-def examine_suspicious_modes(family: Family) -> Candidates[UnstableMode]:
+def examine_suspicious_modes(family: Family) -> Candidates[GrowingSequence]:
     """Test exactly the modes that floating-point eigenvalues do not show to be stable."""
     lasting = {mode.name for mode in family.system.lasting_modes()}
     suspicious = [
@@ -36,7 +33,7 @@ def examine_suspicious_modes(family: Family) -> Candidates[UnstableMode]:
     return (yield from unstable_modes(suspicious, family))
 
 
-def examine_every_mode(family: Family) -> Candidates[UnstableMode]:
+def examine_every_mode(family: Family) -> Candidates[GrowingSequence]:
     """Test exactly every mode that need never be left."""
     lasting = family.system.lasting_modes()
     outcome = yield from unstable_modes(lasting, family)
@@ -45,7 +42,7 @@ def examine_every_mode(family: Family) -> Candidates[UnstableMode]:
     return outcome
 
 
-def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[UnstableMode]:
+def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[GrowingSequence]:
     """Decide exactly, mode by mode; in the end say how many are stable, if all are.
 
     Parameters
@@ -65,8 +62,7 @@ def unstable_modes(modes: Iterable[Mode], family: Family) -> Candidates[Unstable
         if cost.work > ALWAYS_TESTED:
             family.allowance.take(cost, f"the exact test of mode {mode.name}")
         if not is_stable(mode.A, time):
-            evidence = UnstableMode(mode.name, worst_eigenvalue(mode.A, time))
-            yield Candidate(evidence, f"mode {mode.name} is not stable")
+            yield Candidate(staying(mode.name), f"mode {mode.name} is not stable")
             found = True
     if found:
         return None

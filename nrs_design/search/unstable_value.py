@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.constant import system_at
-from nrs_design.proof.evidence import (
-    UnstableMixture,
-    UnstableMode,
-    UnstablePeriod,
-    UnstableValue,
-)
-from nrs_design.proof.evidence.unstable_mode import is_stable, worst_eigenvalue
+from nrs_design.proof.evidence import GrowingSequence
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
+from nrs_design.proof.spectrum import is_stable
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.family import Family
@@ -43,7 +40,7 @@ SLACK = 1e-9
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
 
 
-def search_value(family: Family) -> Candidates[UnstableValue]:
+def search_value(family: Family) -> Candidates[GrowingSequence]:
     """Scan the parameter's range for a mode that is not stable."""
     system, matrices = family.system, family.matrices
     if not np.isfinite(matrices).all():
@@ -65,7 +62,7 @@ def search_value(family: Family) -> Candidates[UnstableValue]:
     return None if found else "every mode is stable at every value tried"
 
 
-def search_switching_at_values(family: Family) -> Candidates[UnstableValue]:
+def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
     """Look at some values of the parameter for an unstable average, or a growing period."""
     system = family.system
     if len(system.switching.fixed_ends) < 2 or system.switching.resets:
@@ -84,11 +81,11 @@ def _cost(pairs: int, shares: int, order: int) -> Cost:
 
 
 def _at(
-    share: Fraction, candidates: Candidates[UnstableMixture | UnstablePeriod]
-) -> Iterator[Candidate[UnstableValue]]:
+    share: Fraction, candidates: Candidates[GrowingSequence]
+) -> Iterator[Candidate[GrowingSequence]]:
     """Make what is found about the system at a value evidence about the parameter."""
     for candidate in candidates:
-        yield Candidate(UnstableValue(share, candidate.evidence))
+        yield Candidate(replace(candidate.evidence, share=share))
 
 
 def _ends(system: SwitchedSystem, matrices: Array) -> tuple[Array, Array]:
@@ -130,8 +127,7 @@ def _refined(low: Array, high: Array, near: tuple[float, float], time: Time) -> 
     return float(found[best]), float(growth[best])
 
 
-def _unstable_modes(system: SwitchedSystem, share: Fraction) -> Iterator[UnstableValue]:
+def _unstable_modes(system: SwitchedSystem, share: Fraction) -> Iterator[GrowingSequence]:
     for mode in system_at(system, share).modes:
         if not is_stable(mode.A, system.time):
-            part = UnstableMode(mode.name, worst_eigenvalue(mode.A, system.time))
-            yield UnstableValue(share, part)
+            yield replace(staying(mode.name), share=share)

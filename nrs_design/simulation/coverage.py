@@ -87,20 +87,6 @@ def undecayed(
     yield from _differences(spec, system, statement, scenario, run)
 
 
-def uncovered_by_chance(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
-    """Yield what of `uncovered` may be otherwise in runs of one scenario with drawn parameters.
-
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With the largest angle, if there is one.
-    run : Run
-        With what was drawn.
-    """
-    yield from _large_angle(spec, run)
-    yield from _irregular_steps(run)
-
-
 def end_of_command(scenario: Scenario) -> float | None:
     """Return the time in s from which on nothing is commanded, None if the run is over by then."""
     profile, start = scenario.profile, None

@@ -12,20 +12,14 @@ from nrs_design.simulation.scenario import Array, Scenario
 
 @dataclass(frozen=True, slots=True)
 class Fate:
-    """Instants, commands, noise and delays, for every sample.
+    """Instants, commands, noise and delays, for every sample."""
 
-    Parameters
-    ----------
-    times, hand, noise : ndarray, shape (N,)
-        Instants in s, commanded velocities in rad/s, errors of the torque in N m.
-    ages : ndarray of int, shape (N,)
-        Of the force samples.
-    """
-
+    # times, hand, noise: shape (N,). Instants in s, commanded velocities in rad/s, errors of the
+    # torque in N m.
     times: Array
     hand: Array
     noise: Array
-    ages: NDArray[np.int64]
+    ages: NDArray[np.int64]  # Shape (N,). Of the force samples.
 
     @classmethod
     def of(cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int) -> Fate:

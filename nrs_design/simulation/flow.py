@@ -44,24 +44,14 @@ _POWERS = np.arange(DEGREE + 1, dtype=float)
 
 @dataclass(frozen=True)
 class Flow:
-    """``z' = A z`` with signals that are watched.
+    """``z' = A z`` with signals that are watched."""
 
-    Parameters
-    ----------
-    A : ndarray, shape (n, n)
-        The system.
-    signals : ndarray, shape (e, n)
-        Rows; the signals count as on their side until they are beyond zero by the tolerance.
-    tolerances : ndarray, shape (e,)
-        In the units of the signals.
-    step : float
-        At most so long a step, in s.
-    """
-
-    A: Array
+    A: Array  # Shape (n, n). The system.
+    # Shape (e, n). Rows; the signals count as on their side until they are beyond zero by the
+    # tolerance.
     signals: Array
-    tolerances: Array
-    step: float
+    tolerances: Array  # Shape (e,). In the units of the signals.
+    step: float  # At most so long a step, in s
 
     @cached_property
     def h(self) -> float:

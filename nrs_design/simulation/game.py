@@ -11,30 +11,23 @@ from numpy.typing import NDArray
 from nrs_design.proof.channels import Channel
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rules import Indices, Rules
+from nrs_design.simulation.norms import Array, Indices
+from nrs_design.simulation.rules import Rules
 
 
 @dataclass(frozen=True, eq=False)
 class Game:
-    """What can happen to a loop that begins at rest, and what the adversary wants of it.
+    """What can happen to a loop that begins at rest, and what the adversary wants of it."""
 
-    Parameters
-    ----------
-    maps : ndarray, shape (m, n, n + c)
-        Step of each mode in contact: of the state, and of shares of the largest disturbances.
-    flights : ndarray, shape (m, n, n + c)
-        What takes its place without contact; empty, shape (0, n, n + c), where contact is kept.
-    pulls : ndarray, shape (q, n)
-        Forces of tissue that could pull: while none is positive, contact is lost, too.
-    rules : Rules
-        Which mode may follow which.
-    """
-
+    # Shape (m, n, n + c). Step of each mode in contact: of the state, and of shares of the largest
+    # disturbances.
     maps: Array
+    # Shape (m, n, n + c). What takes its place without contact; empty, shape (0, n, n + c), where
+    # contact is kept.
     flights: Array
+    # Shape (q, n). Forces of tissue that could pull: while none is positive, contact is lost, too.
     pulls: Array
-    rules: Rules
+    rules: Rules  # Which mode may follow which
 
     @classmethod
     def of(cls, system: SwitchedSystem, channels: Sequence[Channel], step: float) -> Game:
@@ -96,20 +89,11 @@ class Game:
 
 @dataclass(frozen=True, eq=False)
 class Aim:
-    """What is to become large at the end of each of S runs.
+    """What is to become large at the end of each of S runs."""
 
-    Parameters
-    ----------
-    rows : ndarray, shape (S, r, n)
-        Rows over the state; a run that has fewer repeats one.
-    allowed : ndarray of bool, shape (S, m, r)
-        Which of them apply in each mode.
-    one_sided : ndarray of bool, shape (S,)
-        Whether positive values alone count, and those without contact not at all.
-    """
-
-    rows: Array
-    allowed: NDArray[np.bool_]
+    rows: Array  # Shape (S, r, n). Rows over the state; a run that has fewer repeats one.
+    allowed: NDArray[np.bool_]  # Shape (S, m, r). Which of them apply in each mode.
+    # Shape (S,). Whether positive values alone count, and those without contact not at all.
     one_sided: NDArray[np.bool_]
 
     def values(self, game: Game, states: Array, modes: Indices) -> tuple[Array, Array]:
@@ -152,18 +136,10 @@ class Aim:
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """What was chosen in S runs.
+    """What was chosen in S runs."""
 
-    Parameters
-    ----------
-    actions : ndarray of int, shape (K, S)
-        Of `Rules`, one for each step.
-    shares : ndarray, shape (K, S, c)
-        Of the largest disturbances, from -1 to 1.
-    """
-
-    actions: Indices
-    shares: Array
+    actions: Indices  # Shape (K, S). Of `Rules`, one for each step.
+    shares: Array  # Shape (K, S, c). Of the largest disturbances, from -1 to 1.
 
     def only(self, runs: Indices) -> Signals:
         """Return the signals of some runs."""

@@ -26,17 +26,11 @@ from nrs_design.spec import InteractionDesignSpec
 
 @dataclass(frozen=True, slots=True)
 class LoopMode:
-    """One way in which the loop can be.
+    """One way in which the loop can be."""
 
-    Parameters
-    ----------
-    A : ndarray, shape (n, n)
-        Of ``z' = A z``.
-    angle, velocity, torque, reference : ndarray, shape (n,)
-        Rows that give these signals; the torque is that of the contacts on the robot.
-    """
-
-    A: Array
+    A: Array  # Shape (n, n). Of ``z' = A z``.
+    # angle, velocity, torque, reference: shape (n,). Rows that give these signals; the torque is
+    # that of the contacts on the robot.
     angle: Array
     velocity: Array
     torque: Array
@@ -47,27 +41,16 @@ class LoopMode:
 class Loop:
     """One axis with its controllers and surfaces.
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        With idle states and offsets.
-    plant : Plant
-        The motor and its load.
-    design : ControllerDesign
-        Gains that ship.
-    scenario : Scenario
-        Surfaces, command and wanted torque.
-
     Raises
     ------
     DesignError
         If something is not modelled here, on `mode`.
     """
 
-    spec: InteractionDesignSpec
-    plant: Plant
-    design: ControllerDesign
-    scenario: Scenario
+    spec: InteractionDesignSpec  # With idle states and offsets
+    plant: Plant  # The motor and its load
+    design: ControllerDesign  # Gains that ship
+    scenario: Scenario  # Surfaces, command and wanted torque
 
     @cached_property
     def states(self) -> tuple[Signal, ...]:

@@ -158,21 +158,11 @@ def gain_in_time(before: float, after: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """Human effort: what a hand applies to the robot, or the robot to what it touches.
+    """Human effort: what a hand applies to the robot, or the robot to what it touches."""
 
-    Parameters
-    ----------
-    total : float
-        ``int |F| dt`` in N m s: the total applied torque of thesis 5.1.4.
-    rms : float
-        ``sqrt(1/T int F^2 dt)`` in N m.
-    energy : float
-        ``int |F v| dt`` in J.
-    """
-
-    total: float
-    rms: float
-    energy: float
+    total: float  # ``int |F| dt`` in N m s: the total applied torque of thesis 5.1.4
+    rms: float  # ``sqrt(1/T int F^2 dt)`` in N m
+    energy: float  # ``int |F v| dt`` in J
 
 
 def effort(t: Array, torque: Array, velocity: Array) -> Effort:
@@ -206,91 +196,3 @@ def steady_state_error(t: Array, y: Array, wanted: float) -> float:
     """
     last = t >= t[-1] - LAST_SHARE * (t[-1] - t[0])
     return abs(1 - mean(t[last], y[last]) / wanted)
-
-
-def injury_factor(robot_mass: float, operator_mass: float, stiffness: float) -> float:
-    """Return the factor of the head-injury criterion, ``HIC = factor v^2.5`` (thesis 2.15, 2.16).
-
-    ``2 (2/pi)^1.5 (k/m_oper)^0.75 (m_rob/(m_rob + m_oper))^1.75``
-
-    Parameters
-    ----------
-    robot_mass, operator_mass : float
-        In kg.
-    stiffness : float
-        Of the contact between them, in N/m.
-
-    Raises
-    ------
-    ValueError
-        If one of them is not positive and finite.
-    """
-    given = (robot_mass, operator_mass, stiffness)
-    if not all(0 < value < math.inf for value in given):
-        raise ValueError("masses and stiffness of an impact are positive numbers")
-    share = robot_mass / (robot_mass + operator_mass)
-    front = 2 * (2 / math.pi) ** 1.5
-    return float(front * (stiffness / operator_mass) ** 0.75 * share**1.75)
-
-
-def head_injury(factor: float, speed: float) -> float:
-    """Return the head-injury criterion ``factor v^2.5`` of an impact at v m/s (thesis 2.16)."""
-    return float(factor * abs(speed) ** 2.5)
-
-
-def safe_speed(factor: float, largest: float) -> float:
-    """Return the speed in m/s at which the criterion reaches a largest value.
-
-    ``(HIC_max/factor)^(1/2.5)``, the inverse of 2.16; the print of 2.17 lacks the exponent.
-    """
-    return float((largest / factor) ** (1 / 2.5))
-
-
-def attention_demand(interaction: float, neglect: float) -> float:
-    """Return the robot attention demand ``RAD = IE/(IE + NT)`` (Olsen, Goodrich; thesis 2.10).
-
-    Parameters
-    ----------
-    interaction : float
-        Interaction effort IE: how long the human is busy with the robot, s.
-    neglect : float
-        Neglect tolerance NT: how long the robot does well enough without, s.
-
-    Raises
-    ------
-    ValueError
-        If one of them is negative or not finite, or both are zero.
-    """
-    if not (0 <= interaction < math.inf and 0 <= neglect < math.inf and interaction + neglect > 0):
-        raise ValueError("interaction effort and neglect tolerance are times, not both zero")
-    return interaction / (interaction + neglect)
-
-
-def free_time(demand: float) -> float:
-    """Return ``FT = 1 - RAD``: the share of time that a robot leaves to the human (thesis 2.11)."""
-    return 1 - _share(demand, "attention demand")
-
-
-def fan_out(demand: float, reliability: float = 1.0) -> float:
-    """Return ``FO = HR/RAD``: how many robots a human can attend to (thesis 2.12, 2.13).
-
-    Parameters
-    ----------
-    demand : float
-        RAD; without any, the number has no bound.
-    reliability : float
-        HR of the human, from 0 to 1; 1 in 2.12.
-
-    Raises
-    ------
-    ValueError
-        If one of them is not a share.
-    """
-    reliability = _share(reliability, "human reliability")
-    return reliability / demand if _share(demand, "attention demand") else math.inf
-
-
-def _share(value: float, name: str) -> float:
-    if not 0 <= value <= 1:
-        raise ValueError(f"{name} is a share, from 0 to 1, not {value}")
-    return value

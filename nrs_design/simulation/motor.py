@@ -8,21 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """The actuator with friction, as it moves while its command is held.
+    """The actuator with friction, as it moves while its command is held."""
 
-    Parameters
-    ----------
-    Km : float
-        In rad/s per unit of the command.
-    tau : float
-        In s.
-    friction : float
-        In the unit of the command.
-    """
-
-    Km: float
-    tau: float
-    friction: float = 0.0
+    Km: float  # In rad/s per unit of the command
+    tau: float  # In s
+    friction: float = 0.0  # In the unit of the command
 
     def after(self, theta: float, omega: float, command: float, time: float) -> tuple[float, float]:
         """Return angle and velocity after a time, exactly.

@@ -16,6 +16,7 @@ from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 # From states, shape (..., n), to their norms, shape (...); twice the state has twice the norm.
 Norm = Callable[[Array], Array]
@@ -38,6 +39,18 @@ def quadratic_norm(Q: Array) -> Norm:
         return np.asarray(np.linalg.norm(states @ root, axis=-1))
 
     return norm
+
+
+def clipped(norm: Norm) -> Norm:
+    """Return the norm of ``w = (y, max(delta, 0))``; the deflection is the last state."""
+    return lambda states: norm(deflected(states))
+
+
+def deflected(states: Array) -> Array:
+    """Return ``w = (y, max(delta, 0))`` of states, of which the deflection is the last entry."""
+    w = states.copy()
+    w[..., -1] = np.maximum(w[..., -1], 0.0)
+    return w
 
 
 def polynomial_norm(Q: IntegerMatrix, degree: int, order: int) -> Norm:

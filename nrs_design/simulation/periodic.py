@@ -31,21 +31,11 @@ _SHARE = 0.6
 
 @dataclass(frozen=True)
 class PeriodicRun:
-    """A run over some periods.
+    """A run over some periods."""
 
-    Parameters
-    ----------
-    response : SwitchedRun
-        The run.
-    period : float
-        In s, or steps.
-    radius : float
-        Spectral radius over one period: the factor of growth in the long run.
-    """
-
-    response: SwitchedRun
-    period: float
-    radius: float
+    response: SwitchedRun  # The run
+    period: float  # In s, or steps
+    radius: float  # Spectral radius over one period: the factor of growth in the long run
 
 
 def periodic_run(

@@ -13,14 +13,12 @@ import numpy as np
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.contact import clipped, worst_contact
-from nrs_design.simulation.norms import Array, Norm, quadratic_norm
-from nrs_design.simulation.rounds import worst_rounds
+from nrs_design.simulation.greedy import greedy_run
+from nrs_design.simulation.norms import Array, Norm, clipped, quadratic_norm
 from nrs_design.simulation.switched import (
     SwitchedRun,
     fine_step,
     simulate_switching,
-    worst_switching,
 )
 
 _STEPS = 1500
@@ -32,34 +30,18 @@ _LARGE = 10.0
 
 @dataclass(frozen=True, eq=False)
 class Outputs:
-    """What is watched, as rows over the state, and within which limits.
+    """What is watched, as rows over the state, and within which limits."""
 
-    Parameters
-    ----------
-    force : ndarray, shape (r, n)
-        Torque in N m, at every corner of the contacts.
-    velocity : ndarray, shape (1, n) or (m, n)
-        In rad/s; a row for each mode where a command moves the axis at once.
-    deflection : ndarray, shape (n,), or None
-        In rad; None where the state does not tell it.
-    pressed : ndarray, shape (n,)
-        A state at rest in which the contacts are pressed in.
-    largest_force, largest_velocity : float
-        Limits of the spec.
-    sensed : tuple of int
-        States that hold a torque which was measured before, in N m.
-    free : tuple of int
-        Modes in which nothing is touched, whatever the deflection.
-    """
-
-    force: Array
+    force: Array  # Shape (r, n). Torque in N m, at every corner of the contacts.
+    # Shape (1, n). In rad/s; a row for each mode where a command moves the axis at once.
     velocity: Array
-    deflection: Array | None
-    pressed: Array
+    deflection: Array | None  # Shape (n,). In rad; None where the state does not tell it.
+    pressed: Array  # Shape (n,). A state at rest in which the contacts are pressed in.
+    # largest_force, largest_velocity: limits of the spec.
     largest_force: float
     largest_velocity: float
-    sensed: tuple[int, ...] = ()
-    free: tuple[int, ...] = ()
+    sensed: tuple[int, ...] = ()  # States that hold a torque which was measured before, in N m
+    free: tuple[int, ...] = ()  # Modes in which nothing is touched, whatever the deflection
 
     @property
     def start(self) -> Array:
@@ -144,13 +126,8 @@ def _runs(system: SwitchedSystem, outputs: Outputs, Q: Array | None) -> Iterator
         return
     sizes = [_size(outputs.velocity), _size(outputs.force)]
     for norm in ([] if Q is None else [quadratic_norm(Q)]) + sizes:
-        if system.clock is not None:
-            kept = norm if system.contact is None else clipped(norm)
-            yield worst_rounds(system, [kept] * system.clock.length, start, _STEPS)
-        elif system.contact is None:
-            yield worst_switching(system, norm, start, step, _STEPS)
-        else:
-            yield worst_contact(system, clipped(norm), start, step, _STEPS)
+        kept = norm if system.contact is None else clipped(norm)
+        yield greedy_run(system, kept, start, step, _STEPS)
 
 
 def _size(rows: Array) -> Norm:

@@ -8,14 +8,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array
-
-Indices = NDArray[np.int64]
+from nrs_design.simulation.norms import Array, Indices
 
 # Most steps of a dwell time, and most nodes of the graph: beyond them the grid is coarser.
 _STAY, _NODES = 40, 4000
@@ -27,21 +24,15 @@ class Rules:
 
     Every step takes one action: it resets the state, and then one mode is in force for the step.
     A run begins at node 0, in no mode yet.
-
-    Parameters
-    ----------
-    mode, jump, target : ndarray of int, shape (U,)
-        Of each action: the mode, the row of `jumps`, and the node that it leads to.
-    jumps : ndarray, shape (J, n, n)
-        What a switch makes of the state; the first leaves it as it is.
-    choices : ndarray of int, shape (N, K)
-        Actions that may be taken at each node; the first is there again where there are fewer.
     """
 
+    # Shape (U,). Of each action: the mode, the row of `jumps`, and the node that it leads to.
     mode: Indices
     jump: Indices
     target: Indices
-    jumps: Array
+    jumps: Array  # Shape (J, n, n). What a switch makes of the state; the first leaves it as it is.
+    # Shape (N, K). Actions that may be taken at each node; the first is there again where there are
+    # fewer.
     choices: Indices
 
     @classmethod

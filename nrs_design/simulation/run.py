@@ -46,14 +46,9 @@ ERRORS_LEFT_OUT = "friction, resolutions, noise and jitter of the scenario"
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """How far a run is from the same one on the sampled engine, at the samples.
+    """How far a run is from the same one on the sampled engine, at the samples."""
 
-    Parameters
-    ----------
-    angle, velocity, torque : float
-        Largest differences in rad, rad/s and N m.
-    """
-
+    # angle, velocity, torque: largest differences in rad, rad/s and N m.
     angle: float
     velocity: float
     torque: float
@@ -61,51 +56,24 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A simulated scenario.
+    """A simulated scenario."""
 
-    Parameters
-    ----------
-    scenario : str
-        Its name.
-    engine : {"exact", "sampled", "mujoco"}
-        What simulated it.
-    response : TimeResponse
-        Up to where the run came.
-    switches : tuple of (float, str)
-        Times in s at which a controller took over, and which.
-    contacts : tuple of (float, str, bool)
-        Times in s at which a surface was met (true) or lost, and its environment.
-    steps : int
-        Steps of the engine.
-    sampling : tuple of (float, int, int) or None
-        Period in s, and smallest and largest delay in samples, of the law.
-    refused : int
-        Samples that the law refused, because an input was beyond its limits.
-    saturated : int
-        Samples at which the command of the motor met its limit.
-    stopped : str or None
-        Why the run ended before its time.
-    left_out : tuple of str
-        What is not in it.
-    outer : float or None
-        Period of filter and admittance in s, which may be another.
-    deviation : Deviation or None
-        From the sampled engine, where another one was asked for.
-    """
-
-    scenario: str
-    engine: str
-    response: TimeResponse
+    scenario: str  # Its name
+    engine: str  # What simulated it
+    response: TimeResponse  # Up to where the run came
+    # Times in s at which a controller took over, and which.
     switches: tuple[tuple[float, str], ...]
+    # Times in s at which a surface was met (true) or lost, and its environment.
     contacts: tuple[tuple[float, str, bool], ...]
-    steps: int
+    steps: int  # Steps of the engine
+    # Period in s, and smallest and largest delay in samples, of the law.
     sampling: tuple[float, int, int] | None = None
-    refused: int = 0
-    saturated: int = 0
-    stopped: str | None = None
-    left_out: tuple[str, ...] = LEFT_OUT
-    outer: float | None = None
-    deviation: Deviation | None = None
+    refused: int = 0  # Samples that the law refused, because an input was beyond its limits
+    saturated: int = 0  # Samples at which the command of the motor met its limit
+    stopped: str | None = None  # Why the run ended before its time
+    left_out: tuple[str, ...] = LEFT_OUT  # What is not in it
+    outer: float | None = None  # Period of filter and admittance in s, which may be another
+    deviation: Deviation | None = None  # From the sampled engine, where another one was asked for
 
     @property
     def chatter(self) -> int:

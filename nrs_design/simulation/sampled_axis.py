@@ -47,47 +47,25 @@ _INPUTS = (Signal("hand", "rad/s"),)
 
 @dataclass(frozen=True, slots=True)
 class Turns:
-    """Whose turn it is at a sample, where motion loop and outer loop have periods of their own.
+    """Whose turn it is at a sample, where motion loop and outer loop have periods of their own."""
 
-    Parameters
-    ----------
-    motion, outer : int
-        Their periods in samples; one of them is 1.
-    """
-
+    # motion, outer: their periods in samples; one of them is 1.
     motion: int = 1
     outer: int = 1
 
 
 @dataclass
 class SampledAxis:
-    """One axis during a run: the law, what it senses, and the tissue that it touches.
+    """One axis during a run: the law, what it senses, and the tissue that it touches."""
 
-    Parameters
-    ----------
-    plant : Plant
-        Its motor.
-    design : ControllerDesign
-        Gains that ship.
-    scenario : Scenario
-        What happens to it.
-    program : StepProgram
-        Its law.
-    period : Fraction
-        Between two samples, in s.
-    delay : tuple of (int, int)
-        Smallest and largest age of the force samples, counted in samples of the outer loop.
-    turns : Turns
-        Which samples are those of the motion loop, and of the outer one.
-    """
-
-    plant: Plant
-    design: ControllerDesign
-    scenario: Scenario
-    program: StepProgram
-    period: Fraction
+    plant: Plant  # Its motor
+    design: ControllerDesign  # Gains that ship
+    scenario: Scenario  # What happens to it
+    program: StepProgram  # Its law
+    period: Fraction  # Between two samples, in s
+    # Smallest and largest age of the force samples, counted in samples of the outer loop.
     delay: tuple[int, int]
-    turns: Turns = Turns()
+    turns: Turns = Turns()  # Which samples are those of the motion loop, and of the outer one
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""

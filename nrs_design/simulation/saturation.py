@@ -1,4 +1,4 @@
-"""Runs in which signals saturate, with an adversary who chooses the modes."""
+"""Motion with signals that saturate."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.norms import Array, Norm
-from nrs_design.simulation.switched import SwitchedRun, sampling_instants
+from nrs_design.simulation.norms import Array, Indices
+from nrs_design.simulation.switched import SwitchedRun
 
 
 def saturated_rates(system: SwitchedSystem) -> Callable[[Array], Array]:
@@ -45,7 +45,7 @@ def share_cut_off(system: SwitchedSystem, run: SwitchedRun) -> dict[str, float]:
     system : SwitchedSystem
         In continuous time, with what saturates.
     run : SwitchedRun
-        As `worst_saturated` gives it.
+        As `greedy_run` gives it.
     """
     saturation = system.saturation
     assert saturation is not None  # who asks has looked
@@ -78,45 +78,27 @@ def _signals(
     return found
 
 
-def worst_saturated(
-    system: SwitchedSystem, norm: Norm, initial: Array, step: float, steps: int
-) -> SwitchedRun:
-    """Simulate the greedy adversary: always the possible mode after which the norm is largest.
+def saturated_step(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:
+    """Return the function from a state and modes to the states after a step in each of them.
 
-    By the classical Runge-Kutta method; where contact can be lost, it changes at the end of a step
-    only, so steps must be short. Nothing is proved by it.
+    By the classical Runge-Kutta method.
 
     Parameters
     ----------
     system : SwitchedSystem
         In continuous time, with what saturates.
-    norm : callable
-        What to make large.
-    initial : ndarray, shape (n,)
-        State at time zero.
     step : float
-        Time between decisions, in s.
-    steps : int
-        Number of decisions N.
-
-    Returns
-    -------
-    SwitchedRun
-        Its modes are those in contact, and after them those of free motion.
+        In s.
     """
-    rates, count = saturated_rates(system), len(system.modes)
-    total = count + (0 if system.contact is None else len(system.contact.free))
-    states, chosen = [initial], []
-    for _ in range(steps):
-        x = np.tile(states[-1], (total, 1))
+    rates = saturated_rates(system)
+    total = len(system.modes) + (0 if system.contact is None else len(system.contact.free))
+
+    def advance(x: Array, modes: Indices) -> Array:
+        x = np.tile(x, (total, 1))
         k1 = rates(x)
         k2 = rates(x + step / 2 * k1)
         k3 = rates(x + step / 2 * k2)
         k4 = rates(x + step * k3)
-        candidates = x + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        touching = total == count or states[-1][-1] > 0
-        first, last = (0, count) if touching else (count, total)
-        best = first + int(norm(candidates[first:last]).argmax())
-        chosen.append(best)
-        states.append(candidates[best])
-    return SwitchedRun(sampling_instants(step, steps), np.array(states), np.array(chosen))
+        return np.asarray((x + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))[modes])
+
+    return advance

@@ -20,38 +20,21 @@ DEPTH = "depth of "
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A part of a profile: ``v' = s`` and ``s' = -omega^2 (v - mean)`` from its start on.
+    """A part of a profile: ``v' = s`` and ``s' = -omega^2 (v - mean)`` from its start on."""
 
-    Parameters
-    ----------
-    start : float
-        In s.
-    value, slope : float
-        v in rad/s and s in rad/s^2 at the start.
-    """
-
-    start: float
+    start: float  # In s
+    # value, slope: v in rad/s and s in rad/s^2 at the start.
     value: float
     slope: float
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """The commanded velocity over time: straight lines, or a sinusoid.
+    """The commanded velocity over time: straight lines, or a sinusoid."""
 
-    Parameters
-    ----------
-    pieces : tuple of Piece
-        In order; the first starts at zero.
-    omega : float
-        Angular frequency in rad/s; zero for straight lines.
-    mean : float
-        About which it oscillates, rad/s.
-    """
-
-    pieces: tuple[Piece, ...]
-    omega: float = 0.0
-    mean: float = 0.0
+    pieces: tuple[Piece, ...]  # In order; the first starts at zero
+    omega: float = 0.0  # Angular frequency in rad/s; zero for straight lines
+    mean: float = 0.0  # About which it oscillates, rad/s
 
     @classmethod
     def constant(cls, velocity: float) -> Profile:
@@ -115,33 +98,17 @@ class Profile:
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Where an environment begins; it pushes and never pulls.
+    """Where an environment begins; it pushes and never pulls."""
 
-    Parameters
-    ----------
-    environment : str
-        Its name.
-    law : AbstractContactLaw
-        At the pivot, at fixed parameters.
-    element : Element or None
-        The springs and dampers that it consists of; None if it is not linear.
-    at : float
-        Angle in rad.
-    sign : int
-        1 if it is met by rising angles, -1 if by falling ones.
-    arms : tuple of Element
-        What is one body with it: forces add up before the sum is held to pushing.
-    beside : tuple of str
-        The environments of these, in their order.
-    """
-
-    environment: str
-    law: AbstractContactLaw
+    environment: str  # Its name
+    law: AbstractContactLaw  # At the pivot, at fixed parameters
+    # The springs and dampers that it consists of; None if it is not linear.
     element: Element | None
-    at: float
-    sign: int
+    at: float  # Angle in rad
+    sign: int  # 1 if it is met by rising angles, -1 if by falling ones
+    # What is one body with it: forces add up before the sum is held to pushing.
     arms: tuple[Element, ...] = ()
-    beside: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()  # The environments of these, in their order
 
     def with_laws(self, laws: Mapping[str, tuple[AbstractContactLaw, Element | None]]) -> Surface:
         """Return the surface with laws of its environments, by their names; see `drawn_laws`."""
@@ -158,17 +125,11 @@ class Surface:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """A bound on a signal, positive towards the tissue.
+    """A bound on a signal, positive towards the tissue."""
 
-    Parameters
-    ----------
-    signal : str
-        ``command`` in rad/s, ``torque`` in N m, or ``depth of INDEX`` in rad, of a surface.
-    low, high : float
-        Within which it holds.
-    """
-
+    # ``command`` in rad/s, ``torque`` in N m, or ``depth of INDEX`` in rad, of a surface.
     signal: str
+    # low, high: within which it holds.
     low: float = -math.inf
     high: float = math.inf
 
@@ -179,104 +140,52 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Switch:
-    """A switch that is made when all its conditions hold.
+    """A switch that is made when all its conditions hold."""
 
-    Parameters
-    ----------
-    source, target : str
-        Controllers.
-    conditions : tuple of Condition
-        At least one.
-    """
-
+    # source, target: controllers.
     source: str
     target: str
-    conditions: tuple[Condition, ...]
+    conditions: tuple[Condition, ...]  # At least one
 
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """Who is in control when.
+    """Who is in control when."""
 
-    Parameters
-    ----------
-    start : str
-        Controller at first.
-    switches : tuple of Switch
-        The first that may be made is.
-    stays : mapping of str to float
-        For how long a timer holds a controller, in s.
-    schedule : tuple of (float, str)
-        Times in s at which a controller takes over, whatever signals say.
-    ships : bool
-        Whether it is the mode logic of the spec, which a program of the law has, too.
-    """
-
-    start: str
-    switches: tuple[Switch, ...] = ()
+    start: str  # Controller at first
+    switches: tuple[Switch, ...] = ()  # The first that may be made is
+    # For how long a timer holds a controller, in s.
     stays: Mapping[str, float] = field(default_factory=dict)
+    # Times in s at which a controller takes over, whatever signals say.
     schedule: tuple[tuple[float, str], ...] = ()
+    # Whether it is the mode logic of the spec, which a program of the law has, too.
     ships: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """What acts on the sampled loop and its sensors.
+    """What acts on the sampled loop and its sensors."""
 
-    Parameters
-    ----------
-    friction : float
-        Coulomb friction of the motor, in the unit of its commands.
-    encoder_step, force_step : float
-        Resolutions in rad and N m; zero for none.
-    force_noise : float
-        Standard deviation in N m.
-    jitter : float
-        How far a sample may be late, as a share of the period.
-    """
-
-    friction: float = 0.0
+    friction: float = 0.0  # Coulomb friction of the motor, in the unit of its commands
+    # encoder_step, force_step: resolutions in rad and N m; zero for none.
     encoder_step: float = 0.0
     force_step: float = 0.0
-    force_noise: float = 0.0
-    jitter: float = 0.0
+    force_noise: float = 0.0  # Standard deviation in N m
+    jitter: float = 0.0  # How far a sample may be late, as a share of the period
 
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """One run of the robot against its surroundings, in SI.
+    """One run of the robot against its surroundings, in SI."""
 
-    Parameters
-    ----------
-    name : str
-        As in the spec.
-    profile : Profile
-        Commanded velocity.
-    duration : float
-        In s.
-    surfaces : tuple of Surface
-        What is touched where; forces add up.
-    control : Control
-        Who is in control when.
-    start : float
-        Angle at which the axis rests at first, in rad.
-    wanted_torque : float
-        Fd of force controllers in N m, towards rising angles.
-    errors : Errors
-        For the sampled engine.
-    seed : int
-        Of noise, jitter and varying delay.
-    limits : mapping of str to float
-        What its run must keep: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
-    """
-
-    name: str
-    profile: Profile
-    duration: float
-    surfaces: tuple[Surface, ...]
-    control: Control
-    start: float = 0.0
-    wanted_torque: float = 0.0
-    errors: Errors = Errors()
-    seed: int = 0
+    name: str  # As in the spec
+    profile: Profile  # Commanded velocity
+    duration: float  # In s
+    surfaces: tuple[Surface, ...]  # What is touched where; forces add up
+    control: Control  # Who is in control when
+    start: float = 0.0  # Angle at which the axis rests at first, in rad
+    wanted_torque: float = 0.0  # Fd of force controllers in N m, towards rising angles
+    errors: Errors = Errors()  # For the sampled engine
+    seed: int = 0  # Of noise, jitter and varying delay
+    # What its run must keep: ``torque`` in N m, ``deflection`` in rad, ``velocity`` in rad/s.
     limits: Mapping[str, float] = field(default_factory=dict)

@@ -22,24 +22,17 @@ Single = np.float32
 
 @dataclass(frozen=True)
 class Choices:
-    """What happens in every run and step.
+    """What happens in every run and step."""
 
-    Parameters
-    ----------
-    law, delay : ndarray of int, shape (S, N)
-        Which admittance is in force, and how old its force sample is.
-    stiffness, gain, time_constant : ndarray, shape (S, N)
-        Of the environment in N m/rad and of the motor in rad/s/rpm and s.
-    command : ndarray, shape (S, N)
-        Commanded velocity in rad/s.
-    """
-
+    # law, delay: shape (S, N). Which admittance is in force, and how old its force sample is.
     law: Indices
     delay: Indices
+    # stiffness, gain, time_constant: shape (S, N). Of the environment in N m/rad and of the motor
+    # in rad/s/rpm and s.
     stiffness: Array
     gain: Array
     time_constant: Array
-    command: Array
+    command: Array  # Shape (S, N). Commanded velocity in rad/s.
 
 
 def simulate_single_precision(

@@ -1,4 +1,4 @@
-"""Exact simulation of a switched linear system, and of a switching that looks its worst."""
+"""Exact simulation of a switched linear system along a given signal."""
 
 from __future__ import annotations
 
@@ -24,22 +24,13 @@ _DIRECTIONS = 500
 
 @dataclass(frozen=True)
 class SwitchedRun:
-    """A sampled solution.
+    """A sampled solution."""
 
-    Parameters
-    ----------
-    time : ndarray, shape (N + 1,)
-        In s, or step numbers in discrete time.
-    state : ndarray, shape (N + 1, n)
-        The state at these times, after the switch if there is one; where modes differ in size, a
-        smaller state is filled up with zeros.
-    mode : ndarray of int, shape (N,)
-        Index of the mode that was active in each interval.
-    """
-
-    time: Array
+    time: Array  # Shape (N + 1,). In s, or step numbers in discrete time.
+    # Shape (N + 1, n). The state at these times, after the switch if there is one; where modes
+    # differ in size, a smaller state is filled up with zeros.
     state: Array
-    mode: NDArray[np.int64]
+    mode: NDArray[np.int64]  # Shape (N,). Index of the mode that was active in each interval.
 
 
 def transition_matrices(system: SwitchedSystem, step: float) -> Array:
@@ -75,35 +66,6 @@ def simulate_switching(
     return SwitchedRun(sampling_instants(step, len(signal)), np.array(states), signal)
 
 
-def worst_switching(
-    system: SwitchedSystem, norm: Norm, initial: Array, step: float, steps: int
-) -> SwitchedRun:
-    """Simulate the greedy adversary: always the mode after which the norm is largest.
-
-    It switches as it likes, and it is a bad run, not the worst one: nothing is proved by it.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        Modes of one size.
-    norm : callable
-        What to make large.
-    initial : ndarray, shape (n,)
-        State at time zero.
-    step : float
-        Time between decisions, in s.
-    steps : int
-        Number of decisions N.
-    """
-    transitions = transition_matrices(system, step)
-    states, chosen = [initial], []
-    for _ in range(steps):
-        candidates = transitions @ states[-1]
-        chosen.append(int(norm(candidates).argmax()))
-        states.append(candidates[chosen[-1]])
-    return SwitchedRun(sampling_instants(step, steps), np.array(states), np.array(chosen))
-
-
 def worst_direction(system: SwitchedSystem, Q: Array) -> Array:
     """Return the unit state (in the norm of Q) from which ``x' Q x`` decreases the slowest."""
     inverse = np.linalg.inv(np.linalg.cholesky(Q))
@@ -129,12 +91,6 @@ def sampled_direction(system: SwitchedSystem, norm: Norm, step: float) -> Array:
     directions /= norm(directions)[:, None]
     images = directions @ transition_matrices(system, step).transpose(0, 2, 1)
     return np.asarray(directions[norm(images).max(axis=0).argmax()])
-
-
-def norms(response: SwitchedRun, norm: Norm) -> Array:
-    """Return the norm over its first value; shape (N + 1,)."""
-    values = norm(response.state)
-    return np.asarray(values / values[0])
 
 
 def fine_step(system: SwitchedSystem) -> float:

@@ -18,18 +18,10 @@ _IN_COLUMNS = {"N*m": "Nm", "rad/s": "rad_s", "N*m/rad": "Nm_rad", "N*m*s/rad": 
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """What a row of a response is.
+    """What a row of a response is."""
 
-    Parameters
-    ----------
-    name : str
-        Such as ``torque``.
-    unit : str
-        In SI, such as ``N*m``; empty for a number.
-    """
-
-    name: str
-    unit: str
+    name: str  # Such as ``torque``
+    unit: str  # In SI, such as ``N*m``; empty for a number
 
     @property
     def column(self) -> str:
@@ -44,35 +36,18 @@ class Signal:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimeResponse:
-    """Response of a loop over time, with time along the last axis as in python-control.
+    """Response of a loop over time, with time along the last axis as in python-control."""
 
-    Parameters
-    ----------
-    t : ndarray, shape (N,)
-        Time in s; it never falls, and is there twice where something jumps.
-    y : ndarray, shape (p, N)
-        Outputs.
-    x : ndarray, shape (n, N)
-        States.
-    u : ndarray, shape (m, N)
-        Inputs.
-    outputs, states, inputs : tuple of Signal
-        What the rows are.
-    mode : ndarray of int, shape (N,)
-        Index of the controller in force from each instant on.
-    modes : tuple of str
-        The controllers.
-    """
-
-    t: Array
-    y: Array
-    x: Array
-    u: Array
+    t: Array  # Shape (N,). Time in s; it never falls, and is there twice where something jumps.
+    y: Array  # Shape (p, N). Outputs.
+    x: Array  # Shape (n, N). States.
+    u: Array  # Shape (m, N). Inputs.
+    # outputs, states, inputs: what the rows are.
     outputs: tuple[Signal, ...]
     states: tuple[Signal, ...]
     inputs: tuple[Signal, ...]
-    mode: NDArray[np.int64]
-    modes: tuple[str, ...]
+    mode: NDArray[np.int64]  # Shape (N,). Index of the controller in force from each instant on.
+    modes: tuple[str, ...]  # The controllers
 
     def __post_init__(self) -> None:
         """Refuse shapes that do not fit together."""

@@ -12,17 +12,10 @@ from nrs_design.simulation.scenario import Surface
 
 @dataclass
 class Tissue:
-    """What is touched during a run.
+    """What is touched during a run."""
 
-    Parameters
-    ----------
-    surfaces : tuple of Surface
-        Where it begins.
-    contacts : list of (float, str, bool)
-        Times in s at which `note` found a surface met (true) or lost, and its environment.
-    """
-
-    surfaces: tuple[Surface, ...]
+    surfaces: tuple[Surface, ...]  # Where it begins
+    # Times in s at which `note` found a surface met (true) or lost, and its environment.
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)
 
     def __post_init__(self) -> None:

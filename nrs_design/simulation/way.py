@@ -20,33 +20,17 @@ POINTS = 2000
 
 @dataclass(frozen=True)
 class Way:
-    """A controller in force and what is touched: the loop, and the signals that may end it.
+    """A controller in force and what is touched: the loop, and the signals that may end it."""
 
-    Parameters
-    ----------
-    index : int
-        In the order in which ways are taken.
-    controller : str
-        In force.
-    mode : LoopMode
-        The loop.
-    flow : Flow
-        Watches the depths below all surfaces, the pushes of those that it is in and that have
-        damping, and then the bounds of conditions.
-    damped : tuple of int
-        Indices of the surfaces whose pushes are watched.
-    pushes : ndarray, shape (surfaces, n)
-        Rows of all pushes.
-    bounds : tuple of (int, int, int)
-        Of which switch and condition it is the lower (0) or the upper (1) bound.
-    """
-
-    index: int
-    controller: str
-    mode: LoopMode
+    index: int  # In the order in which ways are taken
+    controller: str  # In force
+    mode: LoopMode  # The loop
+    # Watches the depths below all surfaces, the pushes of those that it is in and that have
+    # damping, and then the bounds of conditions.
     flow: Flow
-    damped: tuple[int, ...]
-    pushes: Array
+    damped: tuple[int, ...]  # Indices of the surfaces whose pushes are watched
+    pushes: Array  # Shape (surfaces, n). Rows of all pushes.
+    # Of which switch and condition it is the lower (0) or the upper (1) bound.
     bounds: tuple[tuple[int, int, int], ...]
 
 

@@ -25,8 +25,8 @@ from nrs_design.simulation.adversary import (
     random_signals,
 )
 from nrs_design.simulation.game import Aim, Game, Signals, free_counterparts, play
-from nrs_design.simulation.norms import Array
-from nrs_design.simulation.rules import Indices, fitting_step
+from nrs_design.simulation.norms import Array, Indices
+from nrs_design.simulation.rules import fitting_step
 from nrs_design.simulation.switched import fine_step, mode_eigenvalues
 from nrs_design.simulation.worst_outputs import pushes_only
 
@@ -50,33 +50,15 @@ _FILLED, _LONGEST, _DRAWN, _TURNS = 7.0, 800, 8, 6
 
 @dataclass(frozen=True, eq=False)
 class WorstRun:
-    """The worst run that was found for one quantity.
+    """The worst run that was found for one quantity."""
 
-    Parameters
-    ----------
-    output : Output
-        What was made large.
-    value : float
-        Its size at the end of the run.
-    time : ndarray, shape (K + 1,)
-        In s.
-    states : ndarray, shape (K + 1, n)
-        From rest.
-    mode : ndarray of int, shape (K,)
-        In force over each step; the free ones after those in contact.
-    disturbances : ndarray, shape (K, c)
-        Held over each step, in the units of the channels.
-    starts : ndarray, shape (S,)
-        What every start came to, the worst first.
-    """
-
-    output: Output
-    value: float
-    time: Array
-    states: Array
-    mode: Indices
-    disturbances: Array
-    starts: Array
+    output: Output  # What was made large
+    value: float  # Its size at the end of the run
+    time: Array  # Shape (K + 1,). In s.
+    states: Array  # Shape (K + 1, n). From rest.
+    mode: Indices  # Shape (K,). In force over each step; the free ones after those in contact.
+    disturbances: Array  # Shape (K, c). Held over each step, in the units of the channels.
+    starts: Array  # Shape (S,). What every start came to, the worst first.
 
 
 def worst_runs(

@@ -14,8 +14,7 @@ from nrs_design.proof.bounds import upper_float
 from nrs_design.proof.channels import Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.contact import deflected
-from nrs_design.simulation.norms import Array
+from nrs_design.simulation.norms import Array, deflected
 
 DEFLECTION = "deflection"
 _PUSHED = ("force", DEFLECTION)

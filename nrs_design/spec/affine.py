@@ -9,17 +9,10 @@ from fractions import Fraction
 
 @dataclass(frozen=True, slots=True)
 class Affine:
-    """An affine function of parameters; two are equal iff they are the same function.
+    """An affine function of parameters; two are equal iff they are the same function."""
 
-    Parameters
-    ----------
-    constant : Fraction
-        Value where all parameters are zero.
-    slopes : tuple of (str, Fraction)
-        Parameter names with their factors, sorted by name, none of them zero.
-    """
-
-    constant: Fraction
+    constant: Fraction  # Value where all parameters are zero
+    # Parameter names with their factors, sorted by name, none of them zero.
     slopes: tuple[tuple[str, Fraction], ...] = ()
 
     @classmethod

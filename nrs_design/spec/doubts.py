@@ -20,18 +20,10 @@ _HARDEST = 10
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """Something that is allowed, and probably not meant.
+    """Something that is allowed, and probably not meant."""
 
-    Parameters
-    ----------
-    at : tuple of str
-        Keys that lead to it in the spec.
-    message : str
-        What is doubtful; one line.
-    """
-
-    at: tuple[str, ...]
-    message: str
+    at: tuple[str, ...]  # Keys that lead to it in the spec
+    message: str  # What is doubtful; one line
 
     def __str__(self) -> str:
         """Return the message."""

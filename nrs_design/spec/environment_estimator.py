@@ -71,31 +71,16 @@ class EstimatorSpec(SpecModel):
 
 @dataclass(frozen=True, slots=True)
 class EstimatorDecision:
-    """How an estimator decides, and how late.
+    """How an estimator decides, and how late."""
 
-    Parameters
-    ----------
-    softer, stiffer : str
-        Controllers for the two environments.
-    environments : tuple of (str, str)
-        The softer and the stiffer one.
-    limit : Fraction
-        Stiffness in N m/rad from which on it is the stiffer one.
-    travel : Fraction
-        Measured travel of a segment at least, in rad.
-    delay : Fraction
-        From a change to the decision at most, in s, rounded up.
-    stay : Fraction
-        Time that remains until the next change at least, in s, rounded down.
-    """
-
+    # softer, stiffer: controllers for the two environments.
     softer: str
     stiffer: str
-    environments: tuple[str, str]
-    limit: Fraction
-    travel: Fraction
-    delay: Fraction
-    stay: Fraction
+    environments: tuple[str, str]  # The softer and the stiffer one
+    limit: Fraction  # Stiffness in N m/rad from which on it is the stiffer one
+    travel: Fraction  # Measured travel of a segment at least, in rad
+    delay: Fraction  # From a change to the decision at most, in s, rounded up
+    stay: Fraction  # Time that remains until the next change at least, in s, rounded down
 
     def rules(self) -> SwitchingSpec:
         """Return the switching signals: right for long, wrong for the delay of the decision."""

@@ -58,7 +58,7 @@ class GoalsSpec(SpecModel):
         default=None, description="smallest phase margin, such as 30 deg"
     )
     min_delay_margin: Duration | None = Field(
-        default=None, description="smallest dead time that destabilizes, such as 5 ms"
+        default=None, description="longest dead time up to which none destabilizes, such as 5 ms"
     )
     min_disk_margin: BelowTwo | None = Field(
         default=None, description="smallest balanced disk margin, between 0 and 2, no unit"

@@ -41,31 +41,17 @@ SPEC_KINDS = ("interaction-design", "switched-system", "robot")
 
 @dataclass(frozen=True, slots=True)
 class LoadedSpec:
-    """A spec together with the file that it came from.
+    """A spec together with the file that it came from."""
 
-    Parameters
-    ----------
-    path : Path
-        The file, as it was named.
-    sha256 : str
-        Hash of what the file says, in hexadecimal; see `hash_meaning`. Where it names a robot, the
-        bounds of that are counted in.
-    text : str
-        The file's text.
-    spec : InteractionDesignSpec, SwitchedSystemSpec or RobotSpec
-        What it says.
-    parsed : Mapping, Sequence or Scalar, optional
-        The text as a tree, for positions; parsed once more where it is not given.
-    bounds : str
-        Id of the bounds of the robot that it names; empty if it names none.
-    """
-
-    path: Path
+    path: Path  # The file, as it was named
+    # Hash of what the file says, in hexadecimal; see `hash_meaning`. Where it names a robot, the
+    # bounds of that are counted in.
     sha256: str
-    text: str
-    spec: Spec
+    text: str  # The file's text
+    spec: Spec  # What it says
+    # The text as a tree, for positions; parsed once more where it is not given.
     parsed: Node | None = field(default=None, repr=False, compare=False)
-    bounds: str = ""
+    bounds: str = ""  # Id of the bounds of the robot that it names; empty if it names none
 
     @property
     def root(self) -> Node:

@@ -19,24 +19,15 @@ from nrs_design.spec.units import parse_unit
 
 @dataclass(frozen=True, slots=True)
 class Size:
-    """What sizes of a quantity are plausible.
+    """What sizes of a quantity are plausible."""
 
-    Parameters
-    ----------
-    unit : str
-        SI unit of the range, which tells the quantity.
-    low, high : float
-        Least and largest size; zero is never doubted, and signs do not count.
-    slips : tuple of str
-        Units in which the same number may have been meant, the likeliest first.
-    fields : frozenset of str
-        Keys of a spec that it is about; empty for all others in this unit.
-    """
-
-    unit: str
+    unit: str  # SI unit of the range, which tells the quantity
+    # low, high: least and largest size; zero is never doubted, and signs do not count.
     low: float
     high: float
+    # Units in which the same number may have been meant, the likeliest first.
     slips: tuple[str, ...] = ()
+    # Keys of a spec that it is about; empty for all others in this unit.
     fields: frozenset[str] = frozenset()
 
     def holds(self, value: float) -> bool:

@@ -29,21 +29,11 @@ _GLUED = rf"({DECIMAL_PATTERN})((?![eE][+-]?[0-9])[A-Za-z].*)"
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A physical quantity, exact as far as its unit allows.
+    """A physical quantity, exact as far as its unit allows."""
 
-    Parameters
-    ----------
-    text : str
-        As written, such as ``8 deg/s``.
-    value : Fraction
-        The number as written.
-    unit : str
-        The unit as written.
-    """
-
-    text: str
-    value: Fraction
-    unit: str
+    text: str  # As written, such as ``8 deg/s``
+    value: Fraction  # The number as written
+    unit: str  # The unit as written
     _scale: Unit = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -103,27 +93,16 @@ class Quantity:
 
 @dataclass(frozen=True, slots=True)
 class QuantityKind:
-    """What a field measures, and in which units it may be written.
+    """What a field measures, and in which units it may be written."""
 
-    Parameters
-    ----------
-    name : str
-        For messages, such as ``a rotational stiffness``.
-    units : tuple of str
-        One unit for each accepted dimension; the first is the SI unit that is shown.
-    example : str
-        A quantity of this kind.
-    confusions : mapping of str to str
-        Advice for units that are often written instead; ``{value}`` is the number as written.
-    rational : bool
-        Whether the SI value must be rational, as everything that enters a proof; then units with
-        a factor of pi (``deg``, ``Hz``) are refused.
-    """
-
-    name: str
+    name: str  # For messages, such as ``a rotational stiffness``
+    # One unit for each accepted dimension; the first is the SI unit that is shown.
     units: tuple[str, ...]
-    example: str
+    example: str  # A quantity of this kind
+    # Advice for units that are often written instead; ``{value}`` is the number as written.
     confusions: Mapping[str, str] = field(default_factory=dict)
+    # Whether the SI value must be rational, as everything that enters a proof; then units with a
+    # factor of pi (``deg``, ``Hz``) are refused.
     rational: bool = True
 
     @property

@@ -41,32 +41,19 @@ UNITS = {
 
 @dataclass(frozen=True, slots=True)
 class RobotBounds:
-    """What holds in all poses of a workspace of a robot, in SI units.
+    """What holds in all poses of a workspace of a robot, in SI units."""
 
-    Parameters
-    ----------
-    name, sha256 : str
-        The robot, and the hash of what its spec says.
-    workspace : str
-        In words.
-    lightest, heaviest : Fraction
-        Every eigenvalue of the matrix of inertia of the links is between them.
-    velocity_torques : Fraction
-        Coriolis and centrifugal torques are at most this times the square of the speed.
-    gravity_gradient : Fraction
-        Norm of the derivative of the torques of gravity.
-    id : str
-        SHA-256 of what the file says.
-    """
-
+    # name, sha256: the robot, and the hash of what its spec says.
     name: str
     sha256: str
-    workspace: str
+    workspace: str  # In words
+    # lightest, heaviest: every eigenvalue of the matrix of inertia of the links is between them.
     lightest: Fraction
     heaviest: Fraction
+    # Coriolis and centrifugal torques are at most this times the square of the speed.
     velocity_torques: Fraction
-    gravity_gradient: Fraction
-    id: str
+    gravity_gradient: Fraction  # Norm of the derivative of the torques of gravity
+    id: str  # SHA-256 of what the file says
 
 
 def bounds_file(robot: Path) -> Path:

@@ -48,21 +48,11 @@ Transition = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class DwellTime:
-    """Shortest time in a mode.
+    """Shortest time in a mode."""
 
-    Parameters
-    ----------
-    text : str
-        As written, such as ``2.76 s`` or ``3 steps``.
-    value : Fraction
-        In s, or the number of steps.
-    unit : {"s", "steps"}
-        Which of the two it is.
-    """
-
-    text: str
-    value: Fraction
-    unit: str
+    text: str  # As written, such as ``2.76 s`` or ``3 steps``
+    value: Fraction  # In s, or the number of steps
+    unit: str  # Which of the two it is
 
 
 # One for all modes, or by their names; those left out have none.

@@ -154,22 +154,13 @@ class LogicSwitchSpec(SpecModel):
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """How far apart two switches lie that follow each other.
+    """How far apart two switches lie that follow each other."""
 
-    Parameters
-    ----------
-    entering, leaving : int
-        Indices of the two switches.
-    signal : str or None
-        That has to move in between; None if none has.
-    seconds : Fraction
-        At least so long, not rounded; zero if nothing keeps them apart.
-    """
-
+    # entering, leaving: indices of the two switches.
     entering: int
     leaving: int
-    signal: str | None
-    seconds: Fraction
+    signal: str | None  # That has to move in between; None if none has
+    seconds: Fraction  # At least so long, not rounded; zero if nothing keeps them apart
 
 
 class ThresholdLogicSpec(SpecModel):

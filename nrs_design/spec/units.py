@@ -62,21 +62,11 @@ _LIKELY = {
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit as ``factor * pi**pi_power`` times a product of base units.
+    """A unit as ``factor * pi**pi_power`` times a product of base units."""
 
-    Parameters
-    ----------
-    factor : Fraction
-        Rational part of the factor to SI.
-    pi_power : int
-        Power of pi in the factor: 1 for ``deg`` and ``Hz``.
-    dimension : tuple of int
-        Exponents of the base units.
-    """
-
-    factor: Fraction
-    pi_power: int
-    dimension: tuple[int, ...]
+    factor: Fraction  # Rational part of the factor to SI
+    pi_power: int  # Power of pi in the factor: 1 for ``deg`` and ``Hz``
+    dimension: tuple[int, ...]  # Exponents of the base units
 
     def times(self, other: Unit, power: int = 1) -> Unit:
         """Multiply by the ``power``-th power of another unit."""

@@ -56,21 +56,12 @@ Place = tuple[str | int, ...]
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One place where two specs differ.
+    """One place where two specs differ."""
 
-    Parameters
-    ----------
-    at : tuple of str or int
-        Keys that lead to it.
-    message : str
-        What has changed; one line.
-    weaker : bool
-        Whether less is asked for, or more taken for granted, than before. Otherwise, it is
-        stronger, or neither.
-    """
-
-    at: Place
-    message: str
+    at: Place  # Keys that lead to it
+    message: str  # What has changed; one line
+    # Whether less is asked for, or more taken for granted, than before. Otherwise, it is stronger,
+    # or neither.
     weaker: bool
 
 

@@ -5,21 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
     identified_texts,
+    logic_texts,
     preload_texts,
     scale_texts,
+    sensor_texts,
 )
 from nrs_design.switched.constraints import assemble_switching
-from nrs_design.switched.parameters import corner_modes, fixed_parameter, read_parameters
+from nrs_design.switched.parameters import (
+    corner_modes,
+    fixed_ends,
+    fixed_parameter,
+    read_parameters,
+)
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -27,6 +36,8 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
     from nrs_design.spec.sampling import SamplingSpec
     from nrs_design.switched.coupled import AxesCoupling
+    from nrs_design.switched.gain_box import GainBox
+    from nrs_design.switched.shared_state import SharedState
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
 
@@ -88,21 +99,20 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     """
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
-    modes: list[Mode] = []
-    groups = {}
+    constant = fixed_parameter(parameters)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
-    for mode in spec.modes:
-        corners, groups[mode.name] = corner_modes(mode, parameters)
-        modes += corners
+    corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}
+    groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
+    modes = tuple(chain.from_iterable(corners.values()))
     return SwitchedSystem(
         spec.name,
         Time(spec.time),
         tuple(f"x{i + 1}" for i in range(spec.dimension)),
-        tuple(modes),
+        modes,
         assume_matrices(spec, parameters, scale),
         replace(
-            assemble_switching(spec.switching, groups, resets),
-            fixed_parameter=fixed_parameter(parameters),
+            assemble_switching(spec.switching, groups, resets, fixed_ends(modes, constant)),
+            fixed_parameter=constant,
         ),
     )
 
@@ -135,9 +145,6 @@ def assemble(
         If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
-    from nrs_design.switched.logic_assumptions import logic_texts
-    from nrs_design.switched.sensor_assumptions import sensor_texts
-
     _check_scale(scale)
     if spec.sampling is not None:
         system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
@@ -173,32 +180,18 @@ def _assemble_continuous(
     from nrs_design.switched.gain_box import gain_boxes
 
     plant = plant.scaled(scale, spec.touched)
-    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    system = close_loop(
-        spec.name,
-        plant,
-        loop,
-        design,
-        coordinates,
-        spec.switching,
-        gain_boxes(spec, design, scale),
-        spec.idle_states,
-        spec.contact,
-        spec.offset,
-    )
+    state = state_of(spec, plant, design, coordinates, gain_boxes(spec, design, scale))
+    system = close_loop(spec.name, state, spec.switching, spec.contact)
     if spec.disturbances is not None:
-        touched = plant.among(design.contacts)
         if coordinates != "deflection":
             raise AssemblyError(
                 "bounds on what disturbs do not apply to force coordinates",
                 remedy="use coordinates: deflection",
             )
         from nrs_design.switched.commanded import check_memory, with_command
-        from nrs_design.switched.joint import Joint
 
-        check_memory(touched)
-        joint = Joint.of(plant, design.motion)
-        system = with_command(system, spec, spec.disturbances, loop, joint, touched)
+        check_memory(state.touched)
+        system = with_command(system, state, spec)
     if (coupling := _coupling_of(spec, plant, scale)) is not None:
         from nrs_design.switched.coupled import couple_axes
 
@@ -217,8 +210,36 @@ def _assemble_continuous(
             )
         from nrs_design.switched.saturation import with_saturation
 
-        system = with_saturation(system, spec, plant, loop, design)
+        system = with_saturation(system, spec, plant.actuator, state)
     return system
+
+
+def state_of(
+    spec: InteractionDesignSpec,
+    plant: Plant,
+    design: ControllerDesign,
+    coordinates: str,
+    boxes: Mapping[str, GainBox] = MappingProxyType({}),
+) -> SharedState:
+    """Return the state that the modes of an interaction design share in continuous time.
+
+    Parameters
+    ----------
+    spec, plant, design, coordinates
+        As for `assemble`.
+    boxes : mapping of str to GainBox
+        Where the gains may be, by controller; by default, at what ships.
+
+    Raises
+    ------
+    AssemblyError
+        If they share none.
+    """
+    from nrs_design.switched.shared_state import shared_state
+
+    loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
+    idle, offset = spec.idle_states, spec.offset
+    return shared_state(plant, loop, design, coordinates, idle=idle, offset=offset, boxes=boxes)
 
 
 def _assemble_sampled(

@@ -1,10 +1,18 @@
-"""What is taken for granted: a sentence of a certificate, with what a reader needs to test it."""
+"""What is taken for granted: a sentence of a certificate, with what a reader needs to test it.
+
+`assumptions.toml` has every sentence, by its kind and its name.
+"""
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Self
+from functools import cache
+from pathlib import Path
+from typing import Any, Self
+
+_TABLE = Path(__file__).with_name("assumptions.toml")
 
 
 class Standing(StrEnum):
@@ -17,43 +25,26 @@ class Standing(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AssumptionKind:
-    """What is common to the sentences that take one thing for granted.
+    """What is common to the sentences that take one thing for granted."""
 
-    Parameters
-    ----------
-    name : str
-        In a few words.
-    bound : str
-        Within what it must hold, where the sentence has no numbers of its own.
-    breaks : str
-        What no longer follows if it is false.
-    test : str
-        How to test it on the robot.
-    standing : Standing
-        Argued from how the product is made, or open; that it was tested, a spec says.
-    """
+    id: str
+    name: str  # In a few words
+    where: str  # Which specs take it for granted
+    within: str  # Its bound, where the sentence has no numbers of its own
+    breaks: str  # What no longer follows if it is false
+    test: str  # How to test it on the robot
+    field: str = ""  # Of the spec that is about it, such as ``sampling.period``
+    argued: bool = False  # It follows from how the controller is made
+    says: tuple[tuple[str, str], ...] = ()  # Its sentences by name
 
-    name: str
-    bound: str
-    breaks: str
-    test: str
-    standing: Standing = Standing.OPEN
-
-    def says(self, sentence: str, bound: str | None = None) -> Assumption:
-        """Return an assumption of this kind.
-
-        Parameters
-        ----------
-        sentence : str
-            That a certificate holds.
-        bound : str, optional
-            Its numbers; by default what the kind says.
-        """
-        return Assumption(sentence, self, self.bound if bound is None else bound)
+    @property
+    def standing(self) -> Standing:
+        """Argued or open; that it was tested, a spec says."""
+        return Standing.ARGUED if self.argued else Standing.OPEN
 
 
 class Assumption(str):
-    """The sentence that a certificate holds, which knows of what kind it is and its bound.
+    """The sentence that a certificate holds, which knows its id and its bound.
 
     A certificate keeps the sentence alone: what is read from one is a plain string.
 
@@ -61,22 +52,55 @@ class Assumption(str):
     ----------
     sentence : str
         Word for word.
-    kind : AssumptionKind
-        What breaks if it is false, and how to test it.
+    id : str
+        Of the kind and the sentence, such as ``tissue.linear``.
     bound : str
         Within what it must hold.
     """
 
-    __slots__ = ("bound", "kind")
-    kind: AssumptionKind
+    __slots__ = ("bound", "id")
+    id: str
     bound: str
 
-    def __new__(cls, sentence: str, kind: AssumptionKind, bound: str) -> Self:
-        """Attach kind and bound to a sentence."""
+    def __new__(cls, sentence: str, id: str, bound: str) -> Self:
+        """Attach id and bound to a sentence."""
         made = super().__new__(cls, sentence)
-        made.kind, made.bound = kind, bound
+        made.id, made.bound = id, bound
         return made
 
-    def __reduce__(self) -> tuple[type[Self], tuple[str, AssumptionKind, str]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, str]]:
         """Return what a copy is made from."""
-        return type(self), (str(self), self.kind, self.bound)
+        return type(self), (str(self), self.id, self.bound)
+
+    @property
+    def kind(self) -> AssumptionKind:
+        """What breaks if it is false, and how to test it."""
+        return kinds()[self.id.partition(".")[0]]
+
+
+@cache
+def kinds() -> dict[str, AssumptionKind]:
+    """Return the table by ids."""
+    table: dict[str, dict[str, Any]] = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
+    return {
+        id: AssumptionKind(id, **{**row, "says": tuple(row["says"].items())})
+        for id, row in table.items()
+    }
+
+
+def say(id: str, bound: str | None = None, /, **fields: object) -> Assumption:
+    """Return an assumption in words.
+
+    Parameters
+    ----------
+    id : str
+        Of its sentence, such as ``tissue.linear``.
+    bound : str, optional
+        Its numbers; by default what the kind says.
+    **fields : object
+        Of the sentence.
+    """
+    kind_id, _, name = id.partition(".")
+    kind = kinds()[kind_id]
+    sentence = dict(kind.says)[name].format(**fields)
+    return Assumption(sentence, id, kind.within if bound is None else bound)

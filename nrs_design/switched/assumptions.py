@@ -1,69 +1,47 @@
-"""What a statement about given matrices, or about any switching, takes for granted, in words."""
+"""What a statement takes for granted about matrices, switching, contacts, sensor and data."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
+from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
+from nrs_design.spec.environment_estimator import EstimatorSpec, decide
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.units import THESIS_COMMAND
-from nrs_design.switched import assumption_kinds as kinds
-from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
+    from nrs_design.controllers.sensor import Sensor
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
-LOST_CONTACT = kinds.CONTACT_LOST.says(
-    "Contact is lost where the deflection is not positive, or where the environment would have to "
-    "pull; its surface is then back in its place at once."
-)
 # What follows for inputs of zero, by whether contact may be lost: in the air, the deflection may
 # stay anywhere.
 REST = {
     False: "all modes then rest at one point, the state zero.",
     True: "all modes in contact then rest at one point, the state zero.",
 }
-# What a bounded velocity command adds up to is not bounded.
-SPRING = kinds.SPRING.says(
-    "The spring Kt of an admittance acts on q, by how much the admittances have moved the position "
-    "reference: the integral of vm over all controllers, which no switch resets. The reference "
-    "itself stays where the contact is at rest. At rest elsewhere it is a constant input; while it "
-    "moves on, as under a lasting velocity command, the force grows with it."
+UNCOUPLED = say("uncoupled.axes")
+GIVEN_MATRICES = (say("matrices.given"), say("at-a-switch.any-signal", states="The state is"))
+_SEVERAL = (
+    " Where several resets lead from one mode to another, any one of them may happen, and always "
+    "one of them does."
 )
-# Where other controllers leave the position reference idle.
-SPRING_BESIDE = kinds.SPRING.says(
-    "The spring Kt of an admittance acts on the position reference of the impedance controllers, "
-    "and draws it to zero; a lasting velocity command moves it on, and the force grows with it."
-)
-LOST_ANYWHERE = kinds.CONTACT_LOST.says(
-    "Contact may be lost and made again at any moment, whatever the deflection: free motion, in "
-    "which the spring draws the axis back, is one of the modes. The surface is back in its place "
-    "at once."
-)
-UNCOUPLED = kinds.UNCOUPLED.says("The axes of the robot do not act on each other.")
-CONTINUOUS = "continuous at a switch (identity resets)"
-_TAKES = "The motor takes commands in "
 _STAYS = {
-    "dwell_time": "stays active for at least",
-    "longest_dwell_time": "is left after at most",
+    "dwell_time": ("rules.stays", "at least"),
+    "longest_dwell_time": ("rules.left", "at most"),
 }
-_ENDS = {"dwell_time": "at least", "longest_dwell_time": "at most"}
-_THEN = {"dwell_time": " before the next switch", "longest_dwell_time": ""}
-GIVEN_MATRICES = (
-    kinds.MATRICES.says(
-        "The modes are the matrices of the spec, taken exactly; the input is zero."
-    ),
-    kinds.AT_A_SWITCH.says(f"The state is {CONTINUOUS}; any switching signal is possible."),
-)
 
 
 def assume_matrices(
@@ -91,30 +69,22 @@ def assume_matrices(
 def _switch_texts(spec: SwitchedSystemSpec) -> tuple[Assumption, ...]:
     if spec.switching.is_arbitrary and not spec.resets:
         return GIVEN_MATRICES[1:]
-    jump = f"The state is {CONTINUOUS}."
+    jump = say("at-a-switch.continuous", states="The state is")
     if spec.resets:
         switches = [(reset.source, reset.target) for reset in spec.resets]
-        jump = (
-            f"At a switch {_listed(list(dict.fromkeys(switches)))} the state is mapped as the "
-            "resets of the spec say; at every other switch it is continuous."
-        )
-        if len(set(switches)) < len(switches):
-            jump += (
-                " Where several resets lead from one mode to another, any one of them may happen, "
-                "and always one of them does."
-            )
-    return kinds.AT_A_SWITCH.says(jump), *rule_texts(spec.switching, "mode")
+        distinct = list(dict.fromkeys(switches))
+        several = _SEVERAL if len(distinct) < len(switches) else ""
+        jump = say("at-a-switch.resets", switches=_listed(distinct), several=several)
+    return jump, *rule_texts(spec.switching, "mode")
 
 
 def contact_texts(design: ControllerDesign) -> Iterator[Assumption]:
     """Say what is touched under which controller."""
-    for controller in design.controllers:
-        if controller.contacts:
-            contacts = " or ".join(controller.contacts)
-            yield kinds.CONTACTS.says(
-                f"While {controller.name} is active, nothing but {contacts} is touched.",
-                f"{controller.name}: {contacts}",
-            )
+    for c in design.controllers:
+        if c.contacts:
+            contacts = " or ".join(c.contacts)
+            bound = f"{c.name}: {contacts}"
+            yield say("contacts.controller", bound, controller=c.name, contacts=contacts)
 
 
 def ranges_text(touched: Iterable[Environment]) -> str:
@@ -131,38 +101,26 @@ def ranges_text(touched: Iterable[Environment]) -> str:
 def at_once_texts(touched: Iterable[Environment]) -> Iterator[Assumption]:
     """Say what is taken for granted where several environments are touched at once."""
     for environment in touched:
-        names = " and ".join(part.name for part in environment.parts)
-        if environment.each_losable:
-            yield kinds.CONTACTS.says(
-                f"{environment.name}: {names} are touched from one side, each from where its own "
-                "surface is, and each may be lost on its own. The deflection counts from the "
-                "surface that is met first; the stiffness is at least that of one alone, and at "
-                "most the sum."
-            )
-        elif environment.parts:
-            yield kinds.CONTACTS.says(
-                f"{environment.name}: {names} are touched at once, at all times; their forces add "
-                "up, and none of them is lost on its own."
-            )
+        if environment.parts:
+            parts = " and ".join(part.name for part in environment.parts)
+            how = "one-side" if environment.each_losable else "at-once"
+            yield say(f"contacts.{how}", environment=environment.name, parts=parts)
 
 
 def rule_texts(rules: SwitchingSpec, noun: str) -> tuple[Assumption, ...]:
     """Say which switching signals are possible, between modes or controllers."""
     if rules.is_arbitrary:
-        return (kinds.ANY_SIGNAL.says("Any switching signal is possible."),)
+        return (say("any-signal.all"),)
     texts = []
     for at, dwell in rules.dwell_times():
         which = f"{noun.capitalize()} {at[1]}" if at[1:] else f"Every {noun}"
-        time = _time_text(dwell)
-        sentence = f"{which} {_STAYS[at[0]]} {time}{_THEN[at[0]]}."
-        texts.append(kinds.RULES.says(sentence, f"{_ENDS[at[0]]} {time}"))
-    if rules.transitions is not None:
-        only = f"changes only {_listed(rules.transitions)}"
-        changes = only if rules.transitions else "never changes"
-        texts.append(kinds.RULES.says(f"The {noun} {changes}."))
-    else:
-        texts.append(kinds.ANY_SIGNAL.says(f"Any {noun} may follow any other."))
-    return tuple(texts)
+        (name, end), time = _STAYS[at[0]], _time_text(dwell)
+        texts.append(say(name, f"{end} {time}", which=which, time=time))
+    if rules.transitions is None:
+        return (*texts, say("any-signal.follow", noun=noun))
+    listed = rules.transitions
+    changes = f"changes only {_listed(listed)}" if listed else "never changes"
+    return (*texts, say("rules.transitions", noun=noun, changes=changes))
 
 
 def _time_text(dwell: DwellTime) -> str:
@@ -172,33 +130,20 @@ def _time_text(dwell: DwellTime) -> str:
 
 def scale_texts(scale: Fraction) -> tuple[Assumption, ...]:
     """Say by how much the ranges of the spec are stretched, unless they are as declared."""
-    if scale == 1:
-        return ()
-    return (
-        kinds.RANGE.says(
-            f"All ranges of the spec are scaled about their nominal values by {scale}."
-        ),
-    )
+    return () if scale == 1 else (say("range.scaled", scale=scale),)
 
 
 def command_texts(command: str) -> Iterator[Assumption]:
-    """Say in which unit the motor is commanded, where it is not the rpm of the thesis.
-
-    Parameters
-    ----------
-    command : str
-        That unit.
-    """
+    """Say in which unit the motor is commanded, where it is not the rpm of the thesis."""
     if command != THESIS_COMMAND:
-        yield kinds.COMMAND_UNIT.says(
-            f"{_TAKES}{command}: Kp of the motion controller is in "
-            f"{command}/rad, Kd in {command}*s/rad."
-        )
+        yield say("command-unit.unit", unit=command)
 
 
 def command_in(statements: Iterable[str]) -> str:
     """Return the unit of commands that `command_texts` has put among the assumptions."""
-    found = (re.match(_TAKES + "(.+?):", text) for text in statements)
+    before, _, after = say("command-unit.unit", unit="\0").partition("\0")
+    pattern = f"{re.escape(before)}(.+?){re.escape(after[0])}"
+    found = (re.match(pattern, text) for text in statements)
     return next((match[1] for match in found if match), THESIS_COMMAND)
 
 
@@ -208,36 +153,26 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
     if spec.actuator.range_covers is not None:
-        covered = MOTOR_COVERS[spec.actuator.range_covers]
-        said = f"hold {covered}{_since(spec.actuator)}"
-        yield kinds.COVERAGE.says(f"The range of the actuator was identified to {said}.", covered)
+        yield _coverage("the actuator", MOTOR_COVERS[spec.actuator.range_covers], spec.actuator)
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
-            covered = COVERS[environment.range_covers]
-            said = f"hold {covered}{_since(environment)}"
-            yield kinds.COVERAGE.says(f"The range of {name} was identified to {said}.", covered)
+            yield _coverage(name, COVERS[environment.range_covers], environment)
         if environment.linearized_about is not None:
-            about = environment.linearized_about
-            yield kinds.LINEARIZED.says(
-                f"{name} is the linearization about {about}: it holds for small motions there."
-            )
+            yield say("linearized.about", environment=name, about=environment.linearized_about)
     for at, item in spec.identified.items():
-        if item.accept_doubt is not None and not item.doubts:
-            sizes = "; ".join(text.partition(":")[0] for text in unusual(item))
-            yield kinds.DOUBT.says(
-                f"Sizes of {at[-1]} are unusual: {sizes}; accepted because: {item.accept_doubt}."
-            )
+        name, why = at[-1], item.accept_doubt
         if item.doubts:
-            why = item.accept_doubt
             end = "nothing says why that is accepted" if why is None else f"accepted because: {why}"
-            yield kinds.DOUBT.says(
-                f"The identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}; {end}."
-            )
+            yield say("doubt.listed", name=name, doubts="; ".join(item.doubts), end=end)
+        elif why is not None:
+            sizes = "; ".join(text.partition(":")[0] for text in unusual(item))
+            yield say("doubt.unusual", name=name, sizes=sizes, why=why)
 
 
-def _since(item: IdentifiedRangesSpec) -> str:
-    """Say what nobody can check of values that came without an id."""
-    return "" if item.range_id else ", unless it has been changed by hand since"
+def _coverage(name: str, covered: str, item: IdentifiedRangesSpec) -> Assumption:
+    # Nobody can check values that came without an id.
+    since = "" if item.range_id else ", unless it has been changed by hand since"
+    return say("coverage.range", covered, name=name, covered=covered, since=since)
 
 
 def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assumption]:
@@ -258,30 +193,84 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assu
             continue
         low, high = (end.text for end in environment.preload_range)
         if scale < 1:
-            yield kinds.PRELOAD.says(
-                f"{name} is {law.title}, and with ranges scaled below 1 that law is not covered: "
-                "it is taken for a linear one."
-            )
-            continue
-        yield kinds.PRELOAD.says(
-            law.preload_text(name, low, high), f"{name}: deflection from {low} to {high}"
-        )
+            yield say("preload.scaled", environment=name, law=law.title)
+        else:
+            bound = f"{name}: deflection from {low} to {high}"
+            yield say("preload.law", bound, text=law.preload_text(name, low, high))
+
+
+def sensor_texts(
+    sensor: Sensor, period: Fraction | None, *, disturbed: bool
+) -> Iterator[Assumption]:
+    """Say how the law gets the force, and what a proof leaves out of its errors.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        Of the design.
+    period : Fraction or None
+        Of the processor in s, where there is one.
+    disturbed : bool
+        Whether bounds on disturbances are stated.
+    """
+    if sensor.filter is not None:
+        order = sensor.filter.order
+        lags = "one lag" if order == 1 else f"{order} equal lags in a row"
+        if period is None:
+            yield say("sensor.filter", lags=lags, pole=exact_decimal(sensor.filter.pole))
+        else:
+            step = sensor.filter.sampled(period)
+            p, q = exact_decimal(step.p), exact_decimal(step.q)
+            yield say("sensor.sampled-filter", lags=lags, p=p, q=q)
+    if sensor.errors:
+        lasting = rounded_up(sensor.lasting, "N*m")
+        parts = "; ".join(f"{name}: {rounded_up(e, 'N*m')}" for name, e in sensor.errors.items())
+        which = "sensor.errors-disturbed" if disturbed else "sensor.errors"
+        yield say(which, f"{lasting} about the pivot", lasting=lasting, parts=parts)
+    if sensor.carries:
+        yield say("sensor.tool", "accelerations of the tool far below that of gravity")
+    if sensor.noise is not None:
+        yield say("sensor.noise", "none")
+
+
+def logic_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
+    """Say what keeps the rules of switching, where they are those of a mode logic."""
+    logic = spec.mode_logic
+    if logic is not None and not spec.switching.is_arbitrary:
+        yield from _KEPT_BY[logic.type](spec, logic)
+        yield say("logic.any-signal")
+
+
+def _estimator_texts(spec: InteractionDesignSpec, logic: EstimatorSpec) -> Iterator[Assumption]:
+    torque, shortest = logic.signals.torque, logic.shortest_contact.text
+    delay = rounded_up(decide(logic, spec.controllers, spec.environments).delay, "s")
+    bound = f"changes of contact at least {shortest} apart"
+    yield say("rules.environment", bound, shortest=shortest, delay=delay)
+    yield say(
+        "logic.estimator",
+        speed=logic.slowest_speed.text,
+        noise=torque.noise.text,
+        age=torque.age.text,
+        rate=torque.largest_rate.text,
+        step=logic.signals.position_step.text,
+    )
+
+
+# What keeps the rules, by the type of the logic.
+_KEPT_BY: Mapping[str, Callable[[InteractionDesignSpec, Any], Iterable[Assumption]]] = (
+    MappingProxyType(
+        {"thresholds": lambda spec, logic: [say("logic.timer")], "estimator": _estimator_texts}
+    )
+)
 
 
 def _parameter_text(parameter: UncertainParameter) -> Assumption:
-    interval = parameter.interval
+    interval, name = parameter.interval, parameter.name
     if interval.low == interval.high:
-        return kinds.RANGE.says(f"Parameter {parameter.name} is {exact_text(interval.low)}.")
+        return say("range.value", name=name, value=exact_text(interval.low))
     ends = _ends(interval)
-    within = f"{parameter.name} in {ends}"
-    if parameter.varies:
-        sentence = f"Parameter {parameter.name} stays in {ends} and may change arbitrarily fast."
-        return kinds.RANGE.says(sentence, within)
-    return kinds.RANGE.says(
-        f"Parameter {parameter.name} is unknown in {ends}, but constant: it has one value in all "
-        "modes and at all times.",
-        within,
-    )
+    how = "range.varies" if parameter.varies else "range.constant"
+    return say(how, f"{name} in {ends}", name=name, ends=ends)
 
 
 def _ends(interval: Interval) -> str:

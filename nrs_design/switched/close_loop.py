@@ -10,18 +10,16 @@ corners decreases there, however fast the parameters move.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
 from functools import partial
-from itertools import chain
+from itertools import chain, permutations
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.models.motion_loop import MotionLoop
-from nrs_design.models.plant import Plant
+from nrs_design.controllers.controller_design import Controller
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import IdleStatesSpec, SwitchingSpec
-from nrs_design.spec.controllers import Offset
+from nrs_design.spec import SwitchingSpec
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.free_motion import (
     adds_free_motion,
@@ -29,25 +27,15 @@ from nrs_design.switched.free_motion import (
     free_modes,
     lost_contact,
 )
-from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.loop_assumptions import Assumed, assume_loop
-from nrs_design.switched.mixture import resets_of
-from nrs_design.switched.offset import retaken
-from nrs_design.switched.parameters import Corner
-from nrs_design.switched.shared_state import SharedState, shared_state
+from nrs_design.switched.shared_state import SharedState
 
 
 def close_loop(
     name: str,
-    plant: Plant,
-    loop: MotionLoop,
-    design: ControllerDesign,
-    coordinates: str,
+    state: SharedState,
     rules: SwitchingSpec | None = None,
-    boxes: Mapping[str, GainBox] | None = None,
-    idle: IdleStatesSpec | None = None,
     contact: str | None = None,
-    offset: Offset = "none",
 ) -> SwitchedSystem:
     """Assemble every mode of an interaction design.
 
@@ -55,58 +43,39 @@ def close_loop(
     ----------
     name : str
         Name of the spec.
-    plant : Plant
-        Environments.
-    loop : MotionLoop
-        Closed motion loop G.
-    design : ControllerDesign
-        Gains that ship.
-    coordinates : {"deflection", "force"}
-        Last state of an impedance mode: the deflection (continuous when the stiffness changes
-        in contact, so the physical choice) or the force (the thesis's choice).
+    state : SharedState
+        Of all modes.
     rules : SwitchingSpec, optional
         Rules for the change of controllers; by default any may follow any other at any time.
-    boxes : mapping, optional
-        Where the gains of controllers may be, by name; by default, at what ships.
-    idle : IdleStatesSpec, optional
-        What the states of impedance controllers do while another kind of controller is active; by
-        default there is one kind only.
     contact : {"losable", "kept"}, optional
         Whether contact may be lost; by default it is where that is modelled, and a statement says
         whether it covers it.
-    offset : {"none", "reference", "measured"}
-        Where force controllers take their offset from; only where none commands a velocity.
 
     Raises
     ------
     AssemblyError
-        If the modes do not share one state, or the coordinates do not apply.
+        If contact may be lost, and that is not modelled.
     """
-    rules = rules or SwitchingSpec()
-    boxes = {c.name: GainBox.point(c.law) for c in design.controllers} | {**(boxes or {})}
-    state = shared_state(plant, loop, design, coordinates, idle, offset)
-    sprung = any(controller.law.spring for controller in design.controllers)
-    free = sprung and adds_free_motion(state, design, contact, rules)
-    losable = None if sprung or contact == "kept" else lost_contact(state, design, boxes, contact)
-    parts = {
-        controller.name: tuple(_all_modes(controller, plant, state, boxes, free=free))
-        for controller in design.controllers
-    }
+    rules, controllers = rules or SwitchingSpec(), state.design.controllers
+    sprung = any(controller.law.spring for controller in controllers)
+    free = sprung and adds_free_motion(state, contact, rules)
+    losable = None if sprung or contact == "kept" else lost_contact(state, contact)
+    parts = {c.name: tuple(_all_modes(c, state, free=free)) for c in controllers}
     if rules.names_contacts:
         parts = _by_contact(chain.from_iterable(parts.values()))
-    groups = {key: tuple(Corner(mode.name) for mode in part) for key, part in parts.items()}
+    groups = {key: tuple(mode.name for mode in part) for key, part in parts.items()}
     modes = tuple(chain.from_iterable(parts.values()))
     assumed = Assumed(
-        design,
+        state.design,
         state.touched,
-        boxes,
-        coordinates,
+        state.boxes,
+        state.coordinates,
         rules,
-        idle,
+        state.idle,
         state.law,
-        given=loop.given,
+        given=state.given,
         losable=losable is not None,
-        offset=offset,
+        offset=state.offset,
         free=free,
         joint=state.joint,
     )
@@ -116,19 +85,25 @@ def close_loop(
         state.names,
         modes,
         assume_loop(assumed),
-        assemble_switching(rules, groups, _resets(state, design)),
+        assemble_switching(rules, groups, _resets(state)),
         losable,
         flights=among_modes(state, modes) if free else None,
     )
 
 
-def _resets(
-    state: SharedState, design: ControllerDesign
-) -> Iterable[tuple[str, str, RationalMatrix]]:
-    """Return what switches do to the state."""
-    if state.idle is not None and state.idle.reset:
-        return resets_of(design, state.realization.order, len(state.beside))
-    return retaken(design, state.offset, state.realization.order)
+def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
+    """Yield the switches that set states to zero, and the maps.
+
+    From an impedance controller to others the idle states are, if the spec says so; where force
+    control takes the measured position, the lead is.
+    """
+    size = len(state.names)
+    kept = [[Fraction(int(i == j < state.kept)) for j in range(size)] for i in range(size)]
+    for source, target in permutations(state.design.controllers, 2):
+        leaves = (source.law.commands, target.law.commands) == ("velocity", "position")
+        idle = state.idle is not None and state.idle.reset and leaves
+        if idle or state.offset == "measured":
+            yield source.name, target.name, RationalMatrix.from_rows(kept)
 
 
 def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
@@ -140,22 +115,15 @@ def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:
     return found
 
 
-def _all_modes(
-    controller: Controller,
-    plant: Plant,
-    state: SharedState,
-    boxes: Mapping[str, GainBox],
-    *,
-    free: bool,
-) -> Iterator[Mode]:
+def _all_modes(controller: Controller, state: SharedState, *, free: bool) -> Iterator[Mode]:
     """Yield the modes of a controller in all its contacts, and free ones if they are asked for."""
-    law, gains = controller.law, boxes[controller.name]
+    law, gains = controller.law, state.boxes[controller.name].box
     if not controller.contacts:
         yield Mode(controller.name, RationalMatrix.from_rows(state.placed(law)))
-    for environment in map(plant.environment, controller.contacts):
+    for environment in state.contacts(controller):
         name = f"{controller.name}/{environment.name}"
-        box = state.contact_box(environment).beside(gains.box).beside(state.motor_box)
+        box = state.contact_box(environment).beside(gains).beside(state.motor_box)
         for corner, rows in box.corners(partial(state.rows, law, environment), name):
             yield Mode(corner, RationalMatrix.from_rows(rows))
     if free:
-        yield from free_modes(controller, state, gains)
+        yield from free_modes(controller, state)

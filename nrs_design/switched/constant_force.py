@@ -5,17 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.switched import assumption_kinds as kinds
+from nrs_design.switched.assumption import say
 
-_ONE_FORCE = kinds.INPUTS.says(
-    "Where a constant force pushes in: the admittances take F - Fd in place of F, with one Fd > 0 "
-    "that does not change, whichever controller is active; all other inputs are zero.",
-    "one Fd > 0, of any size, that does not change",
-)
-_ONE_STIFFNESS = kinds.TISSUE.says(
-    "Where a constant force pushes in: the stiffness is anywhere in its range, but does not "
-    "change; one that does moves the deflection at which F = Fd, and is not covered.",
-    "a stiffness in its range that does not change",
+_ASSUMED = (
+    say("constant-force.force", "one Fd > 0, of any size, that does not change"),
+    say("constant-force.stiffness", "a stiffness in its range that does not change"),
 )
 
 
@@ -35,5 +29,5 @@ def with_constant_force(system: SwitchedSystem) -> SwitchedSystem:
     return replace(
         system,
         contact=replace(system.contact, pushed=True),
-        assumptions=(*system.assumptions, _ONE_FORCE, _ONE_STIFFNESS),
+        assumptions=(*system.assumptions, *_ASSUMED),
     )

@@ -11,40 +11,42 @@ from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.spec import DwellTime, SwitchingSpec
-from nrs_design.switched.parameters import Corner, pair_ends
 
 MAX_ASSEMBLED = 200_000
 
-Groups = Mapping[str, Sequence[Corner]]
+Groups = Mapping[str, Sequence[str]]
 Transition = tuple[str, str]
 Jump = tuple[str, str, RationalMatrix]
 T = TypeVar("T")
 
 
 def assemble_switching(
-    rules: SwitchingSpec, groups: Groups, resets: Iterable[Jump] = ()
+    rules: SwitchingSpec,
+    groups: Groups,
+    resets: Iterable[Jump] = (),
+    ends: Iterable[Transition] = (),
 ) -> Switching:
     """Carry the rules of a spec over to the assembled modes.
 
     Corners and contacts of one name follow each other freely, because parameters and environment
-    move as they like. Switches between names are allowed, and reset, for all their corners. That a
-    parameter is constant is kept apart, in `fixed_ends`: transitions allow for more, never less.
+    move as they like. Switches between names are allowed, and reset, for all their corners.
 
     Parameters
     ----------
     rules : SwitchingSpec
         In terms of the names of the spec.
     groups : mapping
-        What each name stands for, in the order of the assembled modes.
+        The assembled modes that each name stands for, in their order.
     resets : iterable of (str, str, RationalMatrix)
         Source, target and map, in terms of the same names.
+    ends : iterable of (str, str)
+        Pairs of modes at the two ends of a constant parameter; transitions allow for more.
 
     Raises
     ------
     AssemblyError
         If the rules become too many.
     """
-    ends = tuple(pair for corners in groups.values() for pair in pair_ends(corners))
     common = rules.dwell_time.value if isinstance(rules.dwell_time, DwellTime) else Fraction(0)
     transitions = None
     if rules.transitions is not None:
@@ -52,21 +54,21 @@ def assemble_switching(
         transitions = _limited(_expand(chain(within, rules.transitions), groups))
     jumps = _limited(_assembled_resets(resets, groups))
     stays = tuple(_assembled_stays(rules, groups, Stay(common)))
-    return Switching(common, transitions, jumps, ends, stays=stays)
+    return Switching(common, transitions, jumps, tuple(ends), stays=stays)
 
 
 def _assembled_stays(
     rules: SwitchingSpec, groups: Groups, common: Stay
 ) -> Iterator[tuple[str, Stay]]:
     """Yield how long the modes stay active that have dwell times of their own."""
-    for name, corners in groups.items():
+    for name, modes in groups.items():
         shortest, longest = rules.stay(name)
         stay = Stay(
             Fraction(0) if shortest is None else shortest.value,
             None if longest is None else longest.value,
         )
         if stay != common:
-            yield from ((corner.mode, stay) for corner in corners)
+            yield from ((mode, stay) for mode in modes)
 
 
 def _assembled_resets(resets: Iterable[Jump], groups: Groups) -> Iterator[Reset]:
@@ -78,8 +80,8 @@ def _assembled_resets(resets: Iterable[Jump], groups: Groups) -> Iterator[Reset]
 def _expand(pairs: Iterable[Transition], groups: Groups) -> Iterator[Transition]:
     for source, target in pairs:
         for a, b in product(groups[source], groups[target]):
-            if a.mode != b.mode:
-                yield a.mode, b.mode
+            if a != b:
+                yield a, b
 
 
 def _limited(found: Iterator[T]) -> tuple[T, ...]:

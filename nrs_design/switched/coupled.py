@@ -20,8 +20,7 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec.coupling import CouplingSpec
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.robot_bounds import ON_TRUST
-from nrs_design.switched import assumption_kinds as kinds
-from nrs_design.switched.assumption import Assumption
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import UNCOUPLED
 
 DECLARED = "declared, not computed from a robot"
@@ -29,9 +28,10 @@ DECLARED = "declared, not computed from a robot"
 JOINTS = 3
 # Of a bound that is multiplied by a speed.
 DIGITS = 6
-AT_ONCE = kinds.PERIOD.says(
-    "All axes are sampled at the same moments, and the commands of all are held in between.",
-    "one clock for all axes",
+AT_ONCE = say("period.axes", "one clock for all axes")
+_LEFT = (
+    ", nor that the disturbances leave it there: a bound, also that on the velocity, holds as long "
+    "as they do"
 )
 OMEGA, DELTA = "omega [rad/s]", "delta [rad]"
 Row = list[Fraction]
@@ -39,38 +39,22 @@ Row = list[Fraction]
 
 @dataclass(frozen=True, slots=True)
 class AxesCoupling:
-    """What is known about the links of a robot, in SI units.
+    """What is known about the links of a robot, in SI units."""
 
-    Parameters
-    ----------
-    drive : Fraction
-        J, the inertia of each drive at its joint.
-    lightest, heaviest : Fraction
-        Every eigenvalue of the matrix of inertia M(q) of the links is between them.
-    coriolis : Fraction or None
-        Coriolis and centrifugal torques are at most this times the speed; None leaves them out.
-    speed : str or None
-        As long as the speed is at most this, with its unit.
-    gravity_gradient : Fraction or None
-        The torque of gravity changes by at most this times the way from the pose of rest; None
-        leaves it out.
-    source : str
-        Where the numbers come from, for the assumptions.
-    poses : str
-        In which poses they hold.
-    count : int or None
-        How many axes there are, if that is known.
-    """
-
-    drive: Fraction
+    drive: Fraction  # J, the inertia of each drive at its joint
+    # lightest, heaviest: every eigenvalue of the matrix of inertia M(q) of the links is between
+    # them.
     lightest: Fraction
     heaviest: Fraction
+    # Coriolis and centrifugal torques are at most this times the speed; None leaves them out.
     coriolis: Fraction | None = None
-    speed: str | None = None
+    speed: str | None = None  # As long as the speed is at most this, with its unit
+    # The torque of gravity changes by at most this times the way from the pose of rest; None leaves
+    # it out.
     gravity_gradient: Fraction | None = None
-    source: str = DECLARED
-    poses: str = "all poses that are used"
-    count: int | None = None
+    source: str = DECLARED  # Where the numbers come from, for the assumptions
+    poses: str = "all poses that are used"  # In which poses they hold
+    count: int | None = None  # How many axes there are, if that is known
 
     @classmethod
     def of(cls, spec: CouplingSpec, drive: Fraction) -> AxesCoupling:
@@ -312,57 +296,35 @@ def check_gravity(*, losable: bool) -> None:
 def _texts(coupling: AxesCoupling, *, disturbed: bool) -> Iterator[Assumption]:
     """Say what is taken for granted about the axes, and where it comes from."""
     low, high = (exact_text(m) for m in (coupling.lightest, coupling.heaviest))
-    yield kinds.LINKS.says(
-        "The axes act on each other through their links. Every axis is one of this spec: its "
-        "motor, gains, controllers and environments, each at values of its own within their "
-        f"ranges, with a drive of {exact_text(coupling.drive)} kg*m^2 at its joint; gain and time "
-        "constant of the motor are those of a drive without links."
-    )
-    yield kinds.TOUCHED_ALONE.says(
-        "What is touched acts on every axis by itself: the torque on an axis depends on the "
-        "deflection of that axis alone."
-    )
-    yield kinds.LINKS.says(
-        f"Every eigenvalue of the matrix of inertia of the links is in [{low}, {high}] kg*m^2, in "
-        f"{coupling.poses} ({coupling.source}).",
+    yield say("links.axes", drive=exact_text(coupling.drive))
+    yield say("touched-alone.axis")
+    yield say(
+        "links.inertia",
         f"eigenvalues of M(q) in [{low}, {high}] kg*m^2",
+        low=low,
+        high=high,
+        poses=coupling.poses,
+        source=coupling.source,
     )
     if coupling.coriolis is None:
-        yield kinds.JOINT_SPEED.says(
-            "Coriolis and centrifugal torques are left out.", "speeds near zero"
-        )
+        yield say("joint-speed.left-out", "speeds near zero")
     else:
-        also = ""
-        if disturbed:
-            also = (
-                ", nor that the disturbances leave it there: a bound, also that on the velocity, "
-                "holds as long as they do"
-            )
-        yield kinds.JOINT_SPEED.says(
-            "Coriolis and centrifugal torques are, over all axes together (root of the sum of "
-            f"squares), at most {exact_text(coupling.coriolis)} N*m*s/rad times the speed "
-            f"({_shortly(coupling)}), and the speed stays below {coupling.speed}, which is not "
-            f"shown{also}.",
+        yield say(
+            "joint-speed.bounded",
             f"speed below {coupling.speed}",
+            coriolis=exact_text(coupling.coriolis),
+            source=_shortly(coupling),
+            speed=coupling.speed,
+            also=_LEFT if disturbed else "",
         )
     if coupling.gravity_gradient is None:
-        yield kinds.GRAVITY.says(
-            "Gravity is compensated in all poses that are used.", coupling.poses
-        )
+        yield say("gravity.all-poses", coupling.poses)
     else:
-        yield kinds.GRAVITY.says(
-            "Gravity is compensated in the pose of rest, in which all deflections are zero; from "
-            "there its torque changes, over all axes together, by at most "
-            f"{exact_text(coupling.gravity_gradient)} N*m/rad times the deflections "
-            f"({_shortly(coupling)}).",
-            f"{exact_text(coupling.gravity_gradient)} N*m/rad",
-        )
+        gradient = exact_text(coupling.gravity_gradient)
+        bound = f"{gradient} N*m/rad"
+        yield say("gravity.rest", bound, gradient=gradient, source=_shortly(coupling))
         if coupling.source != DECLARED:
-            yield kinds.GRAVITY.says(
-                "On the straight way of the joint angles from the pose of rest, all poses are "
-                "among those.",
-                coupling.poses,
-            )
+            yield say("gravity.straight", coupling.poses)
 
 
 def _shortly(coupling: AxesCoupling) -> str:

@@ -28,7 +28,8 @@ from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
-from nrs_design.proof.matrix import RationalMatrix, multiply
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
@@ -46,40 +47,20 @@ _CLOSED, _OPENED, _FREE = ForceShare(), ForceShare(sensed=ZERO), ForceShare(ZERO
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a loop is looked at, beside its contact and its gains.
+    """Where a loop is looked at, beside its contact and its gains."""
 
-    Parameters
-    ----------
-    motor : Actuator
-        A corner of its ranges, or the nominal one.
-    age : int
-        Of the force sample, always the same; zero in continuous time.
-    texts : tuple of str
-        What is not nominal, and the age where there are several.
-    """
-
-    motor: Actuator
-    age: int = 0
-    texts: tuple[str, ...] = ()
+    motor: Actuator  # A corner of its ranges, or the nominal one
+    age: int = 0  # Of the force sample, always the same; zero in continuous time
+    texts: tuple[str, ...] = ()  # What is not nominal, and the age where there are several
 
 
 @dataclass(frozen=True, slots=True)
 class CutLoop:
-    """Characteristic polynomials of one mode, highest power first, of one length.
+    """Characteristic polynomials of one mode, highest power first, of one length."""
 
-    Parameters
-    ----------
-    opened : tuple of Fraction
-        Where the law takes no force; a motor with a load carries it all the same.
-    closed : tuple of Fraction
-        Of the mode as it is proved.
-    free : tuple of Fraction
-        Where the force does not act at all.
-    """
-
-    opened: Polynomial
-    closed: Polynomial
-    free: Polynomial
+    opened: Polynomial  # Where the law takes no force; a motor with a load carries it all the same
+    closed: Polynomial  # Of the mode as it is proved
+    free: Polynomial  # Where the force does not act at all
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,7 +268,7 @@ class ProcessorAxis(AbstractAxis):
         if self.sampling.round > 1:
             between = [row[:n] for row in frame.rows(law, 0, values, Turn.MOTION)[:n]]
             for _ in range(self.sampling.round - 1):
-                rows = [*multiply(between, rows)]
+                rows = [*multiply_matrices(between, rows)]
         return rows
 
     def _frame(self, law: SampledLaw, place: Place) -> Frame:
@@ -388,13 +369,14 @@ def _on_the_axis(polynomial: Polynomial, period: Fraction) -> Polynomial:
     half = period / 2
     total, power = [polynomial[0]], [ONE]
     for c in polynomial[1:]:
-        power = _product(power, [-half, ONE])
-        risen = _product(total, [half, ONE])
+        power = multiply(power, [-half, ONE])
+        risen = multiply(total, [half, ONE])
         total = [a + c * b for a, b in zip(risen, power, strict=True)]
     return tuple(total)
 
 
-def _product(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+def multiply(a: Sequence[Fraction], b: Sequence[Fraction]) -> list[Fraction]:
+    """Multiply two polynomials."""
     found = [ZERO] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
         for j, y in enumerate(b):

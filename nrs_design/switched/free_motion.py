@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import partial
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
-from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
-from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates
+from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
 from nrs_design.spec.interaction_parts import FREE
-from nrs_design.switched.assumptions import LOST_CONTACT
-from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.assumption import say
 from nrs_design.switched.modes import Rows, velocity_mode
 from nrs_design.switched.shared_state import SharedState
 
@@ -27,24 +24,8 @@ from nrs_design.switched.shared_state import SharedState
 NOTHING = KelvinVoigt(Fraction(0), Fraction(0))
 
 
-def lost_contact(
-    state: SharedState,
-    design: ControllerDesign,
-    boxes: Mapping[str, GainBox],
-    contact: str | None,
-) -> Contact | None:
+def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
     """Return how contact is lost, or None where that is not modelled.
-
-    Parameters
-    ----------
-    state : SharedState
-        Of all modes.
-    design : ControllerDesign
-        Gains that ship.
-    boxes : mapping
-        Where the gains of controllers may be, by name.
-    contact : {"losable", "kept"} or None
-        What the spec asks for.
 
     Raises
     ------
@@ -55,15 +36,18 @@ def lost_contact(
         if contact == "losable":
             raise _not_losable("")
         return None
-    free = [mode for c in design.controllers for mode in free_modes(c, state, boxes[c.name])]
+    free = [
+        mode for controller in state.design.controllers for mode in free_modes(controller, state)
+    ]
     return Contact(
-        tuple(free), tuple(_pulls(state)), required=contact == "losable", loss=LOST_CONTACT
+        tuple(free),
+        tuple(_pulls(state)),
+        required=contact == "losable",
+        loss=say("contact-lost.surface"),
     )
 
 
-def adds_free_motion(
-    state: SharedState, design: ControllerDesign, contact: str | None, rules: SwitchingSpec
-) -> bool:
+def adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
     """Tell whether free motion is one of the modes: with springs, it ends at rest in one place.
 
     That contact is lost at any deflection is more than happens, and is covered on demand only.
@@ -72,8 +56,6 @@ def adds_free_motion(
     ----------
     state : SharedState
         Of all modes.
-    design : ControllerDesign
-        Gains that ship.
     contact : {"losable", "kept"} or None
         What the spec asks for.
     rules : SwitchingSpec
@@ -86,11 +68,17 @@ def adds_free_motion(
     """
     if contact != "losable":
         return False
-    if not all(controller.law.spring for controller in design.controllers):
+    if not all(controller.law.spring for controller in state.design.controllers):
         raise _not_losable(", where some controllers have a spring Kt, for all that have one")
     if not _can_be_free(state):
         raise _not_losable("")
-    _check_rules_of_flight(rules)
+    if rules.names_contacts or next(rules.dwell_times(), None) is not None:
+        raise AssemblyError(
+            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
+            "is lost whatever the rules of switching say",
+            remedy="use `contact: kept`, or rules with transitions between controllers alone",
+            at=("switching",),
+        )
     return True
 
 
@@ -115,25 +103,16 @@ def _not_losable(which: str) -> AssemblyError:
     )
 
 
-def free_modes(controller: Controller, state: SharedState, gains: GainBox) -> Iterator[Mode]:
-    """Yield the modes of a controller that touches nothing, at every corner of its gains.
+def free_modes(controller: Controller, state: SharedState) -> Iterator[Mode]:
+    """Yield the modes of a controller that touches nothing, at every corner of its gains."""
+    box = state.boxes[controller.name].box.beside(state.motor_box)
 
-    Parameters
-    ----------
-    controller : Controller
-        With its law.
-    state : SharedState
-        Of all modes.
-    gains : GainBox
-        Where its gains may be.
-    """
-    box, rows_at = gains.box.beside(state.motor_box), partial(_free_rows, state, controller.law)
+    def rows_at(values: Mapping[str, Fraction]) -> Rows:
+        law = controller.law.of(values)
+        return velocity_mode(state.motion_at(values), law, NOTHING, state.low_pass)
+
     for corner, rows in box.corners(rows_at, f"{controller.name}/{FREE}"):
         yield Mode(corner, RationalMatrix.from_rows(rows))
-
-
-def _free_rows(state: SharedState, law: CompliantLaw, values: Mapping[str, Fraction]) -> Rows:
-    return velocity_mode(state.motion_at(values), law.of(values), NOTHING, state.low_pass)
 
 
 def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
@@ -154,8 +133,7 @@ def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
 
 def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
     """Yield the forces of what could pull, at the corners of their ranges."""
-    acting = could_pull(state.touched)
-    return (_force_row(state, law) for environment in acting for law in environment.corners)
+    return force_rows(state.motion, state.names, could_pull(state.touched))
 
 
 def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
@@ -173,19 +151,25 @@ def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
     return touched if any("b" in e.parameters for e in touched) else ()
 
 
-def _force_row(state: SharedState, law: AbstractLinearLaw) -> RationalMatrix:
-    """Return the force of a damped spring as a row on the states."""
-    own = coordinates(len(state.names))
-    force, _ = law.react(state.motion.output(len(own)), own[-1:])
-    return RationalMatrix.from_rows([force])
+def force_rows(
+    motion: Realization | JointMotionLoop, states: Sequence[str], touched: Sequence[Environment]
+) -> Iterator[RationalMatrix]:
+    """Yield the force, as a row over the states, of each corner of each contact.
 
-
-def _check_rules_of_flight(rules: SwitchingSpec) -> None:
-    """Refuse rules that would forbid free motion to come and go while a controller is active."""
-    if rules.names_contacts or next(rules.dwell_times(), None) is not None:
-        raise AssemblyError(
-            "where an admittance has a spring Kt, free motion is a mode like others, and contact "
-            "is lost whatever the rules of switching say",
-            remedy="use `contact: kept`, or rules with transitions between controllers alone",
-            at=("switching",),
-        )
+    Parameters
+    ----------
+    motion : Realization or JointMotionLoop
+        The motion loop, whose states come first.
+    states : sequence of str
+        Names of the states.
+    touched : sequence of Environment
+        All contacts.
+    """
+    unit = coordinates(len(states))
+    for environment in touched:
+        shared, *memories = environment.law.states
+        names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
+        own = [unit[states.index(name)] for name in names]
+        for law in environment.corners:
+            force, _ = law.react(motion.output(len(states)), own)
+            yield RationalMatrix.from_rows([force])

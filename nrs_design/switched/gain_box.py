@@ -14,25 +14,16 @@ from nrs_design.errors import AssemblyError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import RANGE
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 
 
 @dataclass(frozen=True, slots=True)
 class GainBox:
-    """The gains of one controller.
+    """The gains of one controller."""
 
-    Parameters
-    ----------
-    law : CompliantLaw
-        With the gains that ship.
-    ranges : mapping of str to Interval
-        Of every gain, around what ships.
-    """
-
-    law: CompliantLaw
-    ranges: Mapping[str, Interval]
+    law: CompliantLaw  # With the gains that ship
+    ranges: Mapping[str, Interval]  # Of every gain, around what ships
 
     @classmethod
     def point(cls, law: CompliantLaw) -> GainBox:
@@ -77,9 +68,11 @@ class GainBox:
     def range_texts(self, name: str) -> tuple[Assumption, ...]:
         """Say where the gains of a controller of that name may be, if they have ranges."""
         return tuple(
-            RANGE.says(
-                f"{gain} of {name} stays in [{_text(interval.low)}, {_text(interval.high)}] "
-                f"{self.law.units[gain]} and may change arbitrarily fast."
+            say(
+                "range.gain",
+                gain=gain,
+                name=name,
+                ends=f"[{_text(interval.low)}, {_text(interval.high)}] {self.law.units[gain]}",
             )
             for gain, interval in self.ranges.items()
             if interval.low != interval.high

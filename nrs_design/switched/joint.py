@@ -12,28 +12,17 @@ from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.interval import Interval
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import LOAD, MOTOR, NOMINAL_MOTOR, UNLOADED
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """The motion loop in its physical state, wherever gain and time constant of the motor are.
+    """The motion loop in its physical state, wherever gain and time constant of the motor are."""
 
-    Parameters
-    ----------
-    motion : ProportionalDerivative
-        The PD gains that ship.
-    ranges : ActuatorRanges
-        Where the motor may be.
-    load_inertia : Fraction or None
-        The J of `nrs_design.models.motion_loop.JointMotionLoop`.
-    """
-
-    motion: ProportionalDerivative
-    ranges: ActuatorRanges
-    load_inertia: Fraction | None
+    motion: ProportionalDerivative  # The PD gains that ship
+    ranges: ActuatorRanges  # Where the motor may be
+    load_inertia: Fraction | None  # The J of `nrs_design.models.motion_loop.JointMotionLoop`
 
     @classmethod
     def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
@@ -68,21 +57,14 @@ class Joint:
     def texts(self) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
         moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
-        yield (NOMINAL_MOTOR if self.ranges.fixed else MOTOR).says(
-            "The motion loop is the linear actuator model of the spec under the motion gains "
-            f"listed here; {motor_text(self.ranges)}{moving}.",
-            motor_text(self.ranges),
-        )
+        motor = motor_text(self.ranges)
+        which = "nominal-motor.joint" if self.ranges.fixed else "motor.joint"
+        yield say(which, motor, motor=motor, moving=moving)
         if self.load_inertia is None:
-            yield UNLOADED.says(
-                "What is touched does not slow the motor: it acts through the force sensor alone."
-            )
+            yield say("unloaded.continuous")
         else:
-            yield LOAD.says(
-                "The torque of what is touched acts on the axis as well, against an inertia of "
-                f"{exact_text(self.load_inertia)} kg*m^2.",
-                f"{exact_text(self.load_inertia)} kg*m^2",
-            )
+            inertia = exact_text(self.load_inertia)
+            yield say("load.inertia", f"{inertia} kg*m^2", inertia=inertia)
 
 
 def motor_text(ranges: ActuatorRanges) -> str:

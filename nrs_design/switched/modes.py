@@ -26,18 +26,10 @@ Rows = list[LinearForm]
 
 @dataclass(frozen=True, slots=True)
 class ForceShare:
-    """How much of the force of a contact acts, where the loop is cut to look at what it is made of.
+    """How much of the force of a contact acts, where the loop is cut to look at its parts."""
 
-    Parameters
-    ----------
-    sensed : Fraction
-        Share that reaches the law.
-    carried : Fraction
-        Share that slows a motor with a load.
-    """
-
-    sensed: Fraction = Fraction(1)
-    carried: Fraction = Fraction(1)
+    sensed: Fraction = Fraction(1)  # Share that reaches the law
+    carried: Fraction = Fraction(1)  # Share that slows a motor with a load
 
 
 # Nothing is cut: the loop of a proof.
@@ -113,51 +105,49 @@ def _acceleration(
 
 
 def to_force_coordinates(
-    rows: Sequence[LinearForm], motion: Realization | JointMotionLoop, contact: AbstractLinearLaw
+    rows: Rows, motion: Realization | JointMotionLoop, contact: AbstractLinearLaw
 ) -> Rows:
-    """Replace the last state delta by the force ``F = k delta + b Cp xp`` (similarity T A T^-1).
+    """Replace the last state delta by the force ``F = k delta + b Cp xp``.
 
     Parameters
     ----------
-    rows : sequence of LinearForm
+    rows : Rows
         A in deflection coordinates.
     motion : Realization or JointMotionLoop
         The motion loop.
     contact : AbstractLinearLaw
         Of the environment, at fixed parameters.
     """
+    last = coordinates(len(rows))[-1:]
+    return with_last(rows, contact.react(motion.output(len(rows)), last)[0])
+
+
+def with_last(rows: Rows, form: LinearForm) -> Rows:
+    """Return a mode with a form of the state in the place of the last one (``T A T^-1``)."""
     T, inverse = coordinates(len(rows)), coordinates(len(rows))
-    force, _ = contact.react(motion.output(len(rows)), T[-1:])
-    T[-1] = list(force)
-    inverse[-1] = [*(-f / force[-1] for f in force[:-1]), 1 / force[-1]]
+    T[-1] = list(form)
+    inverse[-1] = [*(-entry / form[-1] for entry in form[:-1]), 1 / form[-1]]
     return [*multiply(multiply(T, rows), inverse)]
 
 
-def with_memories(
-    rows: Sequence[LinearForm], touched: str | None, creeps: Mapping[str, Fraction]
-) -> Rows:
-    """Put the memory of the touched environment, if any, in its place among all memories.
+def with_idle(rows: Rows, rates: Mapping[int, Fraction]) -> Rows:
+    """Return a mode among states that it does not use.
 
     Parameters
     ----------
-    rows : sequence of LinearForm
-        A mode; the last state is the memory of the touched environment, if it has one.
-    touched : str or None
-        That environment; None if it has no memory.
-    creeps : mapping of str to Fraction
-        The rates in 1/s at which the memories decay that are not touched, by environment; that of
-        the touched one is not used.
+    rows : Rows
+        Its A.
+    rates : mapping of int to Fraction
+        At which rate in 1/s the others decay, by their places among all.
     """
-    common = len(rows) - (touched is not None)
-    size = common + len(creeps)
-    places = [*range(common), *(common + i for i, name in enumerate(creeps) if name == touched)]
+    size = len(rows) + len(rates)
     full = [zero(size) for _ in range(size)]
+    places = [i for i in range(size) if i not in rates]
     for i, row in zip(places, rows, strict=True):
         for j, entry in zip(places, row, strict=True):
             full[i][j] = entry
-    for i, (name, rate) in enumerate(creeps.items(), common):
-        if name != touched:
-            full[i][i] = -rate
+    for i, rate in rates.items():
+        full[i][i] = -rate
     return [*full]
 
 
@@ -219,28 +209,3 @@ def position_mode(
     if integrates:
         return [*motion.rates(driven), *rates, command, *last]
     return [*motion.rates(combine((Fraction(1), command), *left)), *rates, *last]
-
-
-def with_idle(
-    rows: Sequence[LinearForm], places: Sequence[int], size: int, decay: Fraction
-) -> Rows:
-    """Return the mode of a controller among all states, of which those that it does not use decay.
-
-    Parameters
-    ----------
-    rows : sequence of LinearForm
-        Its A.
-    places : sequence of int
-        Where its states stand among all.
-    size : int
-        How many there are.
-    decay : Fraction
-        Rate of the others in 1/s.
-    """
-    full = [zero(size) for _ in range(size)]
-    for i, row in zip(places, rows, strict=True):
-        for j, entry in zip(places, row, strict=True):
-            full[i][j] = entry
-    for i in {*range(size)} - {*places}:
-        full[i][i] = -decay
-    return [*full]

@@ -20,28 +20,18 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.motion import MOTOR_COMMAND
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import NOT_QUANTIZED
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 
 @dataclass(frozen=True, slots=True)
 class MotorCommand:
-    """The command as an output, and what it leaves out.
+    """The command as an output, and what it leaves out."""
 
-    Parameters
-    ----------
-    output : Output
-        What the states make of the command, with all that is rounded in it.
-    at_once : Fraction
-        By how much more the disturbances of a sample change the command of the same sample.
-    limit : Fraction
-        Of the driver, as a single-precision number.
-    """
-
-    output: Output
+    output: Output  # What the states make of the command, with all that is rounded in it
+    # By how much more the disturbances of a sample change the command of the same sample.
     at_once: Fraction
-    limit: Fraction
+    limit: Fraction  # Of the driver, as a single-precision number
 
     @property
     def text(self) -> Assumption:
@@ -53,12 +43,8 @@ class MotorCommand:
                 f", less {rounded_up(self.at_once, unit)} that errors of a sample may add to its "
                 "own command"
             )
-        return NOT_QUANTIZED.says(
-            f"The driver takes commands up to {rounded_down(self.limit, unit)}{less}. Where a "
-            f"statement bounds the {self.output.name} by no more than that, it does not saturate "
-            "from rest under the disturbances of that statement; of other motions, saturation is "
-            "left out."
-        )
+        limit = rounded_down(self.limit, unit)
+        return say("not-quantized.command", limit=limit, less=less, output=self.output.name)
 
 
 def motor_command(

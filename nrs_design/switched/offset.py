@@ -17,17 +17,10 @@ Both hold where the force at a switch to force control is Fd; otherwise u+ has t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import AssemblyError
-from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.motion_loop import Realization
-from nrs_design.proof.matrix import RationalMatrix, multiply
-from nrs_design.spec.controllers import Offset
-
-Rows = list[LinearForm]
 
 
 def lead(motion: Realization) -> list[Fraction]:
@@ -53,57 +46,3 @@ def lead(motion: Realization) -> list[Fraction]:
             at=("motion_loop", "transfer_function"),
         )
     return [*(-c - a for c, a in zip(C[1:], last[1:], strict=True)), Fraction(1)]
-
-
-def to_motion(rows: Rows, motion: Realization) -> Rows:
-    """Return a mode in the coordinates w, the lead in the place of the last (``T A T^-1``).
-
-    Parameters
-    ----------
-    rows : Rows
-        A of a mode, ``xi' = A xi + const``.
-    motion : Realization
-        Of the motion loop.
-
-    Raises
-    ------
-    AssemblyError
-        If ``G(0) != 1``.
-    """
-    T, inverse = coordinates(len(rows)), coordinates(len(rows))
-    T[-1] = lead(motion)
-    inverse[-1] = [*(-entry for entry in T[-1][:-1]), Fraction(1)]
-    return [*multiply(multiply(T, rows), inverse)]
-
-
-def state_names(order: int) -> tuple[str, ...]:
-    """Return the names of these states."""
-    return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
-
-
-def retaken(
-    design: ControllerDesign, offset: Offset, order: int
-) -> Iterator[tuple[str, str, RationalMatrix]]:
-    """Yield what a switch does to the state, between any two controllers.
-
-    Parameters
-    ----------
-    design : ControllerDesign
-        All controllers.
-    offset : {"none", "reference", "measured"}
-        Where X_i is taken from.
-    order : int
-        How many states the motion loop has.
-
-    Yields
-    ------
-    tuple of (str, str, RationalMatrix)
-        Controller before and after the switch, and the map; nothing where the state stays.
-    """
-    if offset != "measured":
-        return
-    kept = [[Fraction(int(i == j < order - 1)) for j in range(order)] for i in range(order)]
-    for source in design.controllers:
-        for target in design.controllers:
-            if source.name != target.name:
-                yield source.name, target.name, RationalMatrix.from_rows(kept)

@@ -34,39 +34,25 @@ _ANYWHERE = (Fraction(0), Fraction(1))
 
 @dataclass(frozen=True, slots=True)
 class Triangle:
-    """Where two parameters with ranges lie together.
+    """Where two parameters with ranges lie together."""
 
-    Parameters
-    ----------
-    x, y : str
-        In which matrices are affine together. Two corners are the lower ends of both ranges, and
-        the upper ends of both.
-    between : tuple of Fraction
-        The third one, which is called the lower end of x and the upper end of y.
-    """
-
+    # x, y: in which matrices are affine together. Two corners are the lower ends of both ranges,
+    # and the upper ends of both.
     x: str
     y: str
+    # The third one, which is called the lower end of x and the upper end of y.
     between: tuple[Fraction, Fraction]
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Where the parameters of a matrix lie.
+    """Where the parameters of a matrix lie."""
 
-    Parameters
-    ----------
-    ranges : mapping of str to Interval
-        By symbols such as ``k`` or ``Mt``; a point adds no corners.
-    inverse : frozenset of str
-        Parameters in one over which matrices are affine; they are positive. One over such a
-        parameter runs through the interval between the inverse ends, so the corners are the same.
-    triangle : Triangle, optional
-        Where two of the parameters are, instead of anywhere in their ranges.
-    """
-
-    ranges: Mapping[str, Interval]
+    ranges: Mapping[str, Interval]  # By symbols such as ``k`` or ``Mt``; a point adds no corners
+    # Parameters in one over which matrices are affine; they are positive. One over such a parameter
+    # runs through the interval between the inverse ends, so the corners are the same.
     inverse: frozenset[str] = frozenset()
+    # Where two of the parameters are, instead of anywhere in their ranges.
     triangle: Triangle | None = None
 
     def beside(self, other: Box) -> Box:
@@ -91,12 +77,16 @@ class Box:
             return interval.middle
         return 2 / (1 / interval.low + 1 / interval.high)
 
-    def values(self) -> Iterator[dict[str, Fraction]]:
-        """Yield the values of the parameters at every corner, the last one turning fastest."""
-        values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
-        inside = self._inside()
-        for at in self._points(values):
-            yield self._at(values, inside, at)
+    def named_values(self, name: str) -> Iterator[tuple[str, dict[str, Fraction]]]:
+        """Yield the corners of a mode, the last parameter turning fastest.
+
+        A corner is named after its ends, such as ``a/soft/k-min/Mt-max``; a point has the name of
+        the mode. With it are the values of the parameters.
+        """
+        ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
+        for at in self._points(ends):
+            labels = (f"{symbol}-{end}" for symbol, end in zip(ends, at, strict=True) if end)
+            yield "/".join([name, *labels]), self._at(ends, at)
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
         """Yield the corners, the last parameter turning fastest.
@@ -119,13 +109,11 @@ class Box:
         InternalError
             If the matrix is not affine along each axis.
         """
-        values = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
-        inside = self._inside()
-        corners = {at: rows_at(self._at(values, inside, at)) for at in self._points(values)}
-        self._check_corners_suffice(rows_at, corners, name)
-        for at, rows in corners.items():
-            pairs = zip(values, at, strict=True)
-            yield "/".join([name, *(f"{symbol}-{end}" for symbol, end in pairs if end)]), rows
+        found = [(corner, rows_at(values)) for corner, values in self.named_values(name)]
+        ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
+        rows = (rows for _, rows in found)
+        self._check_corners_suffice(rows_at, dict(zip(self._points(ends), rows, strict=True)), name)
+        yield from found
 
     def _check_corners_suffice(
         self, rows_at: RowsAt, corners: Mapping[tuple[str, ...], Rows], name: str
@@ -139,7 +127,7 @@ class Box:
         most two in each coordinate, and in both of a triangle, this decides it: of that, the grid
         has the corners and the middles of the sides.
         """
-        known, inside = dict(corners), self._inside()
+        known = dict(corners)
         values = {symbol: self._grid(symbol) for symbol in self.ranges}
         # Rows that are the same objects are compared once; kept here, no other gets their ids.
         compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
@@ -152,7 +140,7 @@ class Box:
                 known[tuple(end if i in moved else label for i, label in enumerate(at))]
                 for end in ("min", "max")
             )
-            found = known[at] = rows_at(self._at(values, inside, at))
+            found = known[at] = rows_at(self._at(values, at))
             triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
             if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
@@ -166,25 +154,16 @@ class Box:
                 yield at
 
     def _at(
-        self,
-        values: Mapping[str, Mapping[str, Fraction]],
-        inside: Mapping[tuple[str, ...], dict[str, Fraction]],
-        at: Sequence[str],
+        self, values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]
     ) -> dict[str, Fraction]:
         """Return the values of all symbols where the labels of a point say."""
         found = {symbol: values[symbol][label] for symbol, label in zip(values, at, strict=True)}
-        return found | inside.get(tuple(at[i] for i in self._triangle_axes()), {})
-
-    def _inside(self) -> dict[tuple[str, ...], dict[str, Fraction]]:
-        """Return the values of a triangle's two parameters by their labels, for all grids."""
-        found: dict[tuple[str, ...], dict[str, Fraction]] = {}
         if self.triangle is not None:
+            x, y = self._shares(at)
             both = (self.triangle.x, self.triangle.y)
-            for x, y in product(_SHARES, repeat=2):
-                shares, point = (_SHARES[x], _SHARES[y]), found.setdefault((x, y), {})
-                for symbol, between in zip(both, self.triangle.between, strict=True):
-                    low, high = self.ranges[symbol].low, self.ranges[symbol].high
-                    point[symbol] = low + shares[1] * (between - low) + shares[0] * (high - between)
+            for symbol, between in zip(both, self.triangle.between, strict=True):
+                low, high = self.ranges[symbol].low, self.ranges[symbol].high
+                found[symbol] = low + y * (between - low) + x * (high - between)
         return found
 
     def _moved(self, at: Sequence[str]) -> set[int]:

@@ -6,10 +6,9 @@ corners. What decreases in all corners in continuous time therefore decreases in
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 
 from nrs_design.errors import InternalError
 from nrs_design.proof.matrix import RationalMatrix
@@ -17,43 +16,18 @@ from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
 from nrs_design.spec.interval import Interval
+from nrs_design.switched.parameter_box import Box
 
-Rows = Sequence[Sequence[Fraction]]
+Pair = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True)
 class UncertainParameter:
-    """An uncertain number.
+    """An uncertain number."""
 
-    Parameters
-    ----------
-    name : str
-        As in the spec.
-    interval : Interval
-        Where it lies.
-    varies : bool
-        Whether it may change arbitrarily fast; otherwise it is unknown but constant.
-    """
-
-    name: str
-    interval: Interval
-    varies: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Corner:
-    """One assembled mode among those that stand for one mode of the spec.
-
-    Parameters
-    ----------
-    mode : str
-        Name of the assembled mode, such as ``a/k-min``.
-    end : {"", "min", "max"}
-        End of the constant parameter, if there is one.
-    """
-
-    mode: str
-    end: str = ""
+    name: str  # As in the spec
+    interval: Interval  # Where it lies
+    varies: bool  # Whether it may change arbitrarily fast; otherwise it is unknown but constant
 
 
 def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[UncertainParameter, ...]:
@@ -72,23 +46,11 @@ def fixed_parameter(parameters: Sequence[UncertainParameter]) -> FixedParameter 
     return None
 
 
-def corner_modes(
-    mode: ModeSpec, parameters: Sequence[UncertainParameter]
-) -> tuple[tuple[Mode, ...], tuple[Corner, ...]]:
+def corner_modes(mode: ModeSpec, parameters: Sequence[UncertainParameter]) -> tuple[Mode, ...]:
     """Return the corners of one mode.
 
-    Parameters
-    ----------
-    mode : ModeSpec
-        With entries that are affine in the parameters.
-    parameters : sequence of UncertainParameter
-        All parameters of the spec. Those that the mode does not depend on make no corners, except
-        the constant one: its two ends make pairs in every mode.
-
-    Returns
-    -------
-    tuple of tuples
-        The assembled modes, and what they stand for.
+    Parameters that the mode does not depend on make no corners, except the constant one: its two
+    ends make pairs in every mode.
 
     Raises
     ------
@@ -97,49 +59,23 @@ def corner_modes(
     """
     axes = [p for p in parameters if p.name in mode.parameters or not p.varies]
     others = {p.name: p.interval.nominal for p in parameters}
-    modes, corners, matrices = [], [], []
-    for ends in product(*(p.interval.ends for p in axes)):
-        labels = [f"{p.name}-{end}" for p, (end, _) in zip(axes, ends, strict=True) if end]
-        values = others | {p.name: value for p, (_, value) in zip(axes, ends, strict=True)}
-        fixed = [end for p, (end, _) in zip(axes, ends, strict=True) if not p.varies]
-        name = "/".join([mode.name, *labels])
-        matrices.append(mode.matrix(values))
-        modes.append(Mode(name, RationalMatrix.from_rows(matrices[-1])))
-        corners.append(Corner(name, *fixed))
-    check_affine(mode.matrix({p.name: p.interval.middle for p in parameters}), matrices, mode.name)
-    return tuple(modes), tuple(corners)
+    box = Box({p.name: p.interval for p in axes})
+    corners = [(name, mode.matrix(others | at)) for name, at in box.named_values(mode.name)]
+    middle = mode.matrix({p.name: p.interval.middle for p in parameters})
+    sums = [
+        [sum(column) for column in zip(*rows, strict=True)]
+        for rows in zip(*(A for _, A in corners), strict=True)
+    ]
+    if [[len(corners) * entry for entry in row] for row in middle] != sums:
+        raise InternalError(f"mode {mode.name} is not affine in the parameters")
+    return tuple(Mode(name, RationalMatrix.from_rows(A)) for name, A in corners)
 
 
-def check_affine(middle: Rows, corners: Sequence[Rows], name: str) -> None:
-    """Check that the matrix in the middle of a box is the mean of its corners.
-
-    Follows from the construction; it is computed again because a proof for the whole box rests
-    on it.
-
-    Parameters
-    ----------
-    middle : rows of Fraction
-        The matrix halfway.
-    corners : sequence of rows
-        The matrices at the corners.
-    name : str
-        Of the mode, for errors.
-
-    Raises
-    ------
-    InternalError
-        If it is not.
-    """
-    n = len(middle)
-    for i, j in product(range(n), range(n)):
-        if middle[i][j] * len(corners) != sum(corner[i][j] for corner in corners):
-            raise InternalError(
-                f"entry {i + 1}, {j + 1} of mode {name} is not affine in the parameters"
-            )
-
-
-def pair_ends(corners: Sequence[Corner]) -> tuple[tuple[str, str], ...]:
-    """Pair the two ends of the constant parameter, all else being equal."""
-    low = [corner.mode for corner in corners if corner.end == "min"]
-    high = [corner.mode for corner in corners if corner.end == "max"]
-    return tuple(zip(low, high, strict=True))
+def fixed_ends(modes: Iterable[Mode], parameter: FixedParameter | None) -> Iterator[Pair]:
+    """Yield the two ends of the constant parameter in every mode, all else being equal."""
+    if parameter is not None:
+        low, high = (f"{parameter.name}-{end}" for end in ("min", "max"))
+        for mode in modes:
+            labels = mode.name.split("/")
+            if low in labels[1:]:
+                yield mode.name, "/".join(high if label == low else label for label in labels)

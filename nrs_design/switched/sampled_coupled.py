@@ -30,14 +30,10 @@ LARGEST_DENOMINATOR = 1000
 
 @dataclass(frozen=True, slots=True)
 class Push:
-    """How far a period takes all axes from where each would be by itself: at most this, per signal.
+    """Bound on how far a period takes all axes from where each would be alone, per signal."""
 
-    Parameters
-    ----------
-    slip, speed, deflection : Fraction
-        Times the norm of the slips, speeds and deflections over all axes, at the sample.
-    """
-
+    # slip, speed, deflection: times the norm of the slips, speeds and deflections over all axes, at
+    # the sample.
     slip: Fraction
     speed: Fraction
     deflection: Fraction

@@ -65,53 +65,27 @@ class Turn(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What all modes of a sampled loop share.
-
-    Parameters
-    ----------
-    period : Fraction
-        From one sample to the next in s; of two periods the shorter one.
-    motion : SampledMotion
-        The motion controller.
-    has_inertia : bool
-        Whether the admittances have a velocity of their own.
-    longest_delay : int
-        Force samples on their way.
-    time_constant : Fraction or None
-        The tau of the motor in s, if it is known.
-    low_pass : SampledLowPass or None
-        Through which the law gets the force samples.
-    sprung : bool
-        Whether an admittance has a spring.
-    integrates : bool
-        Whether there are impedance controllers.
-    takes_force : bool
-        Whether there are force controllers.
-    idle : Fraction or None
-        What a period leaves of reference and velocity of the impedance controllers, where there are
-        other controllers, too.
-    gathers : bool
-        Whether there are PI force controllers.
-    holds : bool
-        Whether the command of the motion loop outlasts a sample: there are some at which only the
-        admittance is computed.
-    """
+    """What all modes of a sampled loop share."""
 
     # Asked for at every corner of every box, and made once for a loop.
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    period: Fraction
-    motion: SampledMotion
-    has_inertia: bool
-    longest_delay: int
-    time_constant: Fraction | None
-    low_pass: SampledLowPass | None = None
-    sprung: bool = False
-    integrates: bool = True
-    takes_force: bool = False
+    period: Fraction  # From one sample to the next in s; of two periods the shorter one
+    motion: SampledMotion  # The motion controller
+    has_inertia: bool  # Whether the admittances have a velocity of their own
+    longest_delay: int  # Force samples on their way
+    time_constant: Fraction | None  # The tau of the motor in s, if it is known
+    low_pass: SampledLowPass | None = None  # Through which the law gets the force samples
+    sprung: bool = False  # Whether an admittance has a spring
+    integrates: bool = True  # Whether there are impedance controllers
+    takes_force: bool = False  # Whether there are force controllers
+    # What a period leaves of reference and velocity of the impedance controllers, where there are
+    # other controllers, too.
     idle: Fraction | None = None
+    # Whether the command of the motion loop outlasts a sample: there are some at which only the
+    # admittance is computed.
     holds: bool = False
-    gathers: bool = False
+    gathers: bool = False  # Whether there are PI force controllers
 
     @property
     def roundings(self) -> dict[str, Fraction]:

@@ -10,8 +10,7 @@ from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
 from nrs_design.controllers.sampled_range import coefficient_ranges
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.switched.assumption import Assumption
-from nrs_design.switched.assumption_kinds import RANGE
+from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.parameter_box import Box
 
@@ -22,17 +21,10 @@ class SampledGains:
 
     Where Mt or Bt has a range, that is a and ``c = b/(1 - a)``, which is 1/Bt but for rounding;
     without inertia it is ``c = b`` alone. The map of a period is affine in each of them.
-
-    Parameters
-    ----------
-    law : SampledAdmittance or SampledForce
-        With the coefficients that ship.
-    box : Box
-        Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges.
     """
 
-    law: SampledLaw
-    box: Box
+    law: SampledLaw  # With the coefficients that ship
+    box: Box  # Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges
 
     @classmethod
     def of(cls, law: SampledLaw, gains: GainBox, period: Fraction, method: str) -> SampledGains:
@@ -79,6 +71,4 @@ class SampledGains:
         said = {"a": "a", "c": "b/(1 - a)" if "a" in self.box.ranges else "b", "Kt": "Kt"}
         for symbol, interval in self.box.ranges.items():
             ends = f"[{rounded_down(interval.low)}, {rounded_up(interval.high)}]"
-            yield RANGE.says(
-                f"{said[symbol]} of {name} stays in {ends} and may change at every sample."
-            )
+            yield say("range.sampled-gain", gain=said[symbol], name=name, ends=ends)

@@ -168,7 +168,8 @@ def force_rows(states: Sequence[str], environment: Environment) -> Iterator[Rati
         What pushes.
     """
     size, speed = len(states), states.index("omega [rad/s]")
-    for values in Box({"k": environment.stiffness, "b": damping_of(environment)}).values():
+    box = Box({"k": environment.stiffness, "b": damping_of(environment)})
+    for _, values in box.named_values(""):
         row = zero(size)
         row[speed], row[-1] = values["b"], values["k"]
         yield RationalMatrix.from_rows([row])

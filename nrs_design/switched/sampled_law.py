@@ -41,22 +41,14 @@ SECOND_ORDER = frozenset({KP, KD, STEP})
 
 @dataclass(frozen=True, slots=True)
 class Kinds:
-    """Which kinds of laws a loop has.
+    """Which kinds of laws a loop has."""
 
-    Parameters
-    ----------
-    order : int
-        Lags of the filter of the force.
-    inert, sprung : bool
-        Whether admittances have a velocity of their own, and whether one has a spring.
-    moves, places, takes_force, gathers : bool
-        Whether there are impedance controllers, others, and proportional and PI force controllers
-        among these.
-    """
-
-    order: int
+    order: int  # Lags of the filter of the force
+    # inert, sprung: whether admittances have a velocity of their own, and whether one has a spring.
     inert: bool
     sprung: bool
+    # moves, places, takes_force, gathers: whether there are impedance controllers, others, and
+    # proportional and PI force controllers among these.
     moves: bool
     places: bool
     takes_force: bool
@@ -65,19 +57,12 @@ class Kinds:
 
 @dataclass(frozen=True, slots=True)
 class ListedLaw:
-    """The list of operations of some kinds of laws; `list_law` makes each once.
-
-    Parameters
-    ----------
-    law : StepLaw
-        With any numbers; its modes are the kinds.
-    counts : mapping of str to mapping
-        For each mode and result, how often each of its terms is rounded, by name.
-    """
+    """The list of operations of some kinds of laws; `list_law` makes each once."""
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    law: StepLaw
+    law: StepLaw  # With any numbers; its modes are the kinds
+    # For each mode and result, how often each of its terms is rounded, by name.
     counts: Mapping[str, Mapping[str, Mapping[str, int]]]
 
     @property

@@ -29,14 +29,14 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumptions import LOST_CONTACT, at_once_texts
+from nrs_design.switched.assumption import say
+from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.free_motion import could_pull
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
-from nrs_design.switched.parameters import Corner
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
@@ -98,14 +98,16 @@ def close_sampled_loop(
     touched = plant.among(design.contacts)
     loss = _loss_of_contact(spec, touched, [item.law for item in laws.values()])
     parts, free = _motions(loop, plant, design, laws, loss)
-    groups = {key: tuple(Corner(item.mode.name) for item in part) for key, part in parts.items()}
+    groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
     acting = could_pull(touched)
     pulls = tuple(row for environment in acting for row in force_rows(frame.states, environment))
     losable = None
     if free:
         flying = tuple(item.mode for item in free)
-        losable = Contact(flying, pulls, required=spec.contact == "losable", loss=LOST_CONTACT)
+        losable = Contact(
+            flying, pulls, required=spec.contact == "losable", loss=say("contact-lost.surface")
+        )
     flights = None
     if loss.startswith("anywhere"):
         flights = _flights(frame, plant, design, motions, pulls)

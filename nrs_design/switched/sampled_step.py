@@ -39,30 +39,15 @@ def second(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class SampledStep:
-    """One sample of a law in force.
+    """One sample of a law in force."""
 
-    Parameters
-    ----------
-    listed : ListedLaw
-        The list of operations.
-    law : SampledAdmittance or SampledForce
-        In force.
-    numbers : mapping of str to Fraction
-        Its coefficients by name.
-    rounded : mapping of str to LinearForm
-        By what each term is off, the last coordinates of all forms.
-    shares : mapping of str to Fraction
-        How far that is at most, over the size of the term.
-    terms : mapping of str to tuple of Term
-        What each result is a sum of.
-    """
-
-    listed: ListedLaw
-    law: SampledLaw
-    numbers: Mapping[str, Fraction]
+    listed: ListedLaw  # The list of operations
+    law: SampledLaw  # In force
+    numbers: Mapping[str, Fraction]  # Its coefficients by name
+    # By what each term is off, the last coordinates of all forms.
     rounded: Mapping[str, LinearForm]
-    shares: Mapping[str, Fraction]
-    terms: Mapping[str, tuple[Term, ...]]
+    shares: Mapping[str, Fraction]  # How far that is at most, over the size of the term
+    terms: Mapping[str, tuple[Term, ...]]  # What each result is a sum of
 
     @classmethod
     def of(

@@ -11,22 +11,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.sensor import LowPass
+from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
-from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
-from nrs_design.models.plant import Plant
+from nrs_design.models.motion_loop import JointMotionLoop, Realization
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.switched.assumption_kinds import LIMITED
-from nrs_design.switched.joint import Joint
+from nrs_design.switched.assumption import say
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
+from nrs_design.switched.shared_state import SharedState
 
 # States of a motion loop in its physical state, `nrs_design.models.motion_loop.JointMotionLoop`.
 _ERROR, _OMEGA = 0, 1
@@ -39,9 +38,8 @@ _FILTERED = (
 def with_saturation(
     system: SwitchedSystem,
     spec: InteractionDesignSpec,
-    plant: Plant,
-    loop: MotionLoop,
-    design: ControllerDesign,
+    actuator: Actuator,
+    state: SharedState,
 ) -> SwitchedSystem:
     """Let a statement be about motions in which velocity command and motor command saturate.
 
@@ -51,25 +49,22 @@ def with_saturation(
         The loop in which nothing does, in deflection coordinates.
     spec : InteractionDesignSpec
         With its limits and the goal, as `nrs_design.spec.combinations` checks.
-    plant : Plant
-        With the motor, and what is touched.
-    loop : MotionLoop
-        Closed motion loop G.
-    design : ControllerDesign
-        Gains that ship.
+    actuator : Actuator
+        The nominal motor.
+    state : SharedState
+        Of its modes.
     """
     assert spec.goals is not None  # it is asked for
     assert spec.goals.initial_force is not None
     assert spec.limits.command is not None
-    joint = Joint.of(plant, design.motion)
-    motion = realize(loop) if joint is None else joint.nominal
-    drive = plant.actuator.gain / plant.actuator.time_constant
+    motion, low_pass = state.motion, state.low_pass
+    drive = actuator.gain / actuator.time_constant
     n, free = system.order, () if system.contact is None else system.contact.free
     modes = (*system.modes, *free)
     error, omega, columns = _physical(motion, n)
-    Kp, Kd = design.motion.Kp, design.motion.Kd
+    Kp, Kd = state.design.motion.Kp, state.design.motion.Kd
     motor = RationalMatrix.from_rows([[*combine((Kp, error), (-Kd, omega)), Kd]])
-    drives = [_drive(mode, Kp) if joint is not None else drive for mode in modes]
+    drives = [_drive(mode, Kp) if state.joint is not None else drive for mode in modes]
     velocity_limit = float32_not_above(spec.limits.velocity.not_above)
     command_limit = float32_not_above(spec.limits.command.not_above)
     signals = (
@@ -92,22 +87,17 @@ def with_saturation(
     start = Start(
         "contact force",
         "N*m",
-        tuple(_rest(system.states, plant.among(design.contacts), design.sensor.filter)),
+        tuple(_rest(system.states, state.touched, low_pass)),
         None if isinstance(wanted, str) else wanted.exact,
     )
     texts = (
         NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
     )
-    filtered = "" if design.sensor.filter is None else _FILTERED
-    limited = LIMITED.says(
-        "Where signals saturate: the velocity command of the admittance is cut off at "
-        f"{rounded_up(velocity_limit, 'rad/s')} before the motion loop takes it, or at any "
-        "larger value on either side, or nowhere; the command of the motor likewise at "
-        f"{rounded_up(command_limit, spec.actuator.command)}; nothing else is. Nobody commands "
-        f"anything, and nothing disturbs, while the motion decays.{filtered}",
-        f"{rounded_up(velocity_limit, 'rad/s')} and "
-        f"{rounded_up(command_limit, spec.actuator.command)}, or more",
-    )
+    filtered = "" if low_pass is None else _FILTERED
+    velocity = rounded_up(velocity_limit, "rad/s")
+    command = rounded_up(command_limit, spec.actuator.command)
+    bound = f"{velocity} and {command}, or more"
+    limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)
     return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
 
 

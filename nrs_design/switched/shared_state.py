@@ -1,15 +1,22 @@
 """The state that all modes of one robot axis share, and the rows of a mode in it.
 
 While another environment is touched, the memory of an environment decays as it does without force.
+
+Impedance controllers may stand beside position and force controllers. These give the motion loop a
+position; impedance controllers give it a velocity, which the robot integrates to a position
+``r' = vc - vm``. The loop from r to the position theta is the same G, so with its states xi every
+mode is written in ``[xi, vm, r]`` (without virtual inertia ``[xi, r]``): ``xi' = Ap xi + Bp r``,
+``theta = Cp xi``. Where another controller is active, vm and r are idle.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 
-from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.controllers.sensor import LowPass
@@ -21,17 +28,17 @@ from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
 from nrs_design.spec.interval import Interval
+from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.joint import Joint
-from nrs_design.switched.mixture import check_mixture_models
 from nrs_design.switched.modes import (
     Rows,
     position_mode,
     to_force_coordinates,
     velocity_mode,
     with_idle,
-    with_memories,
+    with_last,
 )
-from nrs_design.switched.offset import state_names, to_motion
+from nrs_design.switched.offset import lead
 from nrs_design.switched.parameter_box import Box
 
 # What impedance controllers in a mixture integrate their velocity to.
@@ -40,25 +47,38 @@ REFERENCE = "reference [rad]"
 
 @dataclass(frozen=True, slots=True)
 class SharedState:
-    """What all modes share: motion loop, coordinates, contacts, states of the laws, idle ones.
+    """All controllers of an axis in one state."""
 
-    The motion loop is the realization, or the joint where its motor has ranges or a load.
-    """
-
-    realization: Realization
+    design: ControllerDesign  # Gains that ship
+    boxes: Mapping[str, GainBox]  # Where the gains of the controllers may be, by name
+    # Last state of an impedance mode: deflection (continuous when the stiffness changes in contact,
+    # so the physical choice), or force (the thesis's choice).
     coordinates: str
     touched: tuple[Environment, ...]
-    law: CompliantLaw
-    idle: IdleStatesSpec | None
-    offset: Offset
-    joint: Joint | None
-    low_pass: LowPass | None
-    bleeding: tuple[str, ...] = ()
+    realization: Realization  # Of the motion loop
+    given: bool  # Whether the spec states the motion loop
+    joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
+    law: CompliantLaw  # Whose states the modes share
+    # What the states of impedance controllers do while another kind of controller is active; None
+    # where there is one kind only.
+    idle: IdleStatesSpec | None = None
+    offset: Offset = "none"  # Where force controllers take it from
+    bleeding: tuple[str, ...] = ()  # States of an integral that bleeds
+
+    @property
+    def low_pass(self) -> LowPass | None:
+        """The filter of the force."""
+        return self.design.sensor.filter
 
     @property
     def motion(self) -> Realization | JointMotionLoop:
         """The motion loop at its nominal values."""
         return self.realization if self.joint is None else self.joint.nominal
+
+    def contacts(self, controller: Controller) -> Iterator[Environment]:
+        """Yield what a controller touches."""
+        environments = {environment.name: environment for environment in self.touched}
+        return (environments[name] for name in controller.contacts)
 
     @property
     def motor_box(self) -> Box:
@@ -83,20 +103,23 @@ class SharedState:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the states, with units where there are any."""
+        order = self.realization.order
         if self.offset != "none":
-            return state_names(self.realization.order)
-        inner = self.motion.states
+            return (*(f"dxp{i + 1}" for i in range(order - 1)), "lead [rad]")
         if self.idle is not None:
-            inner = tuple(f"xi{i + 1}" for i in range(len(inner)))
-        if self.idle is not None:
-            return (*inner, *self.beside)
-        loop = (*inner, *self.law.states)
+            return (*(f"xi{i + 1}" for i in range(order)), *self.beside)
+        loop = (*self.motion.states, *self.law.states)
         if self.law.commands == "position":
             return loop
         contact = "F [N*m]" if self.coordinates == "force" else self.touched[0].law.states[0]
         memories = (f"{e.name}: {name}" for e in self.touched for name in e.law.states[1:])
         sensed = () if self.low_pass is None else self.low_pass.states
         return (*loop, *sensed, contact, *memories)
+
+    @property
+    def kept(self) -> int:
+        """How many of the states, from the first on, a switch that resets leaves alone."""
+        return self.realization.order - (self.offset == "measured")
 
     def contact_box(self, environment: Environment) -> Box:
         """Return the parameters of a contact, and the rates of the memories that it leaves alone.
@@ -130,11 +153,9 @@ class SharedState:
         rows = velocity_mode(self.motion_at(values), held, contact, self.low_pass)
         if self.coordinates == "force":
             return to_force_coordinates(rows, self.motion, contact)
-        creeps = {
-            e.name: Fraction(0) if e == environment else values[_rate(e)] for e in self.memories
-        }
-        touched = environment.name if environment in self.memories else None
-        return with_memories(rows, touched, creeps)
+        first = len(self.names) - len(self.memories)
+        memories = enumerate(self.memories, first)
+        return with_idle(rows, {i: values[_rate(e)] for i, e in memories if e != environment})
 
     def placed(
         self, law: CompliantLaw, contact: AbstractLinearLaw | None = None, environment: str = ""
@@ -155,14 +176,11 @@ class SharedState:
         bleeding = decay if others else None
         rows = position_mode(self.realization, law, contact, environment, bleeding)
         if self.offset != "none":
-            return to_motion(rows, self.realization)
-        if self.idle is None:
-            return rows
+            return with_last(rows, lead(self.realization))
         integrated = (REFERENCE,) if law.commands == "velocity" else ()
         own = (*law.states, *integrated, *others)
-        order = self.realization.order
-        places = [*range(order), *(order + self.beside.index(name) for name in own)]
-        return with_idle(rows, places, order + len(self.beside), decay)
+        beside = enumerate(self.beside if self.idle is not None else (), self.realization.order)
+        return with_idle(rows, {i: decay for i, name in beside if name not in own})
 
 
 def _rate(environment: Environment) -> str:
@@ -174,8 +192,10 @@ def shared_state(
     loop: MotionLoop,
     design: ControllerDesign,
     coordinates: str,
-    idle: IdleStatesSpec | None,
-    offset: Offset,
+    *,
+    idle: IdleStatesSpec | None = None,
+    offset: Offset = "none",
+    boxes: Mapping[str, GainBox] = MappingProxyType({}),
 ) -> SharedState:
     """Return what the modes of an interaction design share.
 
@@ -185,108 +205,109 @@ def shared_state(
         Environments.
     loop : MotionLoop
         Closed motion loop G.
-    design : ControllerDesign
-        Gains that ship.
-    coordinates, idle, offset
-        As for `nrs_design.switched.close_loop.close_loop`.
+    design, coordinates, idle, offset, boxes
+        See `SharedState`; without a box, the gains of a controller are what ships.
 
     Raises
     ------
     AssemblyError
         If the modes do not share one state, or the coordinates do not apply.
     """
-    touched = plant.among(design.contacts)
-    _check_coordinates(coordinates, touched)
-    _check_spring(coordinates, touched, design)
-    if idle is not None:
-        check_mixture_models(coordinates, touched)
-    shared = _shared_law(design, mixed=idle is not None)
-    joint = Joint.of(plant, design.motion)
-    if joint is not None and (idle is not None or shared.commands != "velocity"):
-        raise AssemblyError(
-            "ranges of the motor, or its load, are modelled for impedance controllers alone",
-            remedy="give nominal values of the actuator and no load_inertia",
-            at=("actuator",),
-        )
-    low_pass = design.sensor.filter
-    bleeding = next((c.law.states for c in design.controllers if c.law.bleeds), ())
-    return SharedState(
-        realize(loop), coordinates, touched, shared, idle, offset, joint, low_pass, bleeding
+    laws = [controller.law for controller in design.controllers]
+    # In a mixture the states of controllers that command a velocity, and of those whose integral
+    # bleeds; the others have none of their own.
+    leading = [law for law in laws if law.commands == "velocity"] or [
+        law for law in laws if law.bleeds
+    ]
+    shared = leading if idle is not None else laws
+    state = SharedState(
+        design,
+        {**{c.name: GainBox.point(c.law) for c in design.controllers}, **boxes},
+        coordinates,
+        plant.among(design.contacts),
+        realize(loop),
+        loop.given,
+        Joint.of(plant, design.motion),
+        shared[0],
+        idle,
+        offset,
+        next((law.states for law in laws if law.bleeds), ()),
     )
+    fault = next(_faults(state, shared), None)
+    if fault is not None:
+        raise fault
+    return state
 
 
-def _check_coordinates(coordinates: str, touched: tuple[Environment, ...]) -> None:
-    for environment in touched:
-        law = environment.law
-        if coordinates == "force" and law.remembers:
-            raise AssemblyError(
+def _faults(state: SharedState, leading: list[CompliantLaw]) -> Iterator[AssemblyError]:
+    """Yield what is not modelled in one state."""
+    force, mixed = state.coordinates == "force", state.idle is not None
+    for environment in state.touched:
+        law, at = environment.law, ("environments", environment.name)
+        if force and law.remembers:
+            yield AssemblyError(
                 f"force coordinates do not apply to environment {environment.name}, which is "
                 f"{law.name}",
                 remedy="use coordinates: deflection",
                 at=("coordinates",),
             )
-        if not law.has_rest and len(touched) > 1:
-            raise AssemblyError(
+        if not law.has_rest and len(state.touched) > 1:
+            yield AssemblyError(
                 f"environment {environment.name} has no rest position ({law.name}), so it shares "
                 "no deflection with another environment",
                 remedy="let the controllers touch no other environment, or write a spec for each",
-                at=("environments", environment.name),
+                at=at,
             )
-
-
-def _check_spring(
-    coordinates: str, touched: tuple[Environment, ...], design: ControllerDesign
-) -> None:
-    """Refuse a spring in an admittance where the state does not tell its displacement."""
-    name = next((c.name for c in design.controllers if c.law.spring), None)
-    if name is None:
-        return
-    at = ("controllers", name, "Kt")
-    if coordinates == "force":
-        raise AssemblyError(
-            "force coordinates do not apply to an admittance with a spring Kt: where the "
-            "deflection jumps, so would its displacement",
-            remedy="use coordinates: deflection, or leave Kt out",
-            at=at,
+        if mixed and law.remembers:
+            yield AssemblyError(
+                f"environment {environment.name}, which is {law.name}, is not modelled "
+                "for impedance controllers beside others",
+                remedy="use elastic or Kelvin-Voigt environments, or one kind of controller",
+                at=at,
+            )
+    if mixed and force:
+        yield AssemblyError(
+            "force coordinates do not apply to impedance controllers beside others",
+            remedy="use coordinates: deflection",
+            at=("coordinates",),
         )
-    restless = next((e for e in touched if not e.law.has_rest), None)
-    if restless is not None:
-        raise AssemblyError(
-            f"an admittance with a spring Kt is not modelled in contact with {restless.name}, "
-            f"which has no rest position ({restless.law.name})",
-            remedy="leave Kt out, or give the environment a law that has a rest position",
-            at=at,
-        )
-
-
-def _shared_law(design: ControllerDesign, *, mixed: bool) -> CompliantLaw:
-    """Return a law whose states are those that the modes share.
-
-    In a mixture these are the states of the controllers that command a velocity, and of those whose
-    integral bleeds; the others have none of their own.
-
-    Raises
-    ------
-    AssemblyError
-        If the states of the laws are not the same.
-    """
-    laws = [controller.law for controller in design.controllers]
-    leading = laws
-    if mixed:
-        leading = [law for law in laws if law.commands == "velocity"] or [
-            law for law in laws if law.bleeds
-        ]
-    kinds = {(law.commands, law.states) for law in leading}
-    if mixed:
-        kinds |= {(law.commands, law.states) for law in laws if law.states and not law.bleeds}
-    if len(kinds) > 1:
+    yield from _faults_of_springs(state)
+    laws = [controller.law for controller in state.design.controllers]
+    others = [law for law in laws if mixed and law.states and not law.bleeds]
+    if len({(law.commands, law.states) for law in (*leading, *others)}) > 1:
         kept = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
         found = "; ".join(dict.fromkeys(kept))
-        raise AssemblyError(
+        yield AssemblyError(
             f"the controllers keep different states of their own ({found}), so their modes share "
             "no state",
             remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them; mix "
             "no parallel controllers with others",
             at=("controllers",),
         )
-    return leading[0]
+    if state.joint is not None and (mixed or state.law.commands != "velocity"):
+        yield AssemblyError(
+            "ranges of the motor, or its load, are modelled for impedance controllers alone",
+            remedy="give nominal values of the actuator and no load_inertia",
+            at=("actuator",),
+        )
+
+
+def _faults_of_springs(state: SharedState) -> Iterator[AssemblyError]:
+    """Yield why the state does not tell the displacement of a spring in an admittance."""
+    name = next((c.name for c in state.design.controllers if c.law.spring), None)
+    restless = next((e for e in state.touched if not e.law.has_rest), None)
+    at = ("controllers", str(name), "Kt")
+    if name is not None and state.coordinates == "force":
+        yield AssemblyError(
+            "force coordinates do not apply to an admittance with a spring Kt: where the "
+            "deflection jumps, so would its displacement",
+            remedy="use coordinates: deflection, or leave Kt out",
+            at=at,
+        )
+    if name is not None and restless is not None:
+        yield AssemblyError(
+            f"an admittance with a spring Kt is not modelled in contact with {restless.name}, "
+            f"which has no rest position ({restless.law.name})",
+            remedy="leave Kt out, or give the environment a law that has a rest position",
+            at=at,
+        )

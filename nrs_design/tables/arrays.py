@@ -78,9 +78,7 @@ def read_arrays(file: BinaryIO, path: Path) -> Content:
         If it cannot be read.
     """
     reader, libraries = ARRAYS[path.suffix.lower()]
-    name = f"{reader.__module__}:{reader.__name__}"
-    arrays, words = read_confined(name, libraries, file, path)
-    return arrays, tuple(words)
+    return read_confined(reader, libraries, file, path)
 
 
 def read_sheet(file: BinaryIO, path: Path) -> tuple[bytes, tuple[str, ...]]:
@@ -91,6 +89,4 @@ def read_sheet(file: BinaryIO, path: Path) -> tuple[bytes, tuple[str, ...]]:
     DataError
         If it cannot be read.
     """
-    name = f"{unpack_sheet.__module__}:{unpack_sheet.__name__}"
-    text, names = read_confined(name, ("pandas", "openpyxl"), file, path)
-    return text, tuple(names)
+    return read_confined(unpack_sheet, ("pandas", "openpyxl"), file, path)

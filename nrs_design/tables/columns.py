@@ -21,24 +21,12 @@ from nrs_design.tables.names import (
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a file: where it is, and what turns it into SI.
+    """One column of a file: where it is, and what turns it into SI."""
 
-    Parameters
-    ----------
-    index : int
-        Counted from 0.
-    name : str
-        In the file.
-    factor : float
-        SI value over number in the file.
-    unit : str
-        The unit that its values have then.
-    """
-
-    index: int
-    name: str
-    factor: float
-    unit: str
+    index: int  # Counted from 0
+    name: str  # In the file
+    factor: float  # SI value over number in the file
+    unit: str  # The unit that its values have then
 
 
 def parse_mapping(entries: Sequence[str]) -> dict[str, str]:

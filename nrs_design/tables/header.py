@@ -34,33 +34,15 @@ _BRACKETS = re.compile(r"^[\[({](.*)[\])}]$")
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """How a text file is to be read.
+    """How a text file is to be read."""
 
-    Parameters
-    ----------
-    names : list of str
-        Of the columns, with the units of the next line where it has them.
-    separator : str or None
-        Between cells; None for any number of blanks.
-    decimal_comma : bool
-        Whether numbers have one.
-    quoted : bool
-        Whether cells stand in quotes, which may hide separators.
-    line : int
-        Last line above the rows.
-    synthetic : bool
-        Whether a comment above says so.
-    rest : bytes
-        What has been read beyond that line.
-    """
-
-    names: list[str]
-    separator: str | None
-    decimal_comma: bool
-    quoted: bool
-    line: int
-    synthetic: bool
-    rest: bytes
+    names: list[str]  # Of the columns, with the units of the next line where it has them
+    separator: str | None  # Between cells; None for any number of blanks
+    decimal_comma: bool  # Whether numbers have one
+    quoted: bool  # Whether cells stand in quotes, which may hide separators
+    line: int  # Last line above the rows
+    synthetic: bool  # Whether a comment above says so
+    rest: bytes  # What has been read beyond that line
 
 
 def read_header(

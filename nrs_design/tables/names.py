@@ -129,24 +129,12 @@ _PLOTTED_TIME = "__time"
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A name, taken apart.
+    """A name, taken apart."""
 
-    Parameters
-    ----------
-    quantity : str
-        Of `UNITS`.
-    unit : str
-        As written, or as we write it where that is known.
-    group : str
-        Suffix, empty for none.
-    loose : bool
-        Whether it is a letter or a word that may mean something else, too.
-    """
-
-    quantity: str
-    unit: str
-    group: str = ""
-    loose: bool = False
+    quantity: str  # Of `UNITS`
+    unit: str  # As written, or as we write it where that is known
+    group: str = ""  # Suffix, empty for none
+    loose: bool = False  # Whether it is a letter or a word that may mean something else, too
 
     @property
     def known(self) -> bool:

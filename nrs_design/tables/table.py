@@ -29,49 +29,24 @@ SHEET = ".xlsx"
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Where data come from.
+    """Where data come from."""
 
-    Parameters
-    ----------
-    path : Path
-        The file, as it was named.
-    sha256 : str
-        Hash of its bytes, in hexadecimal.
-    synthetic : bool
-        Whether the comments at its top say that the record is synthetic, not measured.
-    """
-
-    path: Path
-    sha256: str
+    path: Path  # The file, as it was named
+    sha256: str  # Hash of its bytes, in hexadecimal
+    # Whether the comments at its top say that the record is synthetic, not measured.
     synthetic: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeasurementTable:
-    """The columns of one file, in SI.
+    """The columns of one file, in SI."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    layout : tuple of str
-        Quantities that were found.
-    groups : dict of str to dict of str to ndarray
-        Values by group and quantity, shape (n,) each.
-    columns : dict of str to dict of str to Column
-        Where they come from, and their units.
-    labels : tuple of str
-        Words of the column of modes; its values are their indices.
-    first_line : int or None
-        Line of the first row, for messages; None where the file has no lines.
-    """
-
-    source: Source
-    layout: tuple[str, ...]
-    groups: dict[str, dict[str, Array]]
-    columns: dict[str, dict[str, Column]]
-    labels: tuple[str, ...]
-    first_line: int | None
+    source: Source  # The file
+    layout: tuple[str, ...]  # Quantities that were found
+    groups: dict[str, dict[str, Array]]  # Values by group and quantity, shape (n,) each
+    columns: dict[str, dict[str, Column]]  # Where they come from, and their units
+    labels: tuple[str, ...]  # Words of the column of modes; its values are their indices
+    first_line: int | None  # Line of the first row, for messages; None where the file has no lines
 
     def fail(self, message: str, row: int, remedy: str) -> NoReturn:
         """Raise an error about a row, counted from 0.
@@ -92,21 +67,12 @@ class MeasurementTable:
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What is looked for in a file.
+    """What is looked for in a file."""
 
-    Parameters
-    ----------
-    layouts : sequence of tuple of str
-        Quantities that belong together, see `names.UNITS`; the first that is there is taken.
-    mapping : mapping of str to str
-        From a name in the file to ours.
-    optional : tuple of str
-        Quantities that are taken where they are there.
-    """
-
+    # Quantities that belong together, see `names.UNITS`; the first that is there is taken.
     layouts: Sequence[tuple[str, ...]]
-    mapping: Mapping[str, str]
-    optional: tuple[str, ...] = ()
+    mapping: Mapping[str, str]  # From a name in the file to ours
+    optional: tuple[str, ...] = ()  # Quantities that are taken where they are there
 
 
 def read_table(

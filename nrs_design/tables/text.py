@@ -62,23 +62,12 @@ def read_blocks(
 
 @dataclass(slots=True)
 class Parser:
-    """Turns blocks of lines into numbers.
+    """Turns blocks of lines into numbers."""
 
-    Parameters
-    ----------
-    path : Path
-        For errors.
-    header : Header
-        How the file is written.
-    columns : list of Column
-        Those that are needed, in the order of the file.
-    labels : list of str
-        Words of the column of modes, in the order in which they come; a number stands for each.
-    """
-
-    path: Path
-    header: Header
-    columns: list[Column]
+    path: Path  # For errors
+    header: Header  # How the file is written
+    columns: list[Column]  # Those that are needed, in the order of the file
+    # Words of the column of modes, in the order in which they come; a number stands for each.
     labels: list[str] = field(default_factory=list)
 
     def parse(self, block: bytes, line: int) -> Array:

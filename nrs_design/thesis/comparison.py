@@ -35,53 +35,29 @@ class PrintVerdict(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ReproducedValue:
-    """One line of the table.
+    """One line of the table."""
 
-    Parameters
-    ----------
-    name : str
-        The quantity.
-    section : str
-        Where the thesis prints it.
-    printed : str
-        As printed.
-    value : str or None
-        As recomputed; None where nothing can be computed.
-    unit : str
-        Of both.
-    deviation : float or None
-        Difference between value and print over the print (the difference itself where the print
-        is zero), the largest one of several numbers; None where the print is not a number.
-    verdict : PrintVerdict
-        ``drift`` says that the package no longer computes what this row has on record.
-    note : str
-        What is right, and why; or why nothing can be recomputed.
-    precision : str
-        How near to the print a value must be to reproduce it, number by number: a part of the
-        print, or a unit of its last digit; empty where words are compared.
-    drift : float or None
-        As `deviation`, but from the reference that this package has on record for its own value,
-        which is the print where nothing else is.
-    limit : str
-        The largest such difference that is no drift.
-    fitted : str
-        Constants that were fitted to prints and that the value rests on, with their numbers.
-    errata : tuple of str
-        Errors of the print that the row touches, see `nrs_design.thesis.errata`.
-    """
-
-    name: str
-    section: str
-    printed: str
-    value: str | None
-    unit: str
+    name: str  # The quantity
+    section: str  # Where the thesis prints it
+    printed: str  # As printed
+    value: str | None  # As recomputed; None where nothing can be computed
+    unit: str  # Of both
+    # Difference between value and print over the print (the difference itself where the print is
+    # zero), the largest one of several numbers; None where the print is not a number.
     deviation: float | None
+    # ``drift`` says that the package no longer computes what this row has on record.
     verdict: PrintVerdict
-    note: str
+    note: str  # What is right, and why; or why nothing can be recomputed
+    # How near to the print a value must be to reproduce it, number by number: a part of the print,
+    # or a unit of its last digit; empty where words are compared.
     precision: str = ""
+    # As `deviation`, but from the reference that this package has on record for its own value,
+    # which is the print where nothing else is.
     drift: float | None = None
-    limit: str = ""
+    limit: str = ""  # The largest such difference that is no drift
+    # Constants that were fitted to prints and that the value rests on, with their numbers.
     fitted: str = ""
+    # Errors of the print that the row touches, see `nrs_design.thesis.errata`.
     errata: tuple[str, ...] = ()
 
 

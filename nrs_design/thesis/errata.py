@@ -10,29 +10,16 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """One error or gap of the print.
+    """One error or gap of the print."""
 
-    Parameters
-    ----------
-    id : str
-        Short name, which rows use.
-    where : str
-        Sections, equations or tables.
-    about : str
-        What it is.
-    printed, right, note : str
-        Of an erratum in a formula, which has no number of its own; else empty.
-    derived : bool
-        Whether the formula is missing in the text rather than wrong.
-    """
-
-    id: str
-    where: str
-    about: str
+    id: str  # Short name, which rows use
+    where: str  # Sections, equations or tables
+    about: str  # What it is
+    # printed, right, note: of an erratum in a formula, which has no number of its own; else empty.
     printed: str = ""
     right: str = ""
     note: str = ""
-    derived: bool = False
+    derived: bool = False  # Whether the formula is missing in the text rather than wrong
 
 
 @cache

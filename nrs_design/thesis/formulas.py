@@ -12,8 +12,8 @@ from nrs_design.design.root_locus import motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.actuator import armature_resistance, speed_torque_gradient, voltage_gain
 from nrs_design.models.motion_loop import close_motion_loop
-from nrs_design.proof.evidence.unstable_mode import is_stable
 from nrs_design.proof.mode import Time
+from nrs_design.proof.spectrum import is_stable
 from nrs_design.robot.models import inverse_kinematics
 from nrs_design.robot.models.dynamics import gravity_torque, potential_energy
 from nrs_design.robot.models.geometry import direction

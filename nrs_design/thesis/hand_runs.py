@@ -33,24 +33,16 @@ TORQUES = (4, 7, 1, 0, 97, 92, 79)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HandRun:
-    """What one move shows, until the way is made.
+    """What one move shows, until the way is made."""
 
-    Parameters
-    ----------
-    t, angle, velocity, torque : ndarray, shape (N,)
-        Time in s; of the robot, rad and rad/s; of the hand, N m.
-    effort : Effort
-        Of the hand.
-    last : float
-        Velocity of the admittance at the end, rad/s.
-    """
-
+    # t, angle, velocity, torque: shape (N,). Time in s; of the robot, rad and rad/s; of the hand, N
+    # m.
     t: Array
     angle: Array
     velocity: Array
     torque: Array
-    effort: Effort
-    last: float
+    effort: Effort  # Of the hand
+    last: float  # Velocity of the admittance at the end, rad/s
 
     @property
     def time(self) -> float:

@@ -57,7 +57,7 @@ def rows() -> tuple[ReproducedValue, ReproducedValue, ReproducedValue]:
             right=("2.2625", "1.6435", "1.3553", "3.0617", "2.2625", "1.8799"),
             tolerance=Tolerance(1e-3),
             holds=all(band.broken is not None for band in bands),
-            note="Decided exactly by Sturm's theorem. A little above, it is not passive: G Y has "
-            "relative degree two, so with an inertia it never is at all frequencies.",
+            note="Decided by rigorous isolation of roots. A little above, it is not passive: G Y "
+            "has relative degree two, so with an inertia it never is at all frequencies.",
         ),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from nrs_design.models.linear_form import LinearForm
-from nrs_design.proof.evidence.unstable_mode import is_stable
+from nrs_design.proof.spectrum import is_stable
 from nrs_design.switched.modes import Rows
 from nrs_design.thesis import thesis
 from nrs_design.thesis.comparison import (

@@ -74,12 +74,11 @@ def test_the_worst_case_stands_beside_limits(tmp_path):
 
 def test_runs_are_drawn():
     study = nrs.load(ROOT / "docs/examples/scenarios.nrs.yaml")
-    found = study.monte_carlo(3, "shaken", seed=2)
-    again = study.monte_carlo(3, "shaken", seed=2, jobs=2)
-    assert found.outcomes == again.outcomes
-    assert found.shares["torque"].runs == 3
-    assert {one.scenario for one in found.outcomes} == {"shaken"}
-    with pytest.raises(DesignError, match="runs is 0"):
-        study.monte_carlo(0)
-    with pytest.raises(DesignError, match="no scenario"):
-        study.monte_carlo(1, "stirred")
+    (one,), (again,), (other,) = (study.simulate("shaken", draw=seed) for seed in (2, 2, 3))
+    assert one.parameters == again.parameters != other.parameters
+    assert one.metrics == again.metrics != other.metrics
+    assert study.simulate("shaken")[0].parameters == {}
+    with pytest.raises(DesignError, match="the seed is -1"):
+        study.simulate(draw=-1)
+    with pytest.raises(DesignError, match="three axes"):
+        nrs.load(ROOT / "docs/examples/three-axes.nrs.yaml").simulate(draw=1)

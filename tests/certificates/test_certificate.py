@@ -21,12 +21,12 @@ from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonQuadratic,
+    GrowingSequence,
     ModeQuadratic,
     NoCommonQuadratic,
-    UnstableMode,
-    UnstablePeriod,
 )
 from nrs_design.proof.evidence.fields import rate_text
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Reset, Switching
 from nrs_design.spec import read_spec
@@ -38,8 +38,8 @@ OBSTRUCTION = "no-common-quadratic"
 POLYNOMIAL = ["common-polynomial", OBSTRUCTION]
 PROOF = CommonQuadratic(Q, 0, Fraction(1, 2))
 IMPOSSIBLE = NoCommonQuadratic((("m0", ((1,), (0,))),))
-UNSTABLE = UnstableMode("m0", "1")
-PERIOD = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(1))), 3)
+UNSTABLE = staying("m0")
+PERIOD = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(1))), 3)
 PER_MODE = ModeQuadratic((("m0", Q), ("m1", Q)), 0, Fraction(1, 2))
 BLOCKS = ((0,), (1,))
 EXISTS, NONE, UNKNOWN = (
@@ -111,15 +111,16 @@ def test_claims_in_words():
     discrete = family([[0, 0], [0, 0]], time=Time.DISCRETE)
     assert "its one mode" in evidence.claim(discrete)
     assert "rho^t |x(0)| with rho <= 0.666667," in evidence.claim(discrete)
-    assert "not Hurwitz (eigenvalue about 0 +- 1j)" in UnstableMode("m0", "0 +- 1j").claim(system)
-    assert "not Schur" in UnstableMode("m0", "1").claim(discrete)
+    rotation = family([[0, 1], [-1, 0]])
+    assert "not Hurwitz (eigenvalue about 0 +- 1j)" in staying("m0").claim(rotation)
+    assert "not Schur" in staying("m0").claim(discrete)
 
 
 @pytest.mark.parametrize(
     ("path", "verdict", "kinds"),
     [
         (COMMUTING, "proved", ["common-quadratic"]),
-        (PRINT_ERROR, "refuted", ["unstable-mode"]),
+        (PRINT_ERROR, "refuted", ["growing-sequence"]),
         (EXAMPLES / "dayawansa-martin-6.nrs.yaml", "proved", POLYNOMIAL),
         (EXAMPLES / "geromel-colaneri.nrs.yaml", "proved", ["mode-quadratic", OBSTRUCTION]),
     ],

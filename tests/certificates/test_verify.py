@@ -38,8 +38,8 @@ from nrs_design.certificates.verify import (
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline import run_certification
-from nrs_design.proof.evidence import CommonQuadratic, UnstableMode
-from nrs_design.proof.evidence.unstable_mode import worst_eigenvalue
+from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.system_fields import system_fields
 from nrs_design.search.certify import Limits
 from nrs_design.search.method import Method
@@ -83,9 +83,7 @@ NUMBERS = {
     "parameter-quadratic": {"Q_low", "Q_high"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
-    "unstable-mode": set(),
-    "unstable-period": {"steps", "doublings"},
-    "unstable-value": {"share"},
+    "growing-sequence": {"steps", "doublings", "share"},
 }
 ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)
@@ -294,10 +292,10 @@ class TestLegitimate:
         document, spec = unstable
         system = run_certification(spec).certificate.system
         other = system.modes[1]
-        evidence = UnstableMode(other.name, worst_eigenvalue(other.A, system.time))
+        evidence = staying(other.name)
         restated = restate(document, **evidence.to_fields(), claim=evidence.claim(system))
-        assert at(document, FIRST)["mode"] == "insertion"
-        assert self.accept(restated, spec).evidence.mode == "withdrawal"
+        assert at(document, FIRST)["steps"] == [["insertion", "1"]]
+        assert self.accept(restated, spec).evidence.steps == (("withdrawal", 1),)
 
     def test_statements_in_another_order_and_twice(self):
         document, spec = signed("polynomial")
@@ -395,20 +393,22 @@ class TestForgery:
     def test_refutation_of_a_stable_system(self, given):
         document, spec = given
         for name in ("a", "b", "c", "\ud800"):
-            evidence = UnstableMode(name, "1")
-            words = evidence.claim(run_certification(spec).certificate.system)
-            forged = {"kind": "unstable-mode", "claim": words, "mode": name, "eigenvalue": "1"}
+            evidence = staying(name)
+            system = run_certification(spec).certificate.system
+            words = evidence.claim(system) if name in "ab" else ""
+            forged = {"kind": "growing-sequence", "claim": words, **evidence.to_fields()}
             refuted = {**document, "verdict": "refuted", "statements": [forged]}
             fault = verify_document(resign(refuted), spec).fault
             assert fault is not None
-            assert name in "ab" or "no mode" in fault
+            assert name in "ab" or f"malformed ({name!r})" in fault
 
     def test_refutation_of_a_stable_mode_with_its_own_eigenvalue(self, given):
         document, spec = given
         system = run_certification(spec).certificate.system
         name = system.modes[0].name
-        evidence = UnstableMode(name, worst_eigenvalue(system.modes[0].A, system.time))
-        forged = {"kind": "unstable-mode", "claim": evidence.claim(system), **evidence.to_fields()}
+        evidence = staying(name)
+        words = evidence.claim(system)
+        forged = {"kind": "growing-sequence", "claim": words, **evidence.to_fields()}
         refuted = {**document, "verdict": "refuted", "statements": [forged]}
         self.reject(refuted, spec, f"mode {name} is stable")
 

@@ -31,9 +31,9 @@ SPECS = {
     "common-polynomial": {"A": DAYAWANSA_MARTIN_6},
     "no-common-quadratic": {"A": DAYAWANSA_MARTIN_6},
     "block-triangular": {"A": ROTATIONS},
-    "unstable-mode": {"A": ([["0", "1"], ["-1", "0"]],)},
-    "unstable-mixture": {"A": SHEARS, "method": Method.MIXTURE},
-    "unstable-period": {"A": BRANICKY},
+    "growing-sequence, mode": {"A": ([["0", "1"], ["-1", "0"]],)},
+    "growing-sequence, average": {"A": SHEARS, "method": Method.MIXTURE},
+    "growing-sequence, period": {"A": BRANICKY},
     "mode-quadratic": {"A": GEROMEL_COLANERI, "switching": {"dwell_time": "2.76 s"}},
     "mode-quadratic, discrete": {"A": ANDO_SHIH, "time": "discrete"},
     "mode-quadratic, resets": {
@@ -44,11 +44,11 @@ SPECS = {
             {"from": "m1", "to": "m0", "map": [["1/9", "0"], ["0", "1/9"]]},
         ],
     },
-    "unstable-value": {
+    "growing-sequence, value": {
         "A": ([["-1", "3*k"], ["3 - 3*k", "-1"]],),
         "parameters": {"k": {"nominal": "0", "range": ["0", "1"], "varies": "false"}},
     },
-    "unstable-value, average": {
+    "growing-sequence, average at a value": {
         "A": ([["-1", "10*k"], ["0", "-1"]], [["-1", "0"], ["10 - 10*k", "-1"]]),
         "parameters": {"k": {"nominal": "0", "range": ["0", "1"], "varies": "false"}},
     },
@@ -155,25 +155,25 @@ def test_statements_of_one_spec_prove_nothing_about_another(issue, example):
         "proved",
         [{"kind": "block-triangular", "blocks": [[0, 1]], "parts": [], "claim": ""}],
         [{"kind": "block-triangular", "blocks": [[], [0, 1]], "parts": [{}], "claim": ""}],
-        [{"kind": "unstable-period", "steps": [], "doublings": 3, "claim": ""}],
-        [{"kind": "unstable-period", "steps": [["m0"]], "doublings": 3, "claim": ""}],
-        [{"kind": "unstable-mixture", "weights": [], "eigenvalue": "", "claim": ""}],
+        [{"kind": "growing-sequence", "steps": [], "doublings": 3, "claim": ""}],
+        [{"kind": "growing-sequence", "steps": [["m0"]], "doublings": 3, "claim": ""}],
+        [{"kind": "growing-sequence", "weights": [], "eigenvalue": "", "claim": ""}],
         [{"kind": "mode-quadratic", "functions": [], "rate": "1", "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m0", []]], "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m9", [[1], [1]]]], "claim": ""}],
         [{"kind": "common-polynomial", "degree": 4, "Q": {}, "vanishing": [], "rate": "1"}],
         [{"kind": "common-polynomial", "degree": 4, "vanishing": [[]], "rate": "1", "claim": "",
           "Q": {"numerators": [], "denominator_log2": 0}}],
-        [{"kind": "unstable-value", "share": "1/2", "claim": ""}],
-        [{"kind": "unstable-value", "share": "1/2", "part": [], "claim": ""}],
-        [{"kind": "unstable-value", "share": "1/0", "part": {"kind": "unstable-mode"}}],
+        [{"kind": "growing-sequence", "share": "1/2", "claim": ""}],
+        [{"kind": "growing-sequence", "share": "1/2", "part": [], "claim": ""}],
+        [{"kind": "growing-sequence", "share": "1/0", "part": {"kind": "growing-sequence"}}],
         [{"kind": "parameter-quadratic", "rate": "1", "claim": "",
           "Q_low": {"numerators": [], "denominator_log2": 0},
           "Q_high": {"numerators": [], "denominator_log2": 0}}],
     ],
 )  # fmt: skip
 def test_malformed_statements_are_rejections_and_not_crashes(issue, statements):
-    spec, _, document = issue("unstable-period")
+    spec, _, document = issue("growing-sequence, period")
     verification = verify_document(sign({**document, "statements": statements}), spec)
     assert verification.fault is not None
     assert verification.certificate is None or verification.certificate.statements

@@ -1,8 +1,6 @@
 """`nrs-design compare-methods`, as a user types it."""
 
-import json
-
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, run
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, SOFT_TISSUE, document_of, run
 
 LOSSY = ROOT / "docs" / "examples" / "lossy-network.nrs.yaml"
 SIX = ROOT / "specs" / "examples" / "dayawansa-martin-6.nrs.yaml"
@@ -10,8 +8,7 @@ FEW = ("--max-updates", "300")
 
 
 def test_the_table_of_the_pair_of_the_thesis(tmp_path):
-    done = run("compare-methods", SOFT_TISSUE, "--coordinates", "force", *FEW, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    done = run("compare-methods", SOFT_TISSUE, "--coordinates", "force", *FEW, cwd=tmp_path, code=0)
     rows = [line.split() for line in done.stdout.splitlines() if line.startswith(" gradient")]
     assert [row[1] for row in rows] == ["mean-norm"] * 2 + ["balanced"] * 2 + ["given"] * 2
     assert [row[2] for row in rows] == ["round-robin", "random"] * 3
@@ -21,9 +18,9 @@ def test_the_table_of_the_pair_of_the_thesis(tmp_path):
 
 
 def test_json_and_figure(tmp_path):
-    done = run("compare-methods", COMMUTING, "--json", "--figure", "v.png", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    lmi, *iterations = json.loads(done.stdout)["runs"]
+    lmi, *iterations = document_of(
+        "compare-methods", COMMUTING, "--figure", "v.png", cwd=tmp_path, code=0
+    )["runs"]
     assert (lmi["method"], lmi["updates"], lmi["history"]) == ("lmi", None, [])
     assert len(iterations) == 6
     for found in iterations:
@@ -35,12 +32,11 @@ def test_json_and_figure(tmp_path):
 
 
 def test_exit_codes(tmp_path):
-    assert run("compare-methods", SIX, *FEW, "-q", cwd=tmp_path).returncode == 3
-    assert run("compare-methods", PRINT_ERROR, *FEW, "-q", cwd=tmp_path).returncode == 1
+    run("compare-methods", SIX, *FEW, "-q", cwd=tmp_path, code=3)
+    run("compare-methods", PRINT_ERROR, *FEW, "-q", cwd=tmp_path, code=1)
 
 
 def test_a_system_that_neither_is_for(tmp_path):
-    done = run("compare-methods", LOSSY, cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("compare-methods", LOSSY, cwd=tmp_path, code=2)
     assert "one quadratic function for all modes" in done.stderr
     assert "use `nrs-design certify-switching`" in done.stderr

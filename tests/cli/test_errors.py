@@ -1,12 +1,10 @@
 """What errors look like, as a user meets them."""
 
-import json
-
 import pytest
 
 from nrs_design.cli.errors import MAX_LISTED, MAX_SHOWN, excerpt
 from tests.spec.samples import IMPEDANCE, SWITCHED, spoiled
-from tests.support import COMMUTING, SOFT_TISSUE, run, typed
+from tests.support import COMMUTING, SOFT_TISSUE, document_of, run, typed
 from tests.terminal import run_on_terminal
 
 FAULTY = spoiled(
@@ -44,7 +42,7 @@ def test_other_commands_show_the_same(faulty):
 
 
 def test_json_lists_them_all(faulty):
-    (spec,) = json.loads(run("check", "--json", "a.nrs.yaml", cwd=faulty).stdout)["specs"]
+    (spec,) = document_of("check", "a.nrs.yaml", cwd=faulty)["specs"]
     assert [(f["line"], f["column"]) for f in spec["faults"]] == [
         (5, 18),
         (7, 3),
@@ -52,14 +50,14 @@ def test_json_lists_them_all(faulty):
         (17, 49),
     ]
     assert all(fault["message"] and fault["remedy"] for fault in spec["faults"])
-    error = json.loads(run("tune", "--json", "a.nrs.yaml", cwd=faulty).stdout)
+    error = document_of("tune", "a.nrs.yaml", cwd=faulty)
     assert (error["schema"], error["faults"]) == ("nrs-design/error/1", spec["faults"])
 
 
 def test_json_lists_so_many_faults_and_counts_them_all(tmp_path):
     text = SWITCHED + "".join(f"key{i}: 1\n" for i in range(MAX_LISTED + 5))
     (tmp_path / "a.nrs.yaml").write_text(text)
-    (spec,) = json.loads(run("check", "--json", "a.nrs.yaml", cwd=tmp_path).stdout)["specs"]
+    (spec,) = document_of("check", "a.nrs.yaml", cwd=tmp_path)["specs"]
     assert (spec["count"], len(spec["faults"])) == (MAX_LISTED + 5, MAX_LISTED)
 
 
@@ -118,9 +116,7 @@ def test_slips_of_the_pen(tmp_path, old, new, said):
     ],
 )
 def test_wrong_use_says_what_is_meant(tmp_path, arguments, said):
-    result = run(*arguments, cwd=tmp_path)
-    assert result.returncode == 2
-    assert said in result.stderr
+    assert said in run(*arguments, cwd=tmp_path, code=2).stderr
 
 
 def test_a_design_without_answer_points_at_its_field(tmp_path):

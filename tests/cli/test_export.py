@@ -360,14 +360,3 @@ def test_what_has_no_program_is_told_at_its_place(export, capsys):
     assert export(parallel, *options) == 2
     assert files() == []
     assert re.search(r"parallel\.nrs\.yaml:\d+:\d+", capsys.readouterr().err)
-
-
-@pytest.mark.slow
-def test_axes_are_never_exported_as_proved(export, capsys):
-    """The proof of a sampled loop is about the step of one axis."""
-    command = (SPECS / "neuroboscope/soft-tissue-sampled.nrs.yaml", "--format", "axes")
-    assert export(*command) == 2
-    assert "no proof is about" in capsys.readouterr().err
-    assert files() == []
-    assert export(*command, "--unproved") == 3
-    assert "UNPROVED (what is proved is the step of one axis)" in capsys.readouterr().out

@@ -28,14 +28,12 @@ COMMANDS = {
     "report-pdf": ("report", COMMUTING, "--out", "x.pdf", "--format", "pdf"),
     "report-png": ("report", COMMUTING, "--out", ".", "--format", "png"),
     "identify": ("identify", "actuator", *ACTUATOR, "--report", "x.pdf"),
-    "monte-carlo": ("simulate", RUNS, "--monte-carlo", 2, "--out", ".", "--no-bound"),
 }
 QUICK = ("certify-switching", "schema")
 # What takes long is refused before it begins.
 BEFORE = {
     "scenarios.profile-of-the-thesis.csv": ("simulate", RUNS, "--out", "."),
     "scenarios.worst-force.png": ("simulate", RUNS, "--worst-case", "--out", "."),
-    "scenarios.monte-carlo.svg": ("simulate", RUNS, "--monte-carlo", 2, "--out", "."),
     "figures.html": ("reproduce", "--figures", "."),
     "x.csv": ("robot", "correction", HOLDER, "--table", "x.csv"),
     "x.pdf": ("identify", "actuator", *ACTUATOR, "--report", "x.pdf"),

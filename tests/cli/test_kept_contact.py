@@ -7,7 +7,7 @@ import pytest
 import nrs_design as nrs
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
-from tests.support import run
+from tests.support import document_of, run
 
 # In kept contact it grows; with contact that may be lost, all 300 of these runs decay.
 PULLING = """\
@@ -36,22 +36,19 @@ def spec(tmp_path):
 
 
 def test_the_verdict_is_open_and_the_growth_is_told(spec, tmp_path):
-    told = run("certify-switching", spec, cwd=tmp_path)
-    assert told.returncode == 3, told.stderr
+    told = run("certify-switching", spec, cwd=tmp_path, code=3)
     assert told.stdout.startswith(f"pulling: INCONCLUSIVE (refuted {KEPT}; ")
     assert "is not Schur (eigenvalue about 1.00054" in told.stdout
     assert f"Refuted {KEPT}; where contact may be lost, neither" in told.stdout
     # The claim says that contact is kept; so how it is lost is not taken for granted beside it.
     assert "the environment pulling as it pushes" in told.stdout
     assert "Contact is lost where" not in told.stdout
-    checked = run("verify", "reports/pulling.cert.json", spec, cwd=tmp_path)
-    assert checked.returncode == 3
+    checked = run("verify", "reports/pulling.cert.json", spec, cwd=tmp_path, code=3)
     assert checked.stdout.startswith(f"INCONCLUSIVE (refuted {KEPT}): the certificate holds")
 
 
 def test_a_gate_fails_closed(spec, tmp_path):
-    gated = run("gate", spec, "--format", "json", cwd=tmp_path)
-    assert gated.returncode == 3, gated.stderr
+    gated = run("gate", spec, "--format", "json", cwd=tmp_path, code=3)
     (found,) = json.loads(gated.stdout)["specs"]
     assert (found["verdict"], found["refuted_in"]) == ("inconclusive", KEPT)
     status = {item["subject"]: item for item in found["obligations"] if item["rule"] < "NRS103"}
@@ -74,8 +71,7 @@ def test_the_library_the_words_and_the_page_say_it(spec):
 
 @pytest.mark.slow
 def test_margins_say_on_what_they_rest(spec, tmp_path):
-    found = run("certify-switching", spec, "--margin", "--json", cwd=tmp_path)
-    summary = json.loads(found.stdout)
+    summary = document_of("certify-switching", spec, "--margin", cwd=tmp_path)
     assert summary["refuted_in"] == KEPT
     delay, period = (summary["loop_margins"][name] for name in ("delay", "period"))
     assert (delay["refuted"], delay["refuted_in"], period["refuted_in"]) == (2, KEPT, KEPT)

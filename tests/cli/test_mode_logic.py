@@ -4,15 +4,14 @@ import json
 
 import pytest
 
-from tests.support import FORCE_LIMIT, ROOT, run
+from tests.support import FORCE_LIMIT, ROOT, document_of, run
 
 BY_SIGN = ROOT / "docs/examples/insertion-by-sign.nrs.yaml"
 UNKNOWN = ROOT / "docs/examples/unknown-environment.nrs.yaml"
 
 
 def test_switches_and_times(tmp_path):
-    result = run("mode-logic", BY_SIGN, cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("mode-logic", BY_SIGN, cwd=tmp_path, code=0)
     assert "command below -0.5 deg/s and torque above 0.1 N*m" in result.stdout
     assert "torque ≤ 0.126401 N·m" in result.stdout
     assert "torque, from switch 1 to 3" in result.stdout
@@ -20,44 +19,40 @@ def test_switches_and_times(tmp_path):
 
 
 def test_json(tmp_path):
-    document = json.loads(run("mode-logic", BY_SIGN, "--json", cwd=tmp_path).stdout)
+    document = document_of("mode-logic", BY_SIGN, cwd=tmp_path)
     assert document["schema"] == "nrs-design/mode-logic/1"
     assert document["used_in_proof"] is True
     withdrawal = next(c for c in document["controllers"] if c["name"] == "withdrawal")
     assert withdrawal["stay"] == 0.00518
     assert [pair["at_least"] for pair in withdrawal["pairs"]] == [0.016, 0.00518032]
-    found = json.loads(run("mode-logic", UNKNOWN, "--json", cwd=tmp_path).stdout)
+    found = document_of("mode-logic", UNKNOWN, cwd=tmp_path)
     assert found["type"] == "estimator"
     assert found["decision_at_most"] + found["right_at_least"] == pytest.approx(1)
 
 
 def test_a_spec_without_logic(tmp_path):
-    result = run("mode-logic", FORCE_LIMIT, cwd=tmp_path)
-    assert result.returncode == 2
-    assert "has no mode_logic" in result.stderr
+    assert "has no mode_logic" in run("mode-logic", FORCE_LIMIT, cwd=tmp_path, code=2).stderr
 
 
 @pytest.mark.slow
 def test_a_wrong_controller_that_is_unstable_is_proved_for_as_long_as_it_lasts(tmp_path):
     """Under arbitrary switching it may last, and that is refuted."""
-    result = run("certify-switching", UNKNOWN, "--out", "ours.cert.json", cwd=tmp_path)
-    assert result.returncode == 0, result.stdout
+    result = run("certify-switching", UNKNOWN, "--out", "ours.cert.json", cwd=tmp_path, code=0)
     assert "in agile/tool" in result.stdout
     assert "by then the estimator has decided" in result.stdout
     assert "at rest nothing is decided" in result.stdout
-    checked = run("verify", "ours.cert.json", UNKNOWN, cwd=tmp_path)
-    assert checked.returncode == 0, checked.stdout
+    run("verify", "ours.cert.json", UNKNOWN, cwd=tmp_path, code=0)
     text = UNKNOWN.read_text().replace("switching: mode-logic", "switching: arbitrary")
     (tmp_path / "any.nrs.yaml").write_text(text)
-    refuted = run("certify-switching", "any.nrs.yaml", "--out", "any.cert.json", cwd=tmp_path)
-    assert refuted.returncode == 1
+    refuted = run(
+        "certify-switching", "any.nrs.yaml", "--out", "any.cert.json", cwd=tmp_path, code=1
+    )
     assert "agile/tool" in refuted.stdout
 
 
 @pytest.mark.slow
 def test_the_report_shows_it(tmp_path):
-    result = run("report", BY_SIGN, "--out", "page.html", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    run("report", BY_SIGN, "--out", "page.html", cwd=tmp_path, code=0)
     page = (tmp_path / "page.html").read_text()
     assert "Switches, in the order in which they are tried" in page
     assert "The dwell times are kept by the timer of the mode logic" in page
@@ -85,14 +80,12 @@ def test_rules_about_contacts_by_hand_with_ranges(tmp_path):
 def test_the_torque_stays_below_the_limit_when_force_control_takes_over(tmp_path):
     """0.27 + 0.002 + 6.2 * 0.004 N m, below the 0.3 N m of the thesis."""
     path = ROOT / "docs/examples/force-by-threshold.nrs.yaml"
-    document = json.loads(run("mode-logic", path, "--json", cwd=tmp_path).stdout)
+    document = document_of("mode-logic", path, cwd=tmp_path)
     assert document["switches"][0]["reach"]["torque"] == pytest.approx(0.2968)
     assert document["used_in_proof"] is False
     assert "switching is arbitrary" in run("mode-logic", path, cwd=tmp_path).stdout
 
 
 def test_a_run_says_that_no_estimator_is_in_it(tmp_path):
-    found = run("simulate", UNKNOWN, "--json", cwd=tmp_path)
-    assert found.returncode == 0, found.stderr
-    (simulated,) = json.loads(found.stdout)["runs"]
+    (simulated,) = document_of("simulate", UNKNOWN, cwd=tmp_path, code=0)["runs"]
     assert any("the estimator of the mode logic" in line for line in simulated["not_modelled"])

@@ -1,20 +1,17 @@
 """`nrs-design optimize`, as a user types it."""
 
-import json
 import math
 import re
 from fractions import Fraction
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, run
+from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
 
 
 def test_optimum_of_the_thesis(tmp_path):
     """Thesis 6.3.2.1: Mt = 0.01 and Bt = 2.15, 1.04; desired impedances 2.1486 and half of it."""
-    result = run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = document_of("optimize", SOFT_TISSUE, cwd=tmp_path, code=0)
     assert document["schema"] == "nrs-design/optimize/1"
     insertion, withdrawal = document["controllers"]
     assert [insertion["name"], withdrawal["name"]] == ["insertion", "withdrawal"]
@@ -35,16 +32,14 @@ def test_optimum_of_the_thesis(tmp_path):
 def test_passivity_of_the_sampled_law(tmp_path):
     """For every age of the force sample, with an exact witness beyond the band."""
     text = (ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml").read_text()
-    result = run("optimize", write(tmp_path, text), "--json", cwd=tmp_path)
-    for controller in json.loads(result.stdout)["controllers"]:
+    for controller in document_of("optimize", write(tmp_path, text), cwd=tmp_path)["controllers"]:
         # Its motor has ranges, over which it is not decided, and no other law's is shown.
         assert controller["sampled_passivity"] == []
         assert controller["passive_up_to_rad_s"] is None
         assert "ranges of gains or of the motor" in controller["passivity_not_computed"]
     known = re.sub(r"\{nominal: ([^,]*), range: .*rpm\]\}", r"\1", text)
     known = re.sub(r"\{nominal: (0.0351 s), range: .*\]\}", r"\1", known)
-    result = run("optimize", write(tmp_path, known), "--json", cwd=tmp_path)
-    for controller in json.loads(result.stdout)["controllers"]:
+    for controller in document_of("optimize", write(tmp_path, known), cwd=tmp_path)["controllers"]:
         fresh, late = controller["sampled_passivity"]
         assert (fresh["delay"], late["delay"]) == (0, 1)
         assert late["passive_up_to_rad_s"] < fresh["passive_up_to_rad_s"]
@@ -53,8 +48,10 @@ def test_passivity_of_the_sampled_law(tmp_path):
             assert band["passive_up_to_rad_s"] < low <= high
             omega = 2 * math.atan(Fraction(band["not_passive_at_tangent"])) / 0.002
             assert omega == pytest.approx(low, abs=1e-8)
-    result = run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path)
-    assert json.loads(result.stdout)["controllers"][0]["sampled_passivity"] == []
+    assert (
+        document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["controllers"][0]["sampled_passivity"]
+        == []
+    )
 
 
 def write(tmp_path, text):
@@ -85,27 +82,54 @@ def loaded(*replacements):
 
 def test_a_load_is_in_all_that_is_said(tmp_path):
     """What certify-switching proves at 318.6 and refutes at 318.7 N m/rad has the limit 318.68."""
-    result = run("optimize", write(tmp_path, loaded()), "--json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    (found,) = json.loads(result.stdout)["controllers"]
+    (found,) = document_of("optimize", write(tmp_path, loaded()), cwd=tmp_path, code=0)[
+        "controllers"
+    ]
     assert found["stiffness_limit"] == pytest.approx(318.6876, abs=1e-3)
     assert found["gain_margin"] > 1
     # Unloaded it ends to be passive at 60.90 rad/s; loaded, Re Y is +0.043 there.
     assert 60.91 < found["passive_up_to_rad_s"] < found["not_passive_at_rad_s"]
     for stiffness, proved in (("318.6", 0), ("318.7", 1)):
         path = write(tmp_path, loaded(("300 N", f"{stiffness} N")))
-        assert run("certify-switching", path, cwd=tmp_path).returncode == proved
-    said = run("optimize", path, cwd=tmp_path)
-    assert said.returncode == 2
-    assert "it is stable below 318.688 N m/rad" in said.stderr
+        run("certify-switching", path, cwd=tmp_path, code=proved)
+    said = run("optimize", path, cwd=tmp_path, code=2)
+    assert "it is stable below 318.687 N m/rad" in said.stderr  # Rounded down.
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "motor", "said"),
+    [
+        ("15.7", "", None),
+        ("15.8", "", "it is stable below 15.7"),
+        # Delay 0 is unstable here, too, and is named first.
+        ("43", "", "it is stable below 15.7"),
+        (
+            "43",
+            "{nominal: 0.0351 s, range: [0.035 s, 0.036 s]}",
+            "it is stable with the nominal motor below 15.7",
+        ),
+    ],
+)
+def test_an_unstable_loop_is_told_the_limit_at_the_worst_age(tmp_path, stiffness, motor, said):
+    path = write(
+        tmp_path,
+        loaded(
+            ("DAMPING", "0.4 N*m*s/rad"),
+            (", load_inertia: 0.3 kg*m^2", ""),
+            ("0.0351 s", motor or "0.0351 s"),
+            ("300 N", f"{stiffness} N"),
+        )
+        + "sampling: {period: 2 ms, delay: [0, 2]}\n",
+    )
+    assert (said or "") in run("optimize", path, cwd=tmp_path, code=2 if said else 0).stderr
 
 
 def test_gains_are_sought_where_the_loop_that_is_proved_is_stable(tmp_path):
     """The loop without the load is unstable with all of these gains."""
     bounds = ("MASS", "0.01 kg*m^2"), ("DAMPING", "{min: 2.1 N*m*s/rad, max: 2.2 N*m*s/rad}")
-    result = run("optimize", write(tmp_path, loaded(*bounds)), "--json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    (found,) = json.loads(result.stdout)["controllers"]
+    (found,) = document_of("optimize", write(tmp_path, loaded(*bounds)), cwd=tmp_path, code=0)[
+        "controllers"
+    ]
     assert found["stiffness_limit"] > 300
 
 
@@ -116,7 +140,7 @@ def test_one_sensitivity_peak_for_one_controller(tmp_path):
     assert "3.753" in row
     assert "3.578" not in result.stdout + result.stderr
     assert "the worst of the loop that certify-switching is about" in result.stdout
-    document = json.loads(run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path).stdout)
+    document = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)
     for controller in document["controllers"]:
         worst = {goal["goal"]: goal["worst"] for goal in controller["goals"]}
         assert controller["sensitivity_peak"] == worst["max_sensitivity_peak"]
@@ -129,20 +153,15 @@ def test_what_is_not_computed_is_said(tmp_path):
         ("switching:", "sampling: {period: 2 ms, outer_period: 1 ms, delay: 0}\nswitching:")
     )
     fast = fast.replace(", load_inertia: 0.3 kg*m^2", "")
-    result = run("optimize", write(tmp_path, fast), cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("optimize", write(tmp_path, fast), cwd=tmp_path, code=0)
     assert "warning: a: margins and k limit are not computed" in result.stderr
     assert "not computed" in next(line for line in result.stdout.splitlines() if " a " in line)
     wanted = fast.replace("switching:", "goals: {min_gain_margin: 2}\nswitching:")
-    result = run("optimize", write(tmp_path, wanted), cwd=tmp_path)
-    assert result.returncode == 1
-    assert "MISSED" in result.stdout
+    assert "MISSED" in run("optimize", write(tmp_path, wanted), cwd=tmp_path, code=1).stdout
 
 
 def test_table(tmp_path):
-    result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
-    assert result.returncode == 0
-    lines = result.stdout.splitlines()
+    lines = run("optimize", SOFT_TISSUE, cwd=tmp_path, code=0).stdout.splitlines()
     assert lines[0].startswith("soft-tissue: G(s) = (0.99739 s + 56.822)")
     row = next(line for line in lines if "insertion" in line)
     for value in ("2.1486", "43.0356", "0.01", "2.15"):
@@ -150,21 +169,18 @@ def test_table(tmp_path):
 
 
 def test_nothing_to_optimize(tmp_path):
-    result = run("optimize", FORCE_LIMIT, cwd=tmp_path)
-    assert result.returncode == 0
-    assert "no impedance controllers" in result.stderr
+    assert "no impedance controllers" in run("optimize", FORCE_LIMIT, cwd=tmp_path, code=0).stderr
 
 
 def test_given_matrices(tmp_path):
-    result = run("optimize", COMMUTING, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("optimize", COMMUTING, cwd=tmp_path, code=2)
     assert "error[NRS002]" in result.stderr
     assert "nothing to design" in result.stderr
     assert result.stdout == ""
 
 
 def test_missing_spec(tmp_path):
-    assert run("optimize", "none.nrs.yaml", cwd=tmp_path).returncode == 2
+    run("optimize", "none.nrs.yaml", cwd=tmp_path, code=2)
 
 
 def spec_with(tmp_path, goals, *replacements):
@@ -183,8 +199,7 @@ GIVEN = (
 
 
 def test_goals_are_respected_and_shown(tmp_path):
-    result = run("optimize", spec_with(tmp_path, "{max_sensitivity_peak: 2}"), cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("optimize", spec_with(tmp_path, "{max_sensitivity_peak: 2}"), cwd=tmp_path, code=0)
     rows = [line for line in result.stdout.splitlines() if "sensitivity peak Ms" in line]
     assert len(rows) == 2
     assert all("at most 2" in row and row.rstrip().endswith("met") for row in rows)
@@ -193,12 +208,8 @@ def test_goals_are_respected_and_shown(tmp_path):
 
 def test_gains_that_are_given_and_miss_a_goal_end_with_1(tmp_path):
     path = spec_with(tmp_path, "{max_sensitivity_peak: 2}", *GIVEN)
-    result = run("optimize", path, cwd=tmp_path)
-    assert result.returncode == 1
-    assert result.stdout.count("MISSED") == 2
-    result = run("optimize", path, "--json", cwd=tmp_path)
-    assert result.returncode == 1
-    goals = json.loads(result.stdout)["controllers"][1]["goals"]
+    assert run("optimize", path, cwd=tmp_path, code=1).stdout.count("MISSED") == 2
+    goals = document_of("optimize", path, cwd=tmp_path, code=1)["controllers"][1]["goals"]
     peak = next(goal for goal in goals if goal["goal"] == "max_sensitivity_peak")
     assert (peak["status"], peak["wanted"]) == ("missed", 2.0)
     assert peak["worst"] == pytest.approx(3.753, abs=1e-3)
@@ -207,18 +218,16 @@ def test_gains_that_are_given_and_miss_a_goal_end_with_1(tmp_path):
 
 
 def test_a_goal_out_of_reach_is_an_error_with_the_best_value(tmp_path):
-    result = run("optimize", spec_with(tmp_path, "{min_gain_margin: 1e6}"), cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("optimize", spec_with(tmp_path, "{min_gain_margin: 1e6}"), cwd=tmp_path, code=2)
     assert "error[NRS002]: controller insertion: the goal min_gain_margin" in result.stderr
     assert " --> goals.nrs.yaml:" in result.stderr
     assert "the best is" in result.stderr
 
 
 def test_without_goals_a_doubtful_design_is_warned_of_and_the_exit_code_stays(tmp_path):
-    result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("optimize", SOFT_TISSUE, cwd=tmp_path, code=0)
     assert "warning: withdrawal: sensitivity peak Ms 3.753 (usual: at most 2)" in result.stderr
     assert "warning: insertion: Mt is on its lower bound 0.01 kg*m^2" in result.stderr
-    warnings = json.loads(run("optimize", SOFT_TISSUE, "--json", cwd=tmp_path).stdout)["warnings"]
+    warnings = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["warnings"]
     assert [f"warning: {text}" for text in warnings] == result.stderr.splitlines()
     assert run("optimize", SOFT_TISSUE, "-q", cwd=tmp_path).stderr == ""

@@ -1,12 +1,10 @@
 """Parallel position and force control, from the spec to the verdict, as a user types it."""
 
-import json
-
 import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
-from tests.support import ROOT, run
+from tests.support import ROOT, document_of, run
 
 PARALLEL = ROOT / "docs/examples/parallel.nrs.yaml"
 
@@ -22,18 +20,17 @@ def changed(tmp_path, *pairs):
 
 
 def test_any_stiffness_from_tissue_to_tissue_and_tool_is_proved(tmp_path):
-    result = run("certify-switching", PARALLEL, "--out", "ours.cert.json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("certify-switching", PARALLEL, "--out", "ours.cert.json", cwd=tmp_path, code=0)
     assert "PROVED" in result.stdout
     assert "the axis moves on until it meets something" in result.stdout
-    assert run("verify", "ours.cert.json", PARALLEL, cwd=tmp_path).returncode == 0
+    run("verify", "ours.cert.json", PARALLEL, cwd=tmp_path, code=0)
 
 
 def test_an_integral_alone_is_refuted_where_routh_says_so(tmp_path):
     """At Ki = 1000 the limit is 51 N m/rad, within the range of the spec."""
     path = changed(tmp_path, ("0.02 rad", "1e-6 rad"), ("0.2 rad/(N*m*s)", "1000 rad/(N*m*s)"))
-    assert run("certify-switching", path, cwd=tmp_path).returncode == 1
-    (item,) = json.loads(run("tune", path, "--json", cwd=tmp_path).stdout)["parallel"]
+    run("certify-switching", path, cwd=tmp_path, code=1)
+    (item,) = document_of("tune", path, cwd=tmp_path)["parallel"]
     low, high = item["unstable_stiffness"]
     assert low == pytest.approx(51.1, abs=0.1)
     assert high > 104.7
@@ -41,11 +38,10 @@ def test_an_integral_alone_is_refuted_where_routh_says_so(tmp_path):
 
 @pytest.mark.slow
 def test_tune_and_report(tmp_path):
-    result = run("tune", PARALLEL, cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("tune", PARALLEL, cwd=tmp_path, code=0)
     assert "parallel: parallel control" in result.stdout
     assert "none" in result.stdout
-    assert run("report", PARALLEL, "--out", "page.html", cwd=tmp_path).returncode == 0
+    run("report", PARALLEL, "--out", "page.html", cwd=tmp_path, code=0)
     page = (tmp_path / "page.html").read_text()
     assert "Region of gains" in page
     assert "Goals and worst values" not in page
@@ -69,8 +65,7 @@ def test_tune_and_report(tmp_path):
 def test_what_is_refused(tmp_path, old, new, message):
     path = changed(tmp_path, (old, new))
     if message is None:
-        result = run("certify-switching", path, cwd=tmp_path)
-        assert result.returncode == 2
+        result = run("certify-switching", path, cwd=tmp_path, code=2)
         assert "loss of contact is modelled for impedance" in result.stderr
         return
     with pytest.raises(SpecError) as caught:
@@ -80,6 +75,5 @@ def test_what_is_refused(tmp_path, old, new, message):
 
 def test_others_beside_it_share_no_state(tmp_path):
     path = changed(tmp_path, ("controllers:\n", "controllers:\n  position: {type: position}\n"))
-    result = run("certify-switching", path, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("certify-switching", path, cwd=tmp_path, code=2)
     assert "mix no parallel controllers" in result.stderr

@@ -7,7 +7,17 @@ from threading import Event
 
 import pytest
 
-from nrs_design.cli.printing import note, painted, print_json, progress, say, say_failure, wrapped
+from nrs_design.cli.printing import (
+    insist,
+    note,
+    output,
+    painted,
+    print_json,
+    progress,
+    say,
+    say_failure,
+    wrapped,
+)
 
 
 class Terminal(io.StringIO):
@@ -67,10 +77,22 @@ def test_what_strangers_wrote_steers_no_terminal(capsys, print_line):
     assert capsys.readouterr().out == "missed: name\\x1b[2J\\u202e\n"
 
 
-def test_quiet_notes_are_not_printed(capsys):
-    note("one")
-    note("two", quiet=True)
-    assert capsys.readouterr() == ("", "one\n")
+@pytest.mark.parametrize(
+    ("as_json", "quiet", "out", "err"),
+    [
+        (False, False, "text\nmissed: all\n", "note\nanyway\n"),
+        (True, False, "missed: all\n", "note\nanyway\n"),
+        (False, True, "missed: all\n", "anyway\n"),
+        (True, True, "missed: all\n", "anyway\n"),
+    ],
+)
+def test_what_json_and_quiet_silence(capsys, as_json, quiet, out, err):
+    with output(as_json=as_json, quiet=quiet):
+        say("text")
+        say_failure("missed: all", "missed")
+        note("note")
+        insist("anyway")
+    assert capsys.readouterr() == (out, err)
 
 
 class Log(io.StringIO):
@@ -103,7 +125,7 @@ def test_a_long_step_is_told_without_a_terminal(monkeypatch):
             assert log.written.wait(60)
     assert re.search(r"^certifying: lmi\\x1b\[2J \(\d+ s\)$", log.getvalue(), re.MULTILINE)
     log.written.clear()
-    with progress("certifying", quiet=True):
+    with output(as_json=False, quiet=True), progress("certifying"):
         assert not log.written.wait(0.01)
 
 

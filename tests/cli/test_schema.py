@@ -14,15 +14,15 @@ from tests.support import run, typed
 def test_no_spec_is_overwritten(tmp_path: Path) -> None:
     spec = tmp_path / "a.nrs.yaml"
     spec.write_text("kind: switched-system")
-    assert run("schema", "--out", spec.name, cwd=tmp_path).returncode == 2
+    run("schema", "--out", spec.name, cwd=tmp_path, code=2)
     assert spec.read_text() == "kind: switched-system"
     for _ in range(2):
-        assert run("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
+        run("schema", "--out", "nrs.schema.json", cwd=tmp_path, code=0)
 
 
 @pytest.mark.slow
 def test_schema_is_draft_07(tmp_path: Path) -> None:
-    assert typed("schema", "--out", "nrs.schema.json", cwd=tmp_path).returncode == 0
+    typed("schema", "--out", "nrs.schema.json", cwd=tmp_path, code=0)
     schema = json.loads((tmp_path / "nrs.schema.json").read_text())
     assert schema["$schema"] == "http://json-schema.org/draft-07/schema#"
     jsonschema.Draft7Validator.check_schema(schema)
@@ -30,7 +30,7 @@ def test_schema_is_draft_07(tmp_path: Path) -> None:
 
 def test_schema_of_exports(tmp_path: Path) -> None:
     for of in ("spec", "export", "export"):
-        assert run("schema", "--of", of, "--out", "x.json", cwd=tmp_path).returncode == 0
+        run("schema", "--of", of, "--out", "x.json", cwd=tmp_path, code=0)
     schema = json.loads((tmp_path / "x.json").read_text())
     assert (schema["title"], schema["additionalProperties"]) == ("nrs-design export", False)
     assert schema["properties"]["schema"]["const"] == "nrs-design/export/1"

@@ -10,7 +10,7 @@ import pytest
 from nrs_design.reporting.figures.simulated import draw_simulated
 from nrs_design.reporting.images import to_png
 from tests.simulation.interactions import IMPEDANCE, PLACED, SAMPLED, simulated, text_of
-from tests.support import COMMUTING, ROOT, run
+from tests.support import COMMUTING, ROOT, document_of, run
 
 RUN = (
     "command: {points: [[0 s, 0 deg/s], [0.5 s, 8 deg/s], [1 s, -8 deg/s]]}, "
@@ -30,8 +30,7 @@ def spec(tmp_path):
 
 @pytest.mark.slow
 def test_metrics_and_files(spec, tmp_path):
-    result = run("simulate", spec(), "--out", "runs", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("simulate", spec(), "--out", "runs", cwd=tmp_path, code=0)
     assert "run: exact engine" in result.stdout
     assert "largest torque" in result.stdout
     names = {path.name for path in (tmp_path / "runs").iterdir()}
@@ -46,11 +45,11 @@ def test_metrics_and_files(spec, tmp_path):
 def test_the_same_run_gives_the_same_bytes_and_never_those_of_another_spec(spec, tmp_path):
     path = spec(RUN + ", errors: {force_noise: 0.01 N*m, jitter: 0.2}, seed: 7", SAMPLED)
     for folder in ("a", "b"):
-        assert run("simulate", path, "--out", folder, cwd=tmp_path).returncode == 0
+        run("simulate", path, "--out", folder, cwd=tmp_path, code=0)
     first, again = ({f.name: f.read_bytes() for f in (tmp_path / d).iterdir()} for d in "ab")
     assert first == again
     path.write_text(path.read_text().replace("name: small", "name: other"))
-    assert run("simulate", path, "--out", "a", cwd=tmp_path).returncode == 0
+    run("simulate", path, "--out", "a", cwd=tmp_path, code=0)
     assert first.items() < {f.name: f.read_bytes() for f in (tmp_path / "a").iterdir()}.items()
 
 
@@ -84,16 +83,14 @@ def test_a_log_of_the_law_that_ships_can_be_audited(spec, tmp_path):
 def test_a_saturated_command_is_said(spec, tmp_path):
     path = spec(more=SAMPLED)
     path.write_text(path.read_text().replace("2 Hz}", "2 Hz, command: 100 rpm}"))
-    result = run("simulate", path, "--json", cwd=tmp_path)
-    saturated = json.loads(result.stdout)["runs"][0]["saturated_samples"]
+    saturated = document_of("simulate", path, cwd=tmp_path)["runs"][0]["saturated_samples"]
     assert saturated > 0
     told = run("simulate", path, cwd=tmp_path).stdout
     assert f"met its limit at {saturated} samples" in told
 
 
 def test_json(spec, tmp_path):
-    result = run("simulate", spec(more=SAMPLED), "--json", cwd=tmp_path)
-    document = json.loads(result.stdout)
+    document = document_of("simulate", spec(more=SAMPLED), cwd=tmp_path)
     assert document["schema"] == "nrs-design/simulate/1"
     (one,) = document["runs"]
     assert (one["scenario"], one["engine"], one["stopped"]) == ("run", "sampled", None)
@@ -105,8 +102,7 @@ def test_json(spec, tmp_path):
 
 def test_what_an_engine_leaves_out_is_said(spec, tmp_path):
     path = spec(RUN + ", errors: {force_noise: 0.01 N*m}")
-    result = run("simulate", path, cwd=tmp_path)
-    assert "noise and jitter of the scenario" in result.stdout
+    assert "noise and jitter of the scenario" in run("simulate", path, cwd=tmp_path).stdout
     result = run("simulate", path, "--engine", "sampled", cwd=tmp_path)
     assert "noise and jitter" not in result.stdout
     assert "other axes" in result.stdout
@@ -133,8 +129,7 @@ def test_a_spec_without_scenarios_has_one(spec, tmp_path):
 def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     laws = {name: law.replace("0.01 kg", "0 kg") for name, law in IMPEDANCE.items()}
     path = spec(more="contact: losable\ndisturbances: {command: 8 deg/s}\n", controllers=laws)
-    result = run("simulate", path, "--json", cwd=tmp_path)
-    (one,) = json.loads(result.stdout)["runs"]
+    (one,) = document_of("simulate", path, cwd=tmp_path)["runs"]
     force = next(b for b in one["certified_bounds"] if b["output"] == "force")
     assert force["holds_for_this_run"]
     assert one["metrics"]["peak_torque"] < force["level"] < 1
@@ -143,27 +138,25 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     assert rate["uncovered"] == ["the command does not come to an end before the run does"]
     told = run("simulate", path, cwd=tmp_path).stdout
     assert "certified decay once nothing is commanded: " in told
-    none = run("simulate", path, "--json", "--no-bound", cwd=tmp_path)
-    assert json.loads(none.stdout)["runs"][0]["certified_bounds"] == []
-    assert run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path).returncode == 0
+    assert (
+        document_of("simulate", path, "--no-bound", cwd=tmp_path)["runs"][0]["certified_bounds"]
+        == []
+    )
+    run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path, code=0)
     shown = run("simulate", path, "--certificate", "a.cert.json", "--period", "0.002", cwd=tmp_path)
     assert "certified bound on the force" in shown.stdout
     assert "not about this run: the proof is not about the sampled loop" in shown.stdout
     path.write_text(path.read_text().replace("[0.5 s, 8 deg/s]", "[0.5 s, 7 deg/s]"))
-    stale = run("simulate", path, "--certificate", "a.cert.json", cwd=tmp_path)
-    assert stale.returncode == 2
+    stale = run("simulate", path, "--certificate", "a.cert.json", cwd=tmp_path, code=2)
     assert "the spec has changed" in stale.stderr
 
 
 def test_a_budget_is_inconclusive(spec, tmp_path):
-    result = run("simulate", spec(), "--max-steps", "5", cwd=tmp_path)
-    assert result.returncode == 3
-    assert "STOPPED" in result.stdout
+    assert "STOPPED" in run("simulate", spec(), "--max-steps", "5", cwd=tmp_path, code=3).stdout
 
 
 def test_the_scenario_of_a_spec_without_any_is_named(spec, tmp_path):
-    result = run("simulate", spec(scenario=None), "--scenario", "foo", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", spec(scenario=None), "--scenario", "foo", cwd=tmp_path, code=2)
     assert "write one of insertion-and-withdrawal" in result.stderr
 
 
@@ -177,9 +170,7 @@ def test_the_scenario_of_a_spec_without_any_is_named(spec, tmp_path):
     ],
 )
 def test_wrong_usage(spec, tmp_path, arguments, message):
-    result = run("simulate", spec(), *arguments, cwd=tmp_path)
-    assert result.returncode == 2
-    assert message in result.stderr
+    assert message in run("simulate", spec(), *arguments, cwd=tmp_path, code=2).stderr
 
 
 def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
@@ -194,29 +185,25 @@ def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
     usual = json.loads(run("simulate", plain, *given, cwd=tmp_path).stdout)["runs"][0]
     assert found["metrics"] != usual["metrics"]
     force = spec(controllers=PLACED, more=SAMPLED)
-    result = run("simulate", force, *option, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", force, *option, cwd=tmp_path, code=2)
     assert "for impedance controllers alone" in result.stderr
 
 
 def test_two_periods_that_never_meet_are_refused(spec, tmp_path):
     two = spec(more="sampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n")
-    result = run("simulate", two, "--period", "0.00025", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", two, "--period", "0.00025", cwd=tmp_path, code=2)
     assert "do not meet at common samples" in result.stderr
 
 
 def test_another_kind_of_spec(tmp_path):
-    result = run("simulate", COMMUTING, cwd=tmp_path)
-    assert result.returncode == 2
-    assert "describes no interaction" in result.stderr
+    assert "describes no interaction" in run("simulate", COMMUTING, cwd=tmp_path, code=2).stderr
 
 
 def test_a_profile_from_a_file(spec, tmp_path):
     path = spec("command: {csv: hand.csv}, surfaces: [{environment: soft, at: 1 deg}]")
     hand = tmp_path / "hand.csv"
     hand.write_text("time_s,velocity_deg_s\n0,0\n1,5\n2,0\n")
-    found = json.loads(run("simulate", path, "--json", cwd=tmp_path).stdout)["runs"][0]
+    found = document_of("simulate", path, cwd=tmp_path)["runs"][0]
     assert found["metrics"]["duration"] == 2
     for rows, message in (
         ("0,0\n1,9\n", "beyond the spec's limit"),
@@ -226,9 +213,7 @@ def test_a_profile_from_a_file(spec, tmp_path):
         ("0,0\n2,1\n1,1\n", "no profile"),
     ):
         hand.write_text("time_s,velocity_deg_s\n" + rows)
-        result = run("simulate", path, "--out", "runs", cwd=tmp_path)
-        assert result.returncode == 2
-        assert message in result.stderr
+        assert message in run("simulate", path, "--out", "runs", cwd=tmp_path, code=2).stderr
         checked = run("check", path, cwd=tmp_path)
         assert (checked.returncode, checked.stdout) == (2, "")
         assert message in checked.stderr
@@ -240,7 +225,7 @@ def test_limits_of_a_scenario_stand_beside_its_peaks(spec, tmp_path):
     result = run("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
     rows = [line.split() for line in result.stdout.splitlines() if "largest" in line]
     assert [row[-1] for row in rows] == ["0.25", "0.5", "10"]
-    document = json.loads(run("simulate", spec(f"{RUN}, {own}"), "--json", cwd=tmp_path).stdout)
+    document = document_of("simulate", spec(f"{RUN}, {own}"), cwd=tmp_path)
     assert document["runs"][0]["limits"]["torque"] == 0.25
 
 
@@ -252,7 +237,7 @@ def test_a_profile_behind_a_link(spec, tmp_path):
         target.write_text("time_s,velocity_deg_s\n0,0\n0.1,0\n")
     link = tmp_path / "hand.csv"
     link.symlink_to("real.csv")
-    assert run("simulate", path, "--quiet", cwd=tmp_path).returncode == 0
+    run("simulate", path, "--quiet", cwd=tmp_path, code=0)
     for target, message in (
         (outside, "leads out of the spec's folder"),
         ("hand.csv", "symbolic links"),
@@ -260,9 +245,7 @@ def test_a_profile_behind_a_link(spec, tmp_path):
     ):
         link.unlink()
         link.symlink_to(target)
-        result = run("simulate", path, cwd=tmp_path)
-        assert result.returncode == 2
-        assert message in result.stderr
+        assert message in run("simulate", path, cwd=tmp_path, code=2).stderr
 
 
 STILL = "command: {constant: 1 deg/s}, duration: %s, surfaces: [{environment: soft, at: %s}]"
@@ -297,10 +280,8 @@ def test_a_chattering_logic_is_counted(spec, tmp_path):
     """Noise around a command near zero: the signs of 6.3.2 have no bands."""
     noisy = STILL.replace("1 deg/s", "-0.1 deg/s") % ("1 s", "0 deg")
     path = spec(noisy + ", errors: {force_noise: 0.05 N*m}", SAMPLED)
-    told = run("simulate", path, cwd=tmp_path)
-    assert told.returncode == 0
-    assert "stays below 10 ms (chatter)" in told.stdout
-    document = json.loads(run("simulate", path, "--json", cwd=tmp_path).stdout)
+    assert "stays below 10 ms (chatter)" in run("simulate", path, cwd=tmp_path, code=0).stdout
+    document = document_of("simulate", path, cwd=tmp_path)
     assert document["runs"][0]["metrics"]["chatter"] > 20
 
 
@@ -308,21 +289,18 @@ def test_a_chattering_logic_is_counted(spec, tmp_path):
 def test_mujoco_says_how_far_it_is_from_the_sampled_engine(spec, tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     path = spec(more=SAMPLED)
-    document = json.loads(
-        run("simulate", path, "--engine", "mujoco", "--json", cwd=tmp_path).stdout
-    )
+    document = document_of("simulate", path, "--engine", "mujoco", cwd=tmp_path)
     (one,) = document["runs"]
     assert one["engine"] == "mujoco"
     apart = one["deviation_from_sampled"]
     assert 0 < apart["angle"] < 2e-5
     assert 0 < apart["velocity"] < 1e-3
-    usual = json.loads(run("simulate", path, "--json", cwd=tmp_path).stdout)["runs"][0]
+    usual = document_of("simulate", path, cwd=tmp_path)["runs"][0]
     assert usual["deviation_from_sampled"] is None
     assert one["metrics"]["peak_torque"] == pytest.approx(
         usual["metrics"]["peak_torque"], abs=43 * apart["angle"]
     )
-    stopped = run("simulate", path, "--engine", "mujoco", "--max-steps", "9", cwd=tmp_path)
-    assert stopped.returncode == 3
+    stopped = run("simulate", path, "--engine", "mujoco", "--max-steps", "9", cwd=tmp_path, code=3)
     assert "from the sampled engine, at most: angle" in stopped.stdout
     assert "STOPPED: 9 samples" in stopped.stdout
     assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
@@ -330,11 +308,10 @@ def test_mujoco_says_how_far_it_is_from_the_sampled_engine(spec, tmp_path):
 
 def test_without_mujoco_it_is_said_what_to_install(spec, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
-    result = run("simulate", spec(), "--engine", "mujoco", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", spec(), "--engine", "mujoco", cwd=tmp_path, code=2)
     assert "needs MuJoCo, which cannot be loaded" in result.stderr
     assert "pip install 'nrs-design[mujoco]'" in result.stderr
-    assert run("simulate", spec(), "--engine", "sampled", cwd=tmp_path).returncode == 0
+    run("simulate", spec(), "--engine", "sampled", cwd=tmp_path, code=0)
 
 
 @pytest.fixture
@@ -360,8 +337,7 @@ OWN = (
 
 
 def test_a_run_of_three_axes_that_stops_is_said_of_each(three, tmp_path):
-    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path)
-    assert stopped.returncode == 3
+    stopped = run("simulate", three(SHORT + OWN), "--max-steps", "7", cwd=tmp_path, code=3)
     assert stopped.stdout.count("STOPPED: 7 samples") == 3
     for axis in ("theta1", "theta2", "theta3"):
         assert f"run.{axis}" in stopped.stdout
@@ -370,9 +346,7 @@ def test_a_run_of_three_axes_that_stops_is_said_of_each(three, tmp_path):
 @pytest.mark.slow
 def test_three_axes(three, tmp_path):
     """Each has its own command, tissue and controller; files are named by scenario and axis."""
-    result = run("simulate", three(SHORT + OWN), "--json", "--out", "runs", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = document_of("simulate", three(SHORT + OWN), "--out", "runs", cwd=tmp_path, code=0)
     left, *_ = document["runs"]
     assert [one["scenario"] for one in document["runs"]] == [f"run.theta{i}" for i in (1, 2, 3)]
     assert {one["engine"] for one in document["runs"]} == {"sampled"}
@@ -413,14 +387,12 @@ def test_two_runs_never_have_one_name(three, tmp_path):
     path = three(SHORT + "{}")
     other = "run.theta2: {command: {constant: 0 deg/s}, duration: 1 s}}"
     path.write_text(path.read_text().replace("axes: {}}}", "axes: {}}, " + other))
-    result = run("simulate", path, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", path, cwd=tmp_path, code=2)
     assert "'run.theta2' is the name of a run of 'run'" in result.stderr
 
 
 def test_three_axes_have_no_exact_engine(three, tmp_path):
-    result = run("simulate", three(SHORT + "{}"), "--engine", "exact", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", three(SHORT + "{}"), "--engine", "exact", cwd=tmp_path, code=2)
     assert "use --engine sampled or mujoco" in result.stderr
 
 
@@ -439,8 +411,10 @@ def test_the_shipped_spec_of_three_axes(tmp_path):
         assert one["steps"] == 1200
         assert one["deviation_from_sampled"]["angle"] < 1e-5
         assert 0.1 < one["metrics"]["peak_torque"] < 0.3
-    alone = run("simulate", axes, "--engine", "exact", "--json", cwd=tmp_path)
-    assert [r["scenario"] for r in json.loads(alone.stdout)["runs"]] == ["insertion-and-withdrawal"]
+    assert [
+        r["scenario"]
+        for r in document_of("simulate", axes, "--engine", "exact", cwd=tmp_path)["runs"]
+    ] == ["insertion-and-withdrawal"]
 
 
 def test_a_bound_far_away_is_named_not_drawn():

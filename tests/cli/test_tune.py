@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE, run
+from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE, document_of, run
 
 GIVEN = """motion_loop:
   transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}
@@ -13,9 +13,7 @@ GIVEN = """motion_loop:
 
 def test_motion_loop_of_the_thesis(tmp_path):
     """Thesis 4.3: zero 56.9706, gain 2065.4 (2060 used), poles -28.453 +- 28.448j, 6.8 %."""
-    result = run("tune", FORCE_LIMIT, "--json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = document_of("tune", FORCE_LIMIT, cwd=tmp_path, code=0)
     assert document["schema"] == "nrs-design/tune/1"
     motion = document["motion"]
     assert motion["root_locus"]["zero"] == pytest.approx(56.9706, rel=5e-4)
@@ -29,7 +27,7 @@ def test_motion_loop_of_the_thesis(tmp_path):
 
 def test_force_loop_of_the_thesis(tmp_path):
     """Thesis 6.3.3.1: Kp = 0.02; the damping ratio it really gives is 0.741 at 54.9 rad/s."""
-    (force,) = json.loads(run("tune", FORCE_LIMIT, "--json", cwd=tmp_path).stdout)["force"]
+    (force,) = document_of("tune", FORCE_LIMIT, cwd=tmp_path)["force"]
     assert force["name"] == "force"
     assert force["Kp"] == pytest.approx(0.02)
     assert force["damping_ratio"] == pytest.approx(0.741, abs=1e-3)
@@ -56,8 +54,7 @@ def test_force_limit_with_its_offset(tmp_path):
 
 
 def test_tables(tmp_path):
-    result = run("tune", FORCE_LIMIT, cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("tune", FORCE_LIMIT, cwd=tmp_path, code=0)
     assert "force-limit: motion loop" in result.stdout
     assert "force-limit: force loop" in result.stdout
     assert "2060" in result.stdout
@@ -67,23 +64,19 @@ def test_given_motion_loop_is_said_to_be_given(tmp_path):
     text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN)
     (tmp_path / "given.nrs.yaml").write_text(text)
     assert "The spec states G itself" in run("tune", "given.nrs.yaml", cwd=tmp_path).stdout
-    document = json.loads(run("tune", "given.nrs.yaml", "--json", cwd=tmp_path).stdout)
+    document = document_of("tune", "given.nrs.yaml", cwd=tmp_path)
     assert document["motion"]["loop"]["source"] == "given"
 
 
 def test_given_matrices(tmp_path):
-    result = run("tune", COMMUTING, cwd=tmp_path)
-    assert result.returncode == 2
-    assert "nothing to tune" in result.stderr
+    assert "nothing to tune" in run("tune", COMMUTING, cwd=tmp_path, code=2).stderr
 
 
 def test_gains_beyond_single_precision(tmp_path):
     text = SOFT_TISSUE.read_text()
     text = text.replace("2060 rpm*s/rad", "1e29 rpm*s/rad").replace("56.9706 1/s", "1e29 1/s")
     (tmp_path / "huge.nrs.yaml").write_text(text)
-    result = run("tune", "huge.nrs.yaml", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "single precision" in result.stderr
+    assert "single precision" in run("tune", "huge.nrs.yaml", cwd=tmp_path, code=2).stderr
 
 
 @pytest.mark.parametrize(("goal", "code", "word"), [("0.55", 0, "met"), ("0.5", 1, "MISSED")])
@@ -91,8 +84,7 @@ def test_goal_of_the_force_error(tmp_path, goal, code, word):
     """Kp = 0.02 leaves 1/(1 + 0.02 * 41.5043) of the command at the softest tissue."""
     goals = f"goals: {{max_force_error: {goal}}}\nswitching:"
     (tmp_path / "goals.nrs.yaml").write_text(FORCE_LIMIT.read_text().replace("switching:", goals))
-    result = run("tune", "goals.nrs.yaml", cwd=tmp_path)
-    assert result.returncode == code, result.stderr
+    result = run("tune", "goals.nrs.yaml", cwd=tmp_path, code=code)
     row = next(line for line in result.stdout.splitlines() if "steady force error" in line)
     assert "0.5465" in row
     assert "k = 41.5043 N*m/rad" in row
@@ -101,6 +93,5 @@ def test_goal_of_the_force_error(tmp_path, goal, code, word):
 
 
 def test_a_force_error_without_goal_is_warned_of(tmp_path):
-    result = run("tune", FORCE_LIMIT, cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("tune", FORCE_LIMIT, cwd=tmp_path, code=0)
     assert "warning: force: steady force error over command 0.5465" in result.stderr

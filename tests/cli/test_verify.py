@@ -9,7 +9,18 @@ from time import perf_counter
 import pytest
 
 from nrs_design.certificates.certificate import content_id
-from tests.support import COMMUTING, HARD, PRINT_ERROR, ROOT, SOFT_TISSUE, run, typed, write_spec
+from tests.support import (
+    COMMUTING,
+    HARD,
+    PRINT_ERROR,
+    ROBOT,
+    ROOT,
+    SOFT_TISSUE,
+    document_of,
+    run,
+    typed,
+    write_spec,
+)
 
 HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "typst", "jinja2")
 
@@ -24,15 +35,23 @@ def certified(tmp_path_factory):
 
 
 def test_proof_holds(certified):
-    result = typed("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
-    assert result.returncode == 0, result.stderr
+    result = typed("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified, code=0)
     assert result.stdout.startswith("PROVED: the certificate holds, checked exactly.")
     assert "insertion: Mt = 0.00999999977648258209228515625 kg*m^2, Bt = 2.15" in result.stdout
 
 
+def test_the_derivative_gain_is_that_of_a_program(tmp_path):
+    """It multiplies by Kd/T, rounded to single precision; at 3 ms that is another Kd."""
+    text = (ROBOT / "force-limit-sampled.nrs.yaml").read_text().replace("2 ms", "3 ms")
+    (tmp_path / "slow.nrs.yaml").write_text(text)
+    run("certify-switching", "slow.nrs.yaml", "--out", "c.json", cwd=tmp_path, code=0)
+    shown = run("verify", "c.json", "slow.nrs.yaml", cwd=tmp_path, code=0).stdout
+    assert "Kd = 2060 rpm*s/rad" in shown
+    assert "multiplies by Kd/T = 686666.6875 rpm/rad, which makes its Kd about 2060.000062" in shown
+
+
 def test_refutation_holds(certified):
-    result = run("verify", "thesis-print-error.json", PRINT_ERROR, cwd=certified)
-    assert result.returncode == 1
+    result = run("verify", "thesis-print-error.json", PRINT_ERROR, cwd=certified, code=1)
     assert result.stdout.startswith("REFUTED: the certificate holds")
 
 
@@ -45,12 +64,10 @@ def test_refutation_holds(certified):
     ],
 )
 def test_without_a_spec_the_proof_is_checked_and_no_more(certified, name, code, verdict):
-    result = run("verify", f"{name}.json", cwd=certified)
-    assert result.returncode == code, result.stderr
-    first, second, *_ = result.stdout.splitlines()
+    first, second, *_ = run("verify", f"{name}.json", cwd=certified, code=code).stdout.splitlines()
     assert first == f"{verdict} for the modes in the file, checked exactly."
     assert second.startswith("  not compared with a spec")
-    document = json.loads(run("verify", "--json", f"{name}.json", cwd=certified).stdout)
+    document = document_of("verify", f"{name}.json", cwd=certified)
     assert (document["verdict"], document["spec"]) == (verdict.lower(), None)
 
 
@@ -61,14 +78,11 @@ def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
     assert "REJECTED: its content" in run("verify", "c.json", cwd=tmp_path).stdout
     document["id"] = content_id(document)
     (tmp_path / "c.json").write_text(json.dumps(document))
-    result = run("verify", "c.json", cwd=tmp_path)
-    assert result.returncode == 1
-    assert "REJECTED: V does not decrease" in result.stdout
+    assert "REJECTED: V does not decrease" in run("verify", "c.json", cwd=tmp_path, code=1).stdout
 
 
 def test_coordinates_need_a_spec(certified):
-    result = run("verify", "soft-tissue.json", "--coordinates", "force", cwd=certified)
-    assert result.returncode == 2
+    result = run("verify", "soft-tissue.json", "--coordinates", "force", cwd=certified, code=2)
     assert "needs a SPEC" in result.stderr
 
 
@@ -78,8 +92,7 @@ def test_quiet(certified):
 
 
 def test_json(certified):
-    result = run("verify", "--json", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
-    document = json.loads(result.stdout)
+    document = document_of("verify", "soft-tissue.json", SOFT_TISSUE, cwd=certified)
     certificate = json.loads((certified / "soft-tissue.json").read_text())
     assert document["schema"] == "nrs-design/verify/1"
     assert document["verdict"] == "proved"
@@ -93,18 +106,15 @@ def test_json(certified):
 def test_remark_that_decides_nothing(tmp_path):
     """It holds, and says so, but is no verdict: exit code 3."""
     spec = write_spec(tmp_path / "hard.nrs.yaml", *HARD).path
-    done = run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", cwd=tmp_path)
-    assert done.returncode == 3
-    result = run("verify", "c.json", spec, cwd=tmp_path)
-    assert result.returncode == 3
+    run("certify-switching", spec, "--max-degree", 2, "--out", "c.json", cwd=tmp_path, code=3)
+    result = run("verify", "c.json", spec, cwd=tmp_path, code=3)
     assert result.stdout.startswith("INCONCLUSIVE: the certificate holds, checked exactly.")
     assert "does not exist. This alone says nothing about stability." in result.stdout
 
 
 def test_ranges_of_gains_are_said(tmp_path):
     spec = ROOT / "specs" / "neuroboscope" / "retuned-gains.nrs.yaml"
-    result = run("verify", ROOT / "reports" / "retuned-gains.cert.json", spec, cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("verify", ROOT / "reports" / "retuned-gains.cert.json", spec, cwd=tmp_path, code=0)
     lines = result.stdout.splitlines()
     assert "  insertion: Mt anywhere in [0.008 kg*m^2, 0.012 kg*m^2]" in lines
     assert "  withdrawal: Bt anywhere in [0.832 N*m*s/rad, 1.248 N*m*s/rad]" in lines
@@ -112,19 +122,16 @@ def test_ranges_of_gains_are_said(tmp_path):
 
 def test_other_coordinates_must_be_asked_for(tmp_path):
     arguments = ["--coordinates", "force", "--out", "c.json"]
-    assert run("certify-switching", SOFT_TISSUE, *arguments, cwd=tmp_path).returncode == 0
-    rejected = run("verify", "c.json", SOFT_TISSUE, cwd=tmp_path)
-    assert rejected.returncode == 1
+    run("certify-switching", SOFT_TISSUE, *arguments, cwd=tmp_path, code=0)
+    rejected = run("verify", "c.json", SOFT_TISSUE, cwd=tmp_path, code=1)
     assert "REJECTED: it is about other coordinates than deflection" in rejected.stdout
-    asked = run("verify", "c.json", SOFT_TISSUE, "--coordinates", "force", cwd=tmp_path)
-    assert asked.returncode == 0
+    asked = run("verify", "c.json", SOFT_TISSUE, "--coordinates", "force", cwd=tmp_path, code=0)
     assert "coordinates: force" in asked.stdout
 
 
 @pytest.mark.parametrize("spec", [COMMUTING, PRINT_ERROR])
 def test_wrong_spec(certified, spec):
-    result = run("verify", "soft-tissue.json", spec, cwd=certified)
-    assert result.returncode == 1
+    result = run("verify", "soft-tissue.json", spec, cwd=certified, code=1)
     assert result.stdout.startswith("REJECTED: it belongs to another spec")
 
 
@@ -133,9 +140,7 @@ def test_altered(certified, tmp_path):
     document["statements"][0]["Q"]["numerators"][0][0] += 1
     path = tmp_path / "c.json"
     path.write_text(json.dumps(document))
-    result = run("verify", "c.json", COMMUTING, "--json", cwd=tmp_path)
-    assert result.returncode == 1
-    content = json.loads(result.stdout)
+    content = document_of("verify", "c.json", COMMUTING, cwd=tmp_path, code=1)
     assert content["verdict"] == "rejected"
     assert "altered" in content["fault"]
     assert content["claims"] is content["gains"] is content["certificate_id"] is None
@@ -147,8 +152,7 @@ def test_hostile_text_is_quoted(certified, tmp_path, extra):
     document[extra] = None
     document["id"] = content_id(document)
     (tmp_path / "c.json").write_text(json.dumps(document))
-    result = run("verify", "c.json", COMMUTING, cwd=tmp_path)
-    assert result.returncode == 1
+    result = run("verify", "c.json", COMMUTING, cwd=tmp_path, code=1)
     assert result.stdout.startswith("REJECTED: its field '")
     assert result.stdout.count("\n") == 1
     assert "\x1b" not in result.stdout
@@ -158,24 +162,22 @@ def test_hostile_text_is_quoted(certified, tmp_path, extra):
 def test_not_a_certificate(tmp_path, content):
     if content is not None:
         (tmp_path / "c.json").write_bytes(content)
-    result = run("verify", "c.json", COMMUTING, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("verify", "c.json", COMMUTING, cwd=tmp_path, code=2)
     assert result.stderr.startswith("error[NRS004]: c.json")
     assert result.stdout == ""
 
 
 def test_missing_spec(certified):
-    result = run("verify", "commuting.json", "none.nrs.yaml", cwd=certified)
-    assert result.returncode == 2
+    result = run("verify", "commuting.json", "none.nrs.yaml", cwd=certified, code=2)
     assert "error[NRS001]" in result.stderr
 
 
 def test_changed_spec(certified, tmp_path):
     copy = tmp_path / "commuting.nrs.yaml"
     shutil.copy(COMMUTING, copy)
-    assert run("verify", certified / "commuting.json", copy, cwd=tmp_path).returncode == 0
+    run("verify", certified / "commuting.json", copy, cwd=tmp_path, code=0)
     copy.write_text(copy.read_text().replace("[-1, 1]", "[-1, 2]"))
-    assert run("verify", certified / "commuting.json", copy, cwd=tmp_path).returncode == 1
+    run("verify", certified / "commuting.json", copy, cwd=tmp_path, code=1)
 
 
 def test_disagreement_is_an_internal_error(certified):
@@ -224,8 +226,7 @@ def test_light_imports(certified, command):
 
 
 def test_example_of_the_help_is_a_real_spec():
-    result = run("verify", "--help", cwd=ROOT)
-    assert "soft-tissue" in result.stdout
+    assert "soft-tissue" in run("verify", "--help", cwd=ROOT).stdout
     assert SOFT_TISSUE.is_file()
 
 
@@ -244,45 +245,39 @@ def test_deployed_numbers_are_those_of_the_certificate(tmp_path):
     sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
     (tmp_path / "x.nrs.yaml").write_text(head.replace("name: soft-tissue", "name: x") + sampling)
     export = ("export", "x.nrs.yaml", "--out", ".", "-q")
-    assert run(*export, "--format", "c", cwd=tmp_path).returncode == 0
-    assert run(*export, "--format", "json", cwd=tmp_path).returncode == 0
+    run(*export, "--format", "c", cwd=tmp_path, code=0)
+    run(*export, "--format", "json", cwd=tmp_path, code=0)
     again = (*export, "--certificate", "x.cert.json")
-    assert run(*again, "--format", "monitor", cwd=tmp_path).returncode == 0
-    assert run(*again, "--format", "fmu", cwd=tmp_path).returncode == 0
+    run(*again, "--format", "monitor", cwd=tmp_path, code=0)
+    run(*again, "--format", "fmu", cwd=tmp_path, code=0)
     check = ("verify", "x.cert.json", "x.nrs.yaml", "--deployed")
     for name in ("x.h", "x.export.json", "x_monitor.h", "x_monitor.c", "x.fmu"):
-        result = run(*check, name, cwd=tmp_path)
-        assert result.returncode == 0, result.stderr
-        first = result.stdout.splitlines()[0]
+        first = run(*check, name, cwd=tmp_path, code=0).stdout.splitlines()[0]
         assert first.startswith(f"deployed: {WHAT[name]} of {name}: those of the certificate")
         assert "; not compared: " in first
         assert ("any code (x.c)" in first) == (name == "x.h")
     text = (tmp_path / "x.h").read_text()
     assert text.count("0x1.f6eep+19F") == 1
     (tmp_path / "x.h").write_text(text.replace("0x1.f6eep+19F", "0x1.f6ee02p+19F"))
-    result = run(*check, "x.h", cwd=tmp_path)
-    assert result.returncode == 1
+    result = run(*check, "x.h", cwd=tmp_path, code=1)
     assert "NRS_X_KD_OVER_T is 0x1.f6ee02p+19F, and the certificate has 1030000" in result.stdout
-    document = json.loads(run(*check, "x.h", "--json", cwd=tmp_path).stdout)
+    document = document_of(*check, "x.h", cwd=tmp_path)
     assert (document["verdict"], document["deployed"]) == ("rejected", "x.h")
     assert len(document["differences"]) == 1
-    assert run("verify", "x.cert.json", "--deployed", "x.h", cwd=tmp_path).returncode == 2
-    assert run(*check, "nothing.h", cwd=tmp_path).returncode == 2
-    result = run("verify", "x.cert.json", COMMUTING, "--deployed", "x.h", cwd=tmp_path)
-    assert result.returncode == 1
+    run("verify", "x.cert.json", "--deployed", "x.h", cwd=tmp_path, code=2)
+    run(*check, "nothing.h", cwd=tmp_path, code=2)
+    result = run("verify", "x.cert.json", COMMUTING, "--deployed", "x.h", cwd=tmp_path, code=1)
     assert "another spec" in result.stdout
 
 
 def test_given_matrices_have_nothing_to_deploy(certified, tmp_path):
     proof = certified / "commuting.json"
-    result = run("verify", proof, COMMUTING, "--deployed", "x.h", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("verify", proof, COMMUTING, "--deployed", "x.h", cwd=tmp_path, code=2)
     assert "no gains that could be deployed" in result.stderr
 
 
 def test_swapped_files_are_named_in_their_order(tmp_path):
-    done = run("verify", "specs/a.nrs.yaml", "reports/a.cert.json", cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("verify", "specs/a.nrs.yaml", "reports/a.cert.json", cwd=tmp_path, code=2)
     assert done.stderr == (
         "error[NRS004]: the arguments are swapped (the certificate comes first: "
         "nrs-design verify reports/a.cert.json specs/a.nrs.yaml)\n"

@@ -11,8 +11,6 @@ from nrs_design.controllers.laws import ProportionalForce
 from nrs_design.design.goals import (
     ForceRequirement,
     Requirement,
-    achieve_force,
-    achieve_impedance,
     corners_of,
 )
 from nrs_design.design.impedance import ImpedanceLoop
@@ -51,7 +49,7 @@ def impedance(environments, goals=(), desired=2.15, gains=None):
 
 
 def worst(requirement, Mt=0.01, Bt=2.15):
-    found = achieve_impedance(requirement, IMPEDANCE_MEASURES, Mt, Bt)
+    found = requirement.achieved(IMPEDANCE_MEASURES, Mt, Bt)
     return {item.measure: item for item in found}
 
 
@@ -132,7 +130,7 @@ def force(motion, Kp, goals=()):
 def test_the_force_error_is_worst_in_the_softest_contact():
     """Thesis 6.3.3.1: Kp = 0.02 at 43.0356 N m/rad; G(0) = 1."""
     requirement = force(EXACT, "0.02", ((FORCE_ERROR, 0.6),))
-    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES)}
+    found = {item.measure: item for item in requirement.achieved(FORCE_MEASURES)}
     assert found[FORCE_ERROR].value == pytest.approx(1 / (1 + 0.02 * 41.5))
     assert found[FORCE_ERROR].where == "soft, k = 41.5 N*m/rad"
     assert found[FORCE_ERROR].met
@@ -143,7 +141,7 @@ def test_force_margins_are_those_of_the_force_loop():
     """Peak of |1/(1 + Kp k G)| on a frequency grid, at the stiffest contact."""
     motion = TransferFunction((1.0,), (4e-4, 0.02, 1.0))
     requirement = force(motion, "0.2")
-    found = {item.measure: item for item in achieve_force(requirement, FORCE_MEASURES)}
+    found = {item.measure: item for item in requirement.achieved(FORCE_MEASURES)}
     s = 1j * np.geomspace(0.1, 1e4, 100_001)
     G = np.polyval(motion.numerator, s) / np.polyval(motion.denominator, s)
     peaks = [np.abs(1 / (1 + 0.2 * k * G)).max() for k in (43, 41.5, 44.25)]

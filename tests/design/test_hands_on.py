@@ -1,7 +1,5 @@
 """What a hand feels: transparency and effort, against the responses themselves."""
 
-import json
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +12,7 @@ from nrs_design.design.measures import HAND_EFFORT, TRANSPARENCY
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, Hand, KelvinVoigt
 from tests.design.motion_loops import PLACE, axis_with
-from tests.support import ROOT, run
+from tests.support import ROOT, document_of, run
 
 HANDS_ON = ROOT / "docs/examples/hands-on.nrs.yaml"
 # G of the thesis, 6.1, and an ideal one.
@@ -92,16 +90,13 @@ def table(mass, damping):
 @pytest.mark.slow
 def test_the_goals_of_a_hand_choose_the_gains(tmp_path):
     """Those of the example are met, and the lightest admittance of table 7.1 misses them."""
-    result = run("optimize", HANDS_ON, "--json", cwd=tmp_path)
-    assert result.returncode == 0
-    (light,) = json.loads(result.stdout)["controllers"]
+    (light,) = document_of("optimize", HANDS_ON, cwd=tmp_path, code=0)["controllers"]
     goals = {item["goal"]: item for item in light["goals"]}
     assert goals["max_hand_effort"]["worst"] < 6
     assert goals["max_hand_effort"]["unit"] == "N*m*s/rad"
     assert goals["min_transparency"]["worst"] > 0.4
     (tmp_path / "table.nrs.yaml").write_text(table(1, 4))
-    missed = run("optimize", "table.nrs.yaml", cwd=tmp_path)
-    assert missed.returncode == 1
+    missed = run("optimize", "table.nrs.yaml", cwd=tmp_path, code=1)
     assert "effort of the hand" in missed.stdout
     assert "MISSED" in missed.stdout
 
@@ -113,23 +108,22 @@ def test_the_goals_of_a_hand_choose_the_gains(tmp_path):
 def test_admittances_of_table_7_1_and_a_hand_that_changes_its_grip(tmp_path, mass, damping, code):
     """Each is stable for every constant hand; one with less damping is pumped by its changes."""
     (tmp_path / "table.nrs.yaml").write_text(table(mass, damping))
-    result = run("certify-switching", "table.nrs.yaml", "--out", "ours.json", cwd=tmp_path)
-    assert result.returncode == code, result.stdout
+    result = run(
+        "certify-switching", "table.nrs.yaml", "--out", "ours.json", cwd=tmp_path, code=code
+    )
     assert ("Repeating the signal" in result.stdout) == (code == 1)
 
 
 @pytest.mark.slow
 def test_a_hand_that_lets_go_is_proved(tmp_path):
-    result = run("certify-switching", HANDS_ON, "--out", "ours.json", cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("certify-switching", HANDS_ON, "--out", "ours.json", cwd=tmp_path, code=0)
     assert "contact lost and made again at any time" in result.stdout
 
 
 def test_only_for_impedance_control(tmp_path):
     text = (ROOT / "specs/neuroboscope/force-limit.nrs.yaml").read_text()
     (tmp_path / "force.nrs.yaml").write_text(text + "goals: {min_transparency: 0.5}\n")
-    result = run("check", "force.nrs.yaml", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("check", "force.nrs.yaml", cwd=tmp_path, code=2)
     assert "min_transparency is for impedance controllers" in result.stderr
 
 
@@ -139,12 +133,8 @@ def test_a_spring_in_the_admittance(tmp_path):
     text = text.replace("{min: 1 kg*m^2/s, max: 20 kg*m^2/s}", "4.6 kg*m^2/s\n    Kt: 5 N*m/rad")
     text = text.replace("contact: losable", "contact: kept")
     (tmp_path / "spring.nrs.yaml").write_text(text)
-    result = run("optimize", "spring.nrs.yaml", "--json", cwd=tmp_path)
-    assert result.returncode == 1
-    (light,) = json.loads(result.stdout)["controllers"]
+    (light,) = document_of("optimize", "spring.nrs.yaml", cwd=tmp_path, code=1)["controllers"]
     goals = {item["goal"]: item for item in light["goals"]}
     assert goals["max_hand_effort"]["worst"] is None
     assert goals["min_transparency"]["worst"] < 24.9984 / 29.9984
-    assert (
-        run("certify-switching", "spring.nrs.yaml", "--out", "o.json", cwd=tmp_path).returncode == 0
-    )
+    run("certify-switching", "spring.nrs.yaml", "--out", "o.json", cwd=tmp_path, code=0)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.passivity import count_positive_roots, real_part
+from nrs_design.design.passivity import first_root, real_part
 from nrs_design.design.passivity import passive_band as band_of
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import MotionLoop, realize
@@ -62,11 +62,21 @@ def test_the_robot_of_the_thesis(Mt, Bt, hertz):
     assert band.passive < band.broken < band.passive * Fraction(10001, 10000)
 
 
-def test_roots_are_counted_once():
-    """(x - 1)^2 (x - 2) (x + 3)"""
-    P = [Fraction(int(c)) for c in np.poly([1, 1, 2, -3]).round()]
-    counts = [count_positive_roots(P, Fraction(end)) for end in ("1/2", "1", "3/2", "2", "9")]
-    assert counts == [0, 1, 1, 2, 2]
+@pytest.mark.parametrize(
+    ("roots", "first"), [([1, 1, 2, -3], 1), ([-1, -2], None), ([3, 2, -2], 2), ([1j, -1j, 5], 5)]
+)
+def test_first_positive_root(roots, first):
+    P = [Fraction(int(c.real)) for c in np.poly(roots).round()]
+    found = first_root(P)
+    assert (found is None) == (first is None)
+    if found is not None:
+        assert found[0] <= first <= found[1] < first + Fraction(1, 10**12)
+
+
+def test_a_root_that_is_no_fraction_is_enclosed():
+    low, high = first_root([ONE, Fraction(0), Fraction(-2)])
+    assert low**2 < 2 < high**2
+    assert high - low < Fraction(1, 10**12)
 
 
 @settings(deadline=None)

@@ -9,14 +9,10 @@ from hypothesis import strategies as st
 
 from nrs_design.design.transfer import (
     TransferFunction,
-    even_odd,
     frequency_response,
     hurwitz,
     poles,
     positive_roots,
-    product_parts,
-    ratio_slope,
-    squared_magnitude,
     static_gain,
     to_control,
     trim,
@@ -92,32 +88,6 @@ def test_hurwitz_agrees_with_computed_roots(rows, zeros):
     rightmost = np.roots(polynomial).real.max(initial=-math.inf)
     assume(abs(rightmost) > 1e-6)
     assert bool(hurwitz(polynomial)) == (rightmost < 0)
-
-
-@given(coefficients, st.floats(0, 3))
-def test_even_odd_split_rebuilds_the_polynomial(polynomial, omega):
-    even, odd = even_odd(polynomial)
-    rebuilt = np.polyval(even, omega**2) + 1j * omega * np.polyval(odd, omega**2)
-    assert rebuilt == pytest.approx(np.polyval(polynomial, 1j * omega), abs=1e-9)
-
-
-@given(coefficients, coefficients, st.floats(0, 2))
-def test_product_parts_and_magnitude_agree_with_complex_arithmetic(a, b, omega):
-    real, imaginary = product_parts(a, b)
-    wanted = np.polyval(a, 1j * omega) * np.conj(np.polyval(b, 1j * omega))
-    x = omega**2
-    assert np.polyval(real, x) + 1j * omega * np.polyval(imaginary, x) == pytest.approx(
-        wanted, abs=1e-7
-    )
-    assert np.polyval(squared_magnitude(a), x) == pytest.approx(
-        abs(np.polyval(a, 1j * omega)) ** 2, abs=1e-7
-    )
-
-
-def test_ratio_slope_finds_the_stationary_points():
-    # x/(x^2 + 4) is stationary at +-2.
-    assert sorted(np.roots(ratio_slope([1, 0], [1, 0, 4])).real) == pytest.approx([-2, 2])
-    assert not np.any(ratio_slope([3.0], [2.0]))
 
 
 def test_positive_roots_ignores_the_others_and_keeps_double_roots():

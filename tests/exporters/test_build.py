@@ -84,9 +84,9 @@ def test_certificate_of_other_gains_is_refused(continuous_export):
 
 
 def test_certificate_that_refutes_is_refused(continuous_export):
-    from nrs_design.proof.evidence import UnstableMode
+    from nrs_design.proof.evidence.growing_sequence import staying
 
-    refuting = replace(continuous_export.certificate, statements=(UnstableMode("insertion", "1"),))
+    refuting = replace(continuous_export.certificate, statements=(staying("insertion"),))
     with pytest.raises(CertificateError, match="does not prove stability"):
         build_record(continuous_export.design, refuting, None)
 

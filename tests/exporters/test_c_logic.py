@@ -181,7 +181,7 @@ def test_every_number_of_the_logic_is_in_the_header(shipped):
     """`verify --deployed` compares all of them."""
     record, law, names = shipped
     text = header_text(record, law, names)
-    numbers = names.logic(law.logic, law.modes)
+    numbers = names.logic(law)
     assert len(numbers) == 1 + len(law.modes) + sum(len(s.bounds) for s in law.logic.switches)
     assert numbers.items() <= names.numbers(law).items()
     assert all(f"#define {macro} " in text for macro in numbers)

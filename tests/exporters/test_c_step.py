@@ -9,12 +9,10 @@ import pytest
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.c_step import (
-    MAGNITUDE_WITHIN,
     SIGN,
-    WITHIN,
     declarations,
     definitions,
-    helpers,
+    guards,
 )
 from tests.exporters.programs import LAWS
 
@@ -25,7 +23,7 @@ TABLE = Coefficient("table", "t", "1", (Fraction(1), Fraction(2), Fraction(4)), 
 
 
 def body(law):
-    return "".join(definitions(law, NAMES))
+    return definitions(law, NAMES)
 
 
 def of(*operations, coefficients=(HALF,), **others):
@@ -66,10 +64,14 @@ def test_every_value_is_guarded_before_it_is_used(shape):
 def test_helpers_are_there_where_they_are_called():
     plain = of(Operation("y", "multiply", "h", "x"))
     table = of(Operation("y", "interpolate", "table", "x"), coefficients=(TABLE,))
-    assert helpers(plain) == [WITHIN]
-    assert helpers(plain, within=MAGNITUDE_WITHIN) == [MAGNITUDE_WITHIN]
-    assert ["saturated(" in text for text in helpers(LAWS["limits"])] == [False, True]
-    assert "interpolated(" in helpers(plain, table)[1]
+    called = ("is_within(", "saturated(", "interpolated(", "fabsf(")
+    for text, wanted in (
+        (guards(plain), [True, False, False, False]),
+        (guards(plain, math=True), [True, False, False, True]),
+        (guards(LAWS["limits"]), [True, True, False, False]),
+        (guards(plain, table), [True, False, True, False]),
+    ):
+        assert [name in text for name in called] == wanted
 
 
 def test_operations_of_every_kind():
@@ -99,9 +101,9 @@ def test_a_result_that_is_checked_is_refused():
 
 def test_what_is_declared_names_units_and_meaning():
     law = LAWS["limits"]
-    text = "\n".join(declarations(law, NAMES))
+    text = declarations(law, NAMES)
     for value in law.values:
         assert f"float {value.name}; /* {value.unit}: {value.meaning}" in text
     assert "float command; /* rpm" in text
     renamed = replace(law, units={"command": "V"})
-    assert "float command; /* V" in "\n".join(declarations(renamed, NAMES))
+    assert "float command; /* V" in declarations(renamed, NAMES)

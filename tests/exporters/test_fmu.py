@@ -2,9 +2,11 @@
 
 import hashlib
 import io
+import re
 import zipfile
 from dataclasses import replace
 from functools import cache
+from xml.etree import ElementTree
 
 import fmpy
 import numpy as np
@@ -15,13 +17,34 @@ from fmpy.validation import validate_fmu
 
 from nrs_design.controllers.replica import step
 from nrs_design.exporters import FORMATS
+from nrs_design.exporters.c import header_text
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.fmu import contents, guid_of, packed, remarks, render
+from nrs_design.exporters.fmu import (
+    contents,
+    description,
+    guid_of,
+    packed,
+    remarks,
+    render,
+    variables_of,
+    wrapper_text,
+)
 from nrs_design.exporters.program import Program
 from nrs_design.exporters.vectors import make_vectors
 from tests.exporters.programs import LAWS, STRICT, built, compiler
 
 T = 0.002
+# FMI 2.0: what every model has, and what those for co-simulation have besides.
+FUNCTIONS = (
+    *("GetTypesPlatform", "GetVersion", "SetDebugLogging", "Instantiate", "FreeInstance"),
+    *("SetupExperiment", "EnterInitializationMode", "ExitInitializationMode", "Terminate"),
+    *("Reset", "GetReal", "GetInteger", "GetBoolean", "GetString", "SetReal", "SetInteger"),
+    *("SetBoolean", "SetString", "GetFMUstate", "SetFMUstate", "FreeFMUstate"),
+    *("SerializedFMUstateSize", "SerializeFMUstate", "DeSerializeFMUstate"),
+    *("GetDirectionalDerivative", "SetRealInputDerivatives", "GetRealOutputDerivatives"),
+    *("DoStep", "CancelStep", "GetStatus", "GetRealStatus", "GetIntegerStatus"),
+    *("GetBooleanStatus", "GetStringStatus"),
+)
 
 
 def program(law, export):
@@ -238,3 +261,90 @@ def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):
             "documentation/index.html"
         ].decode()
     )
+
+
+def text_of(shape, export):
+    return wrapper_text(program(LAWS[shape], export), "{some-guid}", "0.002")
+
+
+def test_every_function_of_the_standard_is_there_once(sampled_export):
+    found = re.findall(r"\bFMI2\(fmi2(\w+)\)\(", text_of("limits", sampled_export))
+    assert sorted(found) == sorted(FUNCTIONS)
+
+
+@pytest.mark.parametrize("shape", LAWS)
+def test_no_place_is_left_open(sampled_export, shape):
+    """The GUID, the sample time and every variable are in; inputs come first and may be set."""
+    law, text = LAWS[shape], text_of(shape, sampled_export)
+    assert "@" not in text
+    assert 'strcmp(guid, "{some-guid}")' in text
+    assert "#define PERIOD 0.002\n" in text
+    places = re.findall(r"case (\d+)U:\n        return &m->([\w.]+);", text)
+    wanted = [f"in.{v.name}" for v in law.inputs] + [f"out.{name}" for name in law.outputs]
+    wanted += [f"state.{v.name}" for v in law.states]
+    assert places == [(str(k), place) for k, place in enumerate(wanted)]
+    assert f"at[k] >= {len(law.inputs)}U" in text
+    assert all(f"m->in.{v.name} = 0.0F;" in text for v in law.inputs)
+
+
+def test_it_compiles_without_a_warning(tmp_path, sampled_export):
+    gcc, names = compiler(), CNames(sampled_export.record.spec.name)
+    header = header_text(sampled_export.record, LAWS["limits"], names)
+    (tmp_path / f"{names.spec}.h").write_text(header)
+    (tmp_path / "fmu.c").write_text(text_of("limits", sampled_export))
+    built(gcc, *STRICT, "-c", tmp_path / "fmu.c", "-o", tmp_path / "fmu.o")
+
+
+@pytest.fixture(params=LAWS)
+def law(request):
+    return LAWS[request.param]
+
+
+@pytest.fixture
+def described(law, sampled_export):
+    program = Program(sampled_export.record, law, CNames("a.b"))
+    return ElementTree.fromstring(description(program, "{guid}", "0.002"))
+
+
+def test_every_variable_of_a_step(law, described):
+    found = {v.get("name"): v for v in described.iter("ScalarVariable")}
+    inputs = ["mode", *(v.name for v in law.inputs)]
+    states = [f"state.{v.name}" for v in law.states]
+    assert [*found] == [*inputs, *law.outputs, *states, "valid"]
+    for kind, names in (("input", inputs), ("output", [*law.outputs, "valid"]), ("local", states)):
+        assert {found[name].get("causality") for name in names} == {kind}
+    for value in law.inputs:
+        (real,) = found[value.name]
+        assert real.get("unit") == value.unit
+        assert found[value.name].get("description") == value.meaning
+
+
+def test_outputs_are_where_the_structure_says(law, described):
+    variables = [v.get("name") for v in described.iter("ScalarVariable")]
+    for part in ("Outputs", "InitialUnknowns"):
+        places = [int(u.get("index")) for u in described.find(f"ModelStructure/{part}")]
+        assert [variables[place - 1] for place in places] == [*law.outputs, "valid"]
+
+
+def test_names_verdict_and_step(described):
+    assert described.get("description").startswith("PROVED: ")
+    assert described.find("CoSimulation").get("modelIdentifier") == "nrs_a_b"
+    assert [f.get("name") for f in described.iter("File")] == ["fmu.c", "a.b.c"]
+    assert described.find("DefaultExperiment").get("stepSize") == "0.002"
+
+
+def test_turns_per_minute_are_turned_into_radians(described):
+    """FMI: what is in base units is factor times what is in this unit; 60 rpm are 2 pi rad/s."""
+    (rpm,) = [unit[0] for unit in described.iter("Unit") if unit.get("name") == "rpm"]
+    assert 60 * float(rpm.get("factor")) == pytest.approx(6.283185307179586, rel=1e-15)
+
+
+def test_every_value_of_a_law_is_one_variable():
+    """The program tells by the number what may be set: inputs come first."""
+    for law in LAWS.values():
+        found = variables_of(law)
+        assert [v.reference for v in found] == list(range(len(law.values) + len(law.outputs)))
+        assert len({v.name for v in found}) == len(found)
+        causes = [v.causality for v in found]
+        assert causes == sorted(causes, key=["input", "output", "local"].index)
+        assert all(v.meaning for v in found)

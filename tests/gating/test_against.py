@@ -182,14 +182,12 @@ def test_other_bounds_beside_other_words(tmp_path, monkeypatch):
 
 def test_the_command(folders):
     head, base = folders
-    done = run("gate", "specs", "--locked", "--against", str(base), cwd=head)
-    assert done.returncode == 0
+    done = run("gate", "specs", "--locked", "--against", str(base), cwd=head, code=0)
     assert "0 weaker (NRS110)" in done.stdout
     edit(head / "specs/stable.nrs.yaml", "arbitrary", "{dwell_time: 1 s}")
-    done = run("gate", "specs", "--no-reports", "--against", str(base), cwd=head)
-    assert done.returncode == 1
+    done = run("gate", "specs", "--no-reports", "--against", str(base), cwd=head, code=1)
     assert "NRS110 missed: switching" in done.stdout
     # What is weaker is no obligation of the spec by itself: the lock file does not hold it.
     assert "NRS110" not in LOCK.read_text()
-    assert run("gate", "specs", "--locked", cwd=head).returncode == 0
-    assert run("gate", "specs", "--against", "nowhere", cwd=head).returncode == 2
+    run("gate", "specs", "--locked", cwd=head, code=0)
+    run("gate", "specs", "--against", "nowhere", cwd=head, code=2)

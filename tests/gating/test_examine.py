@@ -14,7 +14,7 @@ from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
 from nrs_design.proof.evidence import CommonQuadratic
-from nrs_design.proof.evidence.unstable_mode import UnstableMode
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY, Stay, Switching
 from nrs_design.search.certify import certify
@@ -262,7 +262,7 @@ def test_a_delay_that_a_certificate_must_show(tmp_path, delay, wanted, status):
     assert f"{wanted} is wanted" in found.message
     (nothing,) = examiner.certified_goals(None)
     assert nothing.status is Status.INCONCLUSIVE
-    refuted = replace(certificate, statements=(UnstableMode("a", "1.1"),))
+    refuted = replace(certificate, statements=(staying("a"),))
     (found,) = examiner.certified_goals(refuted)
     assert found.status is Status.INCONCLUSIVE
 
@@ -272,7 +272,7 @@ def test_a_delay_that_a_certificate_must_show(tmp_path, delay, wanted, status):
     [
         ("common-quadratic", "alpha"),
         ("common-polynomial, discrete", "rho"),
-        ("unstable-period", None),
+        ("growing-sequence, period", None),
         (None, None),
     ],
 )

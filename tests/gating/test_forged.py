@@ -109,8 +109,7 @@ def test_every_field_of_bounds(axes):
 def test_every_field_of_a_certificate_without_its_spec_is_rejected_or_not_printed(tmp_path):
     source = ROOT / "reports/soft-tissue.cert.json"
     document = json.loads(source.read_text())
-    plain = run("verify", source, cwd=tmp_path)
-    assert plain.returncode == 0
+    run("verify", source, cwd=tmp_path, code=0)
     told = set()
     for path in leaves(document):
         if path[0] in ("modes", "statements", "id") or not isinstance(at(document, path), str):

@@ -4,7 +4,7 @@ import pytest
 
 from nrs_design import errors
 from nrs_design.cli import exit_codes
-from nrs_design.cli.gate import OF_SEVERITY
+from nrs_design.cli.exit_codes import OF_SEVERITY
 from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RULES, WORDS
 from tests.support import ROOT, run

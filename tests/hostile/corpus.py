@@ -123,7 +123,7 @@ def own_modes(*matrices: list[list[int]]) -> dict[str, object]:
 
 
 def unstable(mode: str) -> dict[str, object]:
-    return {"kind": "unstable-mode", "mode": mode}
+    return {"kind": "growing-sequence", "steps": [[mode, "1"]]}
 
 
 CERTIFICATES: dict[str, Callable[[], str | bytes]] = {

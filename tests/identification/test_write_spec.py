@@ -246,6 +246,7 @@ def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec, late):
     assert late.doubts == ()
     (doubt,) = written.actuator.doubts
     assert "dead time of 0.007" in doubt
+    assert "counted from the row that first holds a command" in doubt
     assert written.sampling == loaded.spec.sampling
 
 

@@ -4,14 +4,14 @@ systems", IEEE Transactions on Automatic Control 43(4), 1998.
 Two Hurwitz modes that are unstable under some switching.
 """
 
-from nrs_design.proof.evidence.unstable_mode import is_stable
+from nrs_design.proof.spectrum import is_stable
 
 from .known import known, settle
 
 
 def test_switching_between_the_two_is_refuted_by_a_periodic_signal():
     evidence = settle("branicky").evidence
-    assert evidence.kind == "unstable-period"
+    assert evidence.kind == "growing-sequence"
     assert {name for name, _ in evidence.steps} == {"m0", "m1"}
 
 

@@ -17,7 +17,7 @@ NEAR = Fraction(1, 10**9)
 
 
 def is_passive(b, K, B, T):
-    """Decide the condition by Sturm's theorem, in ``x = tan(omega T/2)^2``.
+    """Decide the condition by the first root, in ``x = tan(omega T/2)^2``.
 
     With ``1 - cos = 2 x/(1 + x)`` and ``(1 - 1/z) H = N/(T z^2)``, it is that ``4 b T x (1 + x)``
     is above the real part of N times the conjugate of ``T z^2``; both have a factor x.

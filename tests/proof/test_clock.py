@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.clock import keeps_turns, on_turn
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import CommonQuadratic, UnstableMode, UnstablePeriod
+from nrs_design.proof.evidence import CommonQuadratic, GrowingSequence
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.switching import Clock
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, matrix, pushed
 
@@ -100,19 +101,19 @@ def test_kept_contact_has_no_free_modes():
 def test_a_signal_out_of_turn_refutes_nothing():
     """Doubling at every third step grows by 9/8, at every fourth it does not."""
     steps = (("m0", Fraction(1)), ("m1", Fraction(2)))
-    growth = UnstablePeriod(steps, 6)
+    growth = GrowingSequence(steps, 6)
     assert growth.find_fault(doubled_in_turns(3)) is None
     assert "not its turn" in growth.find_fault(doubled_in_turns(4))
     assert growth.find_fault(replace(doubled_in_turns(4), clock=None)) is None
-    alone = UnstablePeriod((("m0", Fraction(3)),), 6)
+    alone = GrowingSequence((("m0", Fraction(3)),), 6)
     assert "not its turn" in alone.find_fault(doubled_in_turns(3))
-    late = UnstablePeriod((("m0", Fraction(1)), ("m1", Fraction(3))), 6)
+    late = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(3))), 6)
     assert "growth" in late.find_fault(doubled_in_turns(4))
 
 
 def test_kinds_that_know_no_turns_show_nothing():
     """The first mode is not stable, but is never in force twice in a row."""
     system = doubled_in_turns(4)
-    assert UnstableMode("m0", "2").find_fault(replace(system, clock=None)) is None
-    assert "take turns" in UnstableMode("m0", "2").find_fault(system)
+    assert staying("m0").find_fault(replace(system, clock=None)) is None
+    assert "not its turn" in staying("m0").find_fault(system)
     assert "take turns" in CommonQuadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)

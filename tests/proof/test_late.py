@@ -3,13 +3,13 @@
 import pytest
 
 from nrs_design.proof import evidence
-from nrs_design.proof.evidence.unstable_mode import UnstableMode
+from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
 from nrs_design.proof.late import late_function, late_names
 
 
 def test_a_name_is_found_in_its_home():
-    find = late_names("nrs_design.proof.evidence", {"UnstableMode": "unstable_mode"})
-    assert find("UnstableMode") is UnstableMode
+    find = late_names("nrs_design.proof.evidence", {"CommonQuadratic": "common_quadratic"})
+    assert find("CommonQuadratic") is CommonQuadratic
 
 
 def test_a_name_without_a_home_is_none_of_the_package():

@@ -14,10 +14,8 @@ from nrs_design.proof.evidence import (
     BlockTriangular,
     CommonQuadratic,
     ModeQuadratic,
-    UnstableMixture,
-    UnstableMode,
-    UnstableValue,
 )
+from nrs_design.proof.evidence.growing_sequence import GrowingSequence, staying
 from nrs_design.proof.exact import is_positive_definite
 from nrs_design.proof.mode import Time
 from nrs_design.proof.second_opinion import agrees, finds_positive, has_positive_spectrum
@@ -101,13 +99,13 @@ def test_no_refutation_without_flint(monkeypatch):
 
 
 def test_veto_on_a_stable_mode_called_unstable():
-    assert not agrees(STABLE, UnstableMode("m0", "0"))
+    assert not agrees(STABLE, staying("m0"))
     discrete = family([["1/2"]], time=Time.DISCRETE)
-    assert not agrees(discrete, UnstableMode("m0", "0"))
+    assert not agrees(discrete, staying("m0"))
 
 
 @pytest.mark.parametrize(
-    "example", ["mode-quadratic, dwell", "mode-quadratic, left in time", "unstable-period"]
+    "example", ["mode-quadratic, dwell", "mode-quadratic, left in time", "growing-sequence, period"]
 )
 def test_no_exponential_without_a_taylor_series(monkeypatch, example):
     """An enclosure by flint that is a little off meets with a veto."""
@@ -219,16 +217,16 @@ def test_opinion_on_a_function_with_rounding(rate, holds):
 def test_veto_on_what_is_surely_stable(A, time, is_vetoed):
     calm = [["-1/4", 0], [0, "-1/4"]]
     system = family(calm, A, time=time)
-    assert agrees(system, UnstableMode("m1", "")) is not is_vetoed
-    assert not agrees(system, UnstableMode("m0", ""))
+    assert agrees(system, staying("m1")) is not is_vetoed
+    assert not agrees(system, staying("m0"))
     # A mixture of the two halves, which is A.
     whole = [[2 * Fraction(entry) for entry in row] for row in A]
     halves = family(whole, [[0, 0], [0, 0]], time=time)
-    mixed = UnstableMixture((("m0", HALF), ("m1", HALF)), "")
+    mixed = GrowingSequence((("m0", HALF), ("m1", HALF)))
     assert agrees(halves, mixed) is not is_vetoed
     # The parameter's value in the middle of these.
     ends = replace(halves, switching=PAIR)
-    assert agrees(ends, UnstableValue(HALF, UnstableMode("m0 to m1", ""))) is not is_vetoed
+    assert agrees(ends, replace(staying("m0 to m1"), share=HALF)) is not is_vetoed
 
 
 def test_every_part_of_a_block_triangular_system_is_asked():
@@ -276,12 +274,12 @@ def test_both_ends_of_every_stay_meet_a_series(monkeypatch):
 
 
 def test_every_step_of_a_period_meets_a_series(monkeypatch):
-    system, evidence = genuine("unstable-period")
+    system, evidence = genuine("growing-sequence, period")
     modes = {mode.name: mode.A.fractions()[0][0] for mode in system.modes}
     asked = recorded(monkeypatch, system, evidence)
     assert asked == sorted((modes[name], time) for name, time in evidence.steps)
 
 
-@pytest.mark.parametrize("example", ["mode-quadratic, left", "unstable-period, discrete"])
+@pytest.mark.parametrize("example", ["mode-quadratic, left", "growing-sequence, steps"])
 def test_no_series_where_steps_are_counted(monkeypatch, example):
     assert recorded(monkeypatch, *genuine(example)) == []

@@ -23,6 +23,7 @@ from nrs_design.proof.evidence import (
     ConewiseQuadratic,
     ConstantForce,
     CoupledAxes,
+    GrowingSequence,
     InvariantEllipsoid,
     ModePolynomial,
     ModeQuadratic,
@@ -30,11 +31,6 @@ from nrs_design.proof.evidence import (
     ParameterQuadratic,
     PeriodicQuadratic,
     SaturatedEllipsoid,
-    UnstableContact,
-    UnstableMixture,
-    UnstableMode,
-    UnstablePeriod,
-    UnstableValue,
 )
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -167,7 +163,7 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether what the numbers say is true for this system."""
-    clocked = PeriodicQuadratic | UnstableContact | UnstablePeriod
+    clocked = PeriodicQuadratic | GrowingSequence
     if system.clock is not None and not isinstance(evidence, clocked):
         return False
     return _ORACLES[type(evidence)](system, evidence)
@@ -841,17 +837,34 @@ def _floats(rows) -> np.ndarray:
     return np.array([[float(entry) for entry in row] for row in rows])
 
 
-def _unstable_mode(system: SwitchedSystem, item: UnstableMode) -> bool:
-    A = next((mode.A for mode in system.modes if mode.name == item.mode), None)
+def _growing_sequence(system: SwitchedSystem, item: GrowingSequence) -> bool:
+    if item.share is not None:
+        return _grows_at_value(system, item)
+    if item.factor is not None:
+        return _grows_in_contact(system, item)
+    if item.doublings is not None:
+        return _grows_in_a_period(system, item)
+    if len(item.steps) == 1:
+        return _is_unstable_mode(system, item.steps[0][0])
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    mean = combine(*((w, modes[name]) for name, w in item.steps))
+    proper = all(w >= 0 for _, w in item.steps) and sum(w for _, w in item.steps) == 1
+    return proper and _is_marginal_or_worse(RationalMatrix.from_rows(mean), system.time)
+
+
+def _is_unstable_mode(system: SwitchedSystem, name: str) -> bool:
+    if system.clock is not None:
+        return False
+    A = next((mode.A for mode in system.modes if mode.name == name), None)
     if A is None:
         # In the air, the deflection is not looked at.
-        (whole,) = (m.A.fractions() for m in system.contact.free if m.name == item.mode)
+        (whole,) = (m.A.fractions() for m in system.contact.free if m.name == name)
         A = RationalMatrix.from_rows([row[:-1] for row in whole[:-1]])
-    may_stay = bounds_of(system, item.mode)[1] is None
+    may_stay = bounds_of(system, name)[1] is None
     return may_stay and _is_marginal_or_worse(A, system.time)
 
 
-def _unstable_contact(system: SwitchedSystem, item: UnstableContact) -> bool:
+def _grows_in_contact(system: SwitchedSystem, item: GrowingSequence) -> bool:
     """Follow every eigenvector of the sequence, as contact is lost and made."""
     contact, flights = system.contact, system.flights
     free = () if contact is None else contact.free
@@ -859,7 +872,7 @@ def _unstable_contact(system: SwitchedSystem, item: UnstableContact) -> bool:
     felt = {m.name for m in free} if flights is None else set(flights.flying)
     touching = {m.name for m in system.modes} if flights is None else set(flights.touching)
     matrices = {m.name: np.array(m.A.floats()) for m in (*system.modes, *free)}
-    names = [name for name, count in item.steps for _ in range(count)]
+    names = [name for name, count in item.steps for _ in range(int(count))]
     if system.clock is not None:
         turns = [name in system.clock.first for name in names]
         if len(names) % 2 or turns not in ([True, False] * (len(names) // 2),
@@ -895,13 +908,6 @@ def _eigen(M: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return values, vectors.T
 
 
-def _unstable_mixture(system: SwitchedSystem, item: UnstableMixture) -> bool:
-    modes = {mode.name: mode.A.fractions() for mode in system.modes}
-    mean = combine(*((w, modes[name]) for name, w in item.weights))
-    proper = all(w >= 0 for _, w in item.weights) and sum(w for _, w in item.weights) == 1
-    return proper and _is_marginal_or_worse(RationalMatrix.from_rows(mean), system.time)
-
-
 def _is_marginal_or_worse(A: RationalMatrix, time: Time) -> bool:
     values = np.linalg.eigvals(np.array(A.floats()))
     if time is Time.CONTINUOUS:
@@ -909,7 +915,7 @@ def _is_marginal_or_worse(A: RationalMatrix, time: Time) -> bool:
     return bool(np.abs(values).max() > 1 - 1e-7)
 
 
-def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
+def _grows_in_a_period(system: SwitchedSystem, item: GrowingSequence) -> bool:
     """Walk round the period: switches are edges, stays within their bounds, and it grows."""
     modes = {mode.name: _floats(mode.A.fractions()) for mode in system.modes}
     product_ = np.eye(system.order)
@@ -919,6 +925,8 @@ def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
     for k, (name, dwell) in enumerate(item.steps):
         shortest, longest = bounds_of(system, name)
         following = names[(k + 1) % len(names)]
+        # One mode alone is never left.
+        shortest = shortest if len(names) > 1 else 0
         if dwell <= 0 or dwell < shortest or (longest is not None and dwell > longest):
             return False
         if following == name and longest is not None:
@@ -936,7 +944,7 @@ def _unstable_period(system: SwitchedSystem, item: UnstablePeriod) -> bool:
     return bool(np.abs(np.linalg.eigvals(product_)).max() > 1 - 1e-9)
 
 
-def _takes_turns(system: SwitchedSystem, item: UnstablePeriod) -> bool:
+def _takes_turns(system: SwitchedSystem, item: GrowingSequence) -> bool:
     """Write every step down, and find a step of the round at which the period may begin."""
     assert system.clock is not None
     length = system.clock.length
@@ -947,8 +955,8 @@ def _takes_turns(system: SwitchedSystem, item: UnstablePeriod) -> bool:
     )
 
 
-def _unstable_value(system: SwitchedSystem, item: UnstableValue) -> bool:
-    """The part must hold for the averages of the ends, under the rules that both ends share."""
+def _grows_at_value(system: SwitchedSystem, item: GrowingSequence) -> bool:
+    """It must hold for the averages of the ends, under the rules that both ends share."""
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     names = {}
     for low, high in system.switching.fixed_ends:
@@ -963,12 +971,13 @@ def _unstable_value(system: SwitchedSystem, item: UnstableValue) -> bool:
         )
         for name, (low, high) in names.items()
     )
-    if isinstance(item.part, UnstablePeriod) and not _obeys(system, item.part, names):
+    part = replace(item, share=None)
+    if len(item.steps) > 1 and not _obeys(system, part, names):
         return False
-    return 0 <= item.share <= 1 and holds(replace(system, modes=averages), item.part)
+    return 0 <= item.share <= 1 and holds(replace(system, modes=averages), part)
 
 
-def _obeys(system: SwitchedSystem, part: UnstablePeriod, names: Mapping[str, tuple]) -> bool:
+def _obeys(system: SwitchedSystem, part: GrowingSequence, names: Mapping[str, tuple]) -> bool:
     allowed = system.switching.transitions
     steps = [names[name] for name, _ in part.steps]
     switches = [
@@ -977,6 +986,8 @@ def _obeys(system: SwitchedSystem, part: UnstablePeriod, names: Mapping[str, tup
         if a != b
         for pair in zip(a, b, strict=True)
     ]
+    if part.doublings is None:
+        return not system.switching.dwell_time and allowed is None
     long_enough = all(dwell >= system.switching.dwell_time for _, dwell in part.steps)
     return long_enough and (allowed is None or set(switches) <= set(allowed))
 
@@ -1014,6 +1025,7 @@ _ORACLES = {
     ConewiseQuadratic: _conewise_quadratic,
     ConstantForce: _constant_force,
     CoupledAxes: _coupled_axes,
+    GrowingSequence: _growing_sequence,
     InvariantEllipsoid: _invariant_ellipsoid,
     CommonPolynomial: _common_polynomial,
     NoCommonQuadratic: _no_common_quadratic,
@@ -1022,10 +1034,5 @@ _ORACLES = {
     SaturatedEllipsoid: _saturated_ellipsoid,
     ModePolynomial: _mode_polynomials_decrease,
     ModeQuadratic: _mode_quadratic,
-    UnstableMode: _unstable_mode,
-    UnstableContact: _unstable_contact,
-    UnstableMixture: _unstable_mixture,
-    UnstablePeriod: _unstable_period,
-    UnstableValue: _unstable_value,
     BlockTriangular: _block_triangular,
 }

@@ -66,8 +66,7 @@ def test_a_dwell_time_in_steps_is_not_searched(tmp_path):
 
 @pytest.mark.parametrize("command", ["certify-switching", "report"])
 def test_commands_end_with_them(tmp_path, command):
-    done = run(command, PRINT_ERROR, cwd=tmp_path)
-    assert done.returncode == 1
+    done = run(command, PRINT_ERROR, cwd=tmp_path, code=1)
     said = [line for line in done.stdout.splitlines() if line.startswith("next: ")]
     assert len(said) == 2
     assert done.stdout.splitlines()[-2:] == said

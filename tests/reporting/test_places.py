@@ -13,7 +13,7 @@ from nrs_design.reporting.sections.places import (
     with_line,
 )
 from nrs_design.spec import read_spec
-from nrs_design.switched.assumption_kinds import CONTACT_KEPT, MOTOR, NOT_SAMPLED
+from nrs_design.switched.assumption import kinds
 from tests.support import COMMUTING, SOFT_TISSUE
 
 
@@ -52,8 +52,8 @@ def test_what_a_spec_does_not_say_leads_nowhere():
     assert not isinstance(linked(loaded, "–", "limits"), Linked)
     assert not isinstance(linked(loaded, "1"), Linked)
     assert isinstance(linked(loaded, "1", "limits", "torque"), Linked)
-    assert assumed_at(NOT_SAMPLED) == ()
-    assert (assumed_at(MOTOR), assumed_at(CONTACT_KEPT)) == (("actuator",), ("contact",))
+    assert assumed_at(kinds()["not-sampled"]) == ()
+    assert assumed_at(kinds()["load"]) == ("actuator", "load_inertia")
 
 
 def test_a_mode_leads_to_its_matrix_or_its_controller():

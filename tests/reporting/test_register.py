@@ -5,16 +5,16 @@ import pytest
 from nrs_design.pipeline import run_certification
 from nrs_design.reporting.register import register_of
 from nrs_design.spec import read_spec
-from nrs_design.switched.assumption import Standing
-from nrs_design.switched.assumption_kinds import NOMINAL_MOTOR, TISSUE, UNCOUPLED
+from nrs_design.switched.assumption import Standing, say
 from tests.support import SOFT_TISSUE
 
 AXES = "The axes of the robot do not act on each other."
 
 
 def test_an_assumption_keeps_its_sentence_and_order():
-    motor, axes = register_of([NOMINAL_MOTOR.says("It turns.", "at 1 rpm"), UNCOUPLED.says(AXES)])
-    assert (motor.statement, motor.kind, motor.bound) == ("It turns.", NOMINAL_MOTOR, "at 1 rpm")
+    said = say("motor.joint", "at 1 rpm", motor="m", moving="")
+    motor, axes = register_of([said, say("uncoupled.axes")])
+    assert (motor.statement, motor.kind.id, motor.bound) == (said, "motor", "at 1 rpm")
     assert (axes.statement, axes.bound, axes.standing) == (AXES, "zero coupling", Standing.OPEN)
 
 
@@ -42,6 +42,6 @@ def test_only_measured_records_without_doubt_count_as_a_test(tmp_path, data, dou
     path.write_text(text, encoding="utf-8")
     spec = read_spec(path).spec
     statements = run_certification(read_spec(SOFT_TISSUE)).certification.system.assumptions
-    found = {entry.kind: entry.standing for entry in register_of(statements, spec)}
-    assert found[TISSUE] is standing
-    assert found[NOMINAL_MOTOR] is Standing.OPEN
+    found = {entry.kind.id: entry.standing for entry in register_of(statements, spec)}
+    assert found["tissue"] is standing
+    assert found["nominal-motor"] is Standing.OPEN

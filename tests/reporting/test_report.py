@@ -330,7 +330,7 @@ SAID = {
         [
             "the proof does not need one",
             "whatever switches happen",
-            "positive definite in the mono",
+            "every form is positive definite and every inequality",
         ],
     ),
     "proved": (
@@ -514,7 +514,7 @@ def test_blocks_are_summarized(report):
     table = next(block for block in part.blocks if isinstance(block, Table))
     assert [row[1] for row in table.rows] == ["x1, x2", "x3", "x4"]
     assert [row[2] for row in table.rows] == [
-        "polynomial of degree 4",
+        "common polynomial of degree 4",
         "common quadratic function",
         "common quadratic function",
     ]

@@ -43,7 +43,8 @@ def test_no_assumption_contradicts_what_is_proved(page):
 
 
 def test_every_run_says_whether_signals_are_cut_off_in_it(page):
-    (run,) = (b for b in section(page, "Saturation").blocks if isinstance(b, Illustration))
+    blocks = section(page, "Saturation").blocks
+    _, run = (block for block in blocks if isinstance(block, Illustration))
     assert re.search(
         r"cut off at their limits: the velocity command for \d+ % of this run, the motor command "
         r"never\.",

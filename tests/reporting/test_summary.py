@@ -72,13 +72,13 @@ def test_a_motor_without_ranges_is_not_said_to_have_them(soft_tissue):
     assert "the motor is linear, and has no tolerance" in summary_of(soft_tissue)[1]
 
 
-def test_what_refutes_a_sampled_loop_is_said_to_be_of_modes_that_enclose_it():
-    """In both sentences that say so, and in the claim: a corner is of no motor."""
+def test_a_refuted_sampled_loop_is_said_to_be_an_over_approximation():
+    """In the summary and in the claim: a corner of the enclosure is no real motor."""
     result = run_certification(read_spec(ROOT / "docs/examples/late-force.nrs.yaml"))
     system, evidence = result.certification.system, result.certification.evidence
     assert evidence.shows is Shows.INSTABILITY
-    assert "among modes that enclose what the motor does" in summary_of(result)[0]
-    assert "may be no motor in the range that grows so" in evidence.claim(system)
+    assert "for an over-approximation of the motor" in summary_of(result)[0]
+    assert "no real motor in the range need be unstable" in evidence.claim(system)
 
 
 @pytest.mark.parametrize(

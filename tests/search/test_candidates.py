@@ -36,7 +36,7 @@ ROTATION = [[0, 1], [-1, 0]]
 def test_suspicious_modes_are_examined_exactly():
     singular = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
     evidence, words = outcome(examine_suspicious_modes, family([[-1, 0], [0, -1]], singular))
-    assert evidence.mode == "m1"
+    assert evidence.steps[0][0] == "m1"
     assert words == "mode m1 is not stable"
     assert outcome(examine_suspicious_modes, GOOD) == (None, "none")
 
@@ -50,7 +50,7 @@ def test_a_suspicious_mode_can_be_innocent():
 
 def test_every_mode_is_examined():
     assert outcome(examine_every_mode, GOOD) == (None, "2 modes tested exactly, all stable")
-    assert outcome(examine_every_mode, family(ROTATION))[0].mode == "m0"
+    assert outcome(examine_every_mode, family(ROTATION))[0].steps[0][0] == "m0"
 
 
 def test_modes_that_must_be_left_are_not_called_stable():
@@ -101,8 +101,8 @@ SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
     [
         (search_obstruction, dayawansa_martin(6), "no-common-quadratic"),
         (partial(search_polynomial, degree=2), dayawansa_martin(6), "common-polynomial"),
-        (search_period, dayawansa_martin(12), "unstable-period"),
-        (search_mixture, SHEARS, "unstable-mixture"),
+        (search_period, dayawansa_martin(12), "growing-sequence"),
+        (search_mixture, SHEARS, "growing-sequence"),
         (
             search_parameter_quadratic,
             replace(dayawansa_martin(12), switching=FIXED_ENDS),

@@ -119,7 +119,7 @@ def bad_mode(evidence):
     """Return the name of the mode that refutes, maybe by one of its blocks."""
     if isinstance(evidence, BlockTriangular):
         ((_, evidence),) = evidence.parts
-    return evidence.mode
+    return evidence.steps[0][0]
 
 
 class TestNearTheThreshold:
@@ -243,7 +243,7 @@ class TestModes:
     def test_many_modes_with_one_bad_one(self):
         matrices = [[[-1, Fraction(i, 300)], [0, -1]] for i in range(300)]
         matrices[217] = SINGULAR
-        assert settle(family(*matrices)).evidence.mode == "m217"
+        assert settle(family(*matrices)).evidence.steps[0][0] == "m217"
 
     def test_many_states(self):
         A = [[-2 if i == j else int(j == i + 1) for j in range(20)] for i in range(20)]

@@ -5,7 +5,8 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import ConewiseModeQuadratic
-from nrs_design.reporting.kinds.conewise_mode_quadratic import largest_norm
+from nrs_design.reporting.evidence.norms import largest_norm
+from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.search import conewise_mode_quadratic
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.conewise_mode_quadratic import ConewiseModeProgram, search_conewise_modes
@@ -90,7 +91,7 @@ def test_runs_through_contact_and_flight_never_leave_the_bound():
     """1,000 runs of 300 samples; the stiffness is anywhere in its range at every sample."""
     system = thesis_robot(("20", "42.5"), BOTH, "0.01", sampling="{period: 2 ms, delay: 2}")
     evidence = found(search_conewise_modes, system, optimize_rate=False)
-    norm = largest_norm(*(_floats(part) for part in (evidence.touching, evidence.flying)))
+    norm = largest_norm(offer_of(evidence).forms, system.order)
     maps = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
     free = [np.array(mode.A.floats()) for mode in system.contact.free if "E-min" in mode.name]
     ends = [[maps[f"{c}/soft/k-{end}/E-min"] for end in ("min", "max")] for c in ("c0", "c1")]

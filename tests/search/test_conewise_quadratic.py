@@ -10,7 +10,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import ConewiseModeQuadratic, ConewiseQuadratic, UnstableMode
+from nrs_design.proof.evidence import ConewiseModeQuadratic, ConewiseQuadratic
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.conewise_quadratic import search_conewise
@@ -133,5 +133,5 @@ def test_five_samples_of_delay_are_refuted():
     system = thesis_robot(SOFT, BOTH, "0.01", sampling="{period: 2 ms, delay: 5}")
     result = certify(system, limits=Limits(optimize_rate=False))
     assert result.verdict is Verdict.REFUTED
-    assert isinstance(result.evidence, UnstableMode)
-    assert result.evidence.mode.startswith("c1/")
+    assert result.evidence.names_unstable_mode
+    assert result.evidence.steps[0][0].startswith("c1/")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.proof.evidence import Shows, UnstablePeriod
+from nrs_design.proof.evidence import GrowingSequence, Shows
 from nrs_design.proof.switching import Switching
 from nrs_design.search import common_quadratic, gradient, mode_quadratic, obstruction, polynomial
 from nrs_design.search.certification import Limits
@@ -96,7 +96,7 @@ def test_every_rung_says_how_it_ended():
         evidence, words = outcome(search, branicky())
         assert words
         assert evidence is None or evidence.find_fault(branicky()) is None
-    assert isinstance(outcome(search_period, branicky())[0], UnstablePeriod)
+    assert isinstance(outcome(search_period, branicky())[0], GrowingSequence)
 
 
 def test_a_lift_beyond_patience_is_not_tried():

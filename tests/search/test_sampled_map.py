@@ -8,7 +8,6 @@ proved, and the smallest one along which its simulated signals grew.
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.evidence import UnstablePeriod
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
@@ -59,7 +58,7 @@ def test_a_stiffness_that_moves_along_with_the_switches_makes_it_grow():
     """Every mode of the family is stable, and so is every word of up to four steps."""
     system = loop("0.01", 0, 57.5)
     found = certify(system, Method.PERIOD, QUICK).evidence
-    assert isinstance(found, UnstablePeriod)
+    assert found.doublings is not None
     assert len({name.rpartition("/")[0] for name, _ in found.steps}) > 1
     assert sum(steps for _, steps in found.steps) > 4
     assert "some solution grow without bound" in found.claim(system)

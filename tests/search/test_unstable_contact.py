@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import UnstableContact, UnstableMode
+from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import certify, first_accepted, refuted_at_once
@@ -46,14 +46,14 @@ def drawn(seed: int) -> SwitchedSystem:
     )
 
 
-def grown(system: SwitchedSystem, evidence: UnstableContact, times: int) -> float:
+def grown(system: SwitchedSystem, evidence: GrowingSequence, times: int) -> float:
     """Follow the witness by the words: the deflection alone says whether there is contact.
 
     Return how many times larger motion and penetration are after some periods.
     """
     modes = (*system.modes, *system.contact.free)
     matrices = {mode.name: np.array(mode.A.floats(), dtype=float) for mode in modes}
-    names = [name for name, count in evidence.steps for _ in range(count)]
+    names = [name for name, count in evidence.steps for _ in range(int(count))]
     M = np.eye(3)
     for name in names:
         M = matrices[name] @ M
@@ -101,8 +101,8 @@ def test_what_decays_has_no_witness():
 
 def test_free_motion_is_examined():
     result = certify(drifting())
-    assert isinstance(result.evidence, UnstableMode)
-    assert result.evidence.mode == "free"
+    assert result.evidence.names_unstable_mode
+    assert result.evidence.steps[0][0] == "free"
     assert result.verdict is Verdict.REFUTED
 
 
@@ -121,7 +121,7 @@ def test_growth_in_kept_contact_leaves_the_verdict_open():
         result = certify(system, method)
         assert (result.verdict, result.refuted_in) == (Verdict.INCONCLUSIVE, "in kept contact")
         assert result.evidence is None
-        assert [item.kind for item in result.statements] == ["unstable-mode"]
+        assert [item.kind for item in result.statements] == ["growing-sequence"]
         # What speaks of kept contact is not searched any further.
         assert result.attempts[-1].step == "growth with loss of contact"
     assert refuted_at_once(system) == "in kept contact"

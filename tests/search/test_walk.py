@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import Limits, Verdict, certify
@@ -44,7 +44,7 @@ def test_known_limit_of_the_dwell_time(dwell):
     assert found.verdict is (Verdict.REFUTED if dwell <= 4 else Verdict.PROVED)
     assert holds(system, found.evidence)
     if dwell <= 4:
-        assert isinstance(found.evidence, UnstablePeriod)
+        assert found.evidence.doublings is not None
         assert all(steps >= dwell for _, steps in found.evidence.steps)
 
 
@@ -52,7 +52,7 @@ def test_known_limit_of_the_dwell_time(dwell):
     "steps", [(3, 4), (4, 3), (2, 5), (3, 3), (1, 1)], ids=lambda steps: "-".join(map(str, steps))
 )
 def test_a_cycle_that_breaks_the_dwell_time_refutes_nothing(steps):
-    grows = UnstablePeriod(tuple(zip(("m0", "m1"), map(Fraction, steps), strict=True)), 12)
+    grows = GrowingSequence(tuple(zip(("m0", "m1"), map(Fraction, steps), strict=True)), 12)
     assert grows.find_fault(shears(1)) is None
     assert grows.find_fault(shears(4)) is not None
 
@@ -62,7 +62,7 @@ def test_legs_longer_than_the_dwell_time():
     turn = [["0.98623", "-0.08628"], ["0.08628", "0.98623"]]
     system = family(turn, [["1/2", 2], [0, "1/2"]], time=Time.DISCRETE)
     system = replace(system, switching=Switching(Fraction(2)))
-    short = UnstablePeriod((("m0", Fraction(2)), ("m1", Fraction(2))), 12)
+    short = GrowingSequence((("m0", Fraction(2)), ("m1", Fraction(2))), 12)
     assert short.find_fault(system) is not None
     found = search(system)
     assert found.find_fault(system) is None

@@ -65,50 +65,8 @@ def test_overshoot_and_steady_state():
     assert metrics.steady_state_error(t, 0.9 * y, -0.3) == pytest.approx(0.1, abs=1e-3)
 
 
-def test_safe_speed_is_the_inverse_of_the_criterion():
-    """Bicchi and Tonietti 2004, eq. 2, as thesis 2.15; 2.17 with its exponent."""
-    factor = metrics.injury_factor(1.0, 4.0, 25_000.0)
-    assert factor == pytest.approx(2 * (2 / np.pi) ** 1.5 * 6250**0.75 * 0.2**1.75)
-    assert metrics.head_injury(factor, metrics.safe_speed(factor, 100.0)) == pytest.approx(100)
-    assert metrics.head_injury(factor, 2.0) / metrics.head_injury(factor, 1.0) == pytest.approx(
-        2**2.5
-    )
-    with pytest.raises(ValueError, match="positive"):
-        metrics.injury_factor(1.0, 0.0, 1.0)
-
-
-def test_head_injury_in_round_numbers():
-    """16^0.75 is 8, (1/16)^1.75 is 1/128, 4^2.5 is 32: 2.15 leaves 4 (2/pi)^1.5."""
-    factor = metrics.injury_factor(1.0, 15.0, 240.0)
-    assert metrics.head_injury(factor, 4.0) == pytest.approx(4 * (2 / math.pi) ** 1.5)
-    assert metrics.safe_speed(factor, 4 * (2 / math.pi) ** 1.5) == pytest.approx(4)
-
-
 def test_peak_and_mean_speed():
     assert metrics.peak(-LINE) == 8
     # There and back: |v| of a straight line to 2 rad/s and of one to -2.
     t, v = np.array([0.0, 1.0, 1.0, 2.0]), np.array([0.0, 2.0, 0.0, -2.0])
     assert metrics.mean_speed(t, v) == pytest.approx(1)
-
-
-def test_attention_free_time_and_fan_out():
-    """Thesis 2.10 to 2.13: a robot that needs 1 s in 4 leaves 3/4 free, and three others."""
-    demand = metrics.attention_demand(1.0, 3.0)
-    assert (demand, metrics.free_time(demand), metrics.fan_out(demand)) == (0.25, 0.75, 4.0)
-    assert metrics.fan_out(demand, 0.5) == 2.0
-    assert metrics.attention_demand(2.0, 0.0) == metrics.fan_out(1.0) == 1.0
-    assert metrics.fan_out(0.0) == math.inf
-
-
-@pytest.mark.parametrize("times", [(0.0, 0.0), (-1.0, 2.0), (1.0, math.inf), (math.nan, 1.0)])
-def test_times_of_attention_are_checked(times):
-    with pytest.raises(ValueError, match="not both zero"):
-        metrics.attention_demand(*times)
-
-
-@pytest.mark.parametrize("share", [-0.1, 1.1, math.nan])
-def test_shares_are_checked(share):
-    with pytest.raises(ValueError, match="attention demand is a share"):
-        metrics.free_time(share)
-    with pytest.raises(ValueError, match="human reliability is a share"):
-        metrics.fan_out(0.5, share)

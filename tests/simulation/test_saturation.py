@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from nrs_design.simulation.contact import clipped
-from nrs_design.simulation.norms import quadratic_norm
-from nrs_design.simulation.saturation import share_cut_off, worst_saturated
+from nrs_design.simulation.greedy import greedy_run
+from nrs_design.simulation.norms import clipped, quadratic_norm
+from nrs_design.simulation.saturation import share_cut_off
 from tests.proof.systems import genuine, pushed_away
 from tests.search.test_saturated_ellipsoid import found, thesis
 
@@ -40,7 +40,7 @@ def test_no_run_from_the_edge_leaves(dampings, lost):
         x *= np.sign(x[-1])
         x /= norm(x[None])[0]
         choose = norm if i < len(outward) else lambda states: rng.random(len(states))
-        run = worst_saturated(system, choose, x, 5e-4, 500)
+        run = greedy_run(system, choose, x, 5e-4, 500)
         values = norm(run.state)
         bound = np.exp(-float(evidence.rate) * run.time)
         assert (values <= bound * (1 + 1e-6)).all()
@@ -62,7 +62,7 @@ def test_runs_from_far_beyond_the_region_come_to_rest(lost):
     """From 60 N m, at the speed limit: nothing is proved of it, and it takes ten seconds."""
     system = thesis("2.15", "1.04", lost=lost)
     norm, start = quadratic_norm(np.diag([1e-9, 1e-3, 1e-9, 1.0])), np.array([0, 0, 0, 60 / 43])
-    run = worst_saturated(system, norm, start, 1e-3, 16000)
+    run = greedy_run(system, norm, start, 1e-3, 16000)
     assert run.state[8000, -1] > 0.2
     assert np.abs(run.state[-2000:, :3]).max() < 1e-3
     assert run.state[-2000:, -1].max() < 1e-3
@@ -73,5 +73,5 @@ def test_the_known_region_is_that_of_the_runs():
     assert system == pushed_away()
     norm = quadratic_norm(np.eye(1))
     for start, grows in ((0.99, False), (1.01, True)):
-        run = worst_saturated(system, norm, np.array([start]), 0.01, 1500)
+        run = greedy_run(system, norm, np.array([start]), 0.01, 1500)
         assert (abs(run.state[-1, 0]) > start) == grows

@@ -12,12 +12,10 @@ from nrs_design.simulation.switched import (
     alone,
     fine_step,
     mode_eigenvalues,
-    norms,
     sampled_direction,
     simulate_switching,
     unstable_run,
     worst_direction,
-    worst_switching,
 )
 from tests.simulation.systems import system
 
@@ -49,20 +47,6 @@ def test_slowest_direction_decays_at_the_smallest_rate():
     assert max(slope) == pytest.approx(-2 * mode_rates(COMMUTING, Q).min())
 
 
-def test_adversary_is_at_least_as_bad_as_any_single_mode():
-    norm, x = quadratic_norm(np.diag([1.0, 5.0])), np.array([1.0, 0.0])
-    dayawansa_martin = system([[-1, -1], [1, -1]], [[-1, -5], [1, -1]])
-    run = worst_switching(dayawansa_martin, norm, x, 0.1, 1)
-    for mode in range(2):
-        single = simulate_switching(dayawansa_martin, np.array([mode]), x, 0.1)
-        assert norms(run, norm)[-1] >= norms(single, norm)[-1]
-
-
-def test_norms_start_at_one():
-    run = simulate_switching(COMMUTING, np.array([0]), np.array([3.0, 4.0]), 1.0)
-    assert norms(run, EUCLIDEAN) == pytest.approx([1.0, math.exp(-1)])
-
-
 def test_step_resolves_the_fastest_eigenvalue():
     assert fine_step(system([[-50]])) == pytest.approx(0.002)
     assert fine_step(system([[0]])) == 0.1
@@ -78,12 +62,12 @@ def test_unstable_run_grows_a_hundredfold(time):
     unstable = system([[-3, 0], [0, "3/2"]], [[2, 0], [0, "3/2"]], time=time)
     run = unstable_run(unstable, 1)
     assert set(run.mode.tolist()) == {1}
-    assert norms(run, EUCLIDEAN)[-1] >= 99
+    assert EUCLIDEAN(run.state)[-1] >= 99
 
 
 def test_marginal_run_keeps_its_size():
     run = unstable_run(system([[0, -1], [1, 0]]), 0)
-    assert norms(run, EUCLIDEAN) == pytest.approx(1.0)
+    assert EUCLIDEAN(run.state) == pytest.approx(1.0)
     assert run.time[-1] == pytest.approx(62.8)
 
 

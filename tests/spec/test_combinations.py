@@ -7,9 +7,11 @@ from string import Formatter
 
 import pytest
 
-from nrs_design.errors import SpecError
+from nrs_design.errors import AssemblyError, SpecError
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.design import run_design
+from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec import features as f
-from nrs_design.spec import parse_spec
 from nrs_design.spec.check import Row
 from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
@@ -25,6 +27,7 @@ IMPEDANCE = {
 FORCE = {"type": "force", "environment": "soft", "proportional_gain": "0.02 rad/(N*m)"}
 PI = FORCE | {"type": "pi-force", "integral_gain": "0.5 rad/(N*m*s)"}
 ELASTIC = {"model": "elastic", "stiffness": "43 N*m/rad"}
+PARALLEL = PI | {"type": "parallel"}
 SAMPLING = {"period": "2 ms", "delay": 0}
 LOAD = {"load_inertia": "1.213 kg*m^2"}
 TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
@@ -52,9 +55,7 @@ def first(**more):
 # What a spec must say to have a feature, merged into the plainest one, in this order.
 CHANGES = {
     f.OTHERS: {"controllers": {"second": FORCE}},
-    f.PARALLEL: {
-        "controllers": {"first": FORCE | {"type": "parallel", "integral_gain": "0.2 rad/(N*m*s)"}}
-    },
+    f.PARALLEL: {"controllers": {"first": PARALLEL, "second": PARALLEL}},
     f.BLEEDING: {"controllers": {"second": PI}, "idle_states": {"decay": "20 1/s"}},
     f.OFFSET: {"controllers": {"second": FORCE | {"offset": "measured"}}},
     f.IDLE: {"idle_states": {"decay": "20 1/s"}},

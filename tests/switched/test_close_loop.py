@@ -30,6 +30,7 @@ from nrs_design.models.plant import Plant
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.modes import velocity_mode
+from nrs_design.switched.shared_state import shared_state
 from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
 F = Fraction
@@ -46,7 +47,7 @@ def assembled(*controllers, coordinates="deflection", contact=None):
     )
     plant = Plant(Actuator(F(1), F(1)), (soft, hand))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
-    return close_loop("robot", plant, LOOP, design, coordinates, contact=contact)
+    return close_loop("robot", shared_state(plant, LOOP, design, coordinates), contact=contact)
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +203,7 @@ def viscoelastic(*contacts, Mt="0.01", coordinates="deflection", law=None):
     law = law or Admittance(F(Mt), F(2))
     controller = Controller("in", law, contacts[0], contacts)
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", plant, LOOP, design, coordinates)
+    return close_loop("robot", shared_state(plant, LOOP, design, coordinates))
 
 
 def product_of(*polynomials):
@@ -355,4 +356,4 @@ def touched_at_once(other, *, losable):
     plant = Plant(Actuator(F(1), F(1)), (soft, other, both))
     controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
-    return close_loop("robot", plant, LOOP, design, "deflection")
+    return close_loop("robot", shared_state(plant, LOOP, design, "deflection"))

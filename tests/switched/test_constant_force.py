@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from nrs_design.switched.assumption_kinds import INPUTS, TISSUE
 from nrs_design.switched.constant_force import with_constant_force
 from tests.proof.systems import bouncing
 
@@ -13,7 +12,7 @@ def test_force_and_stiffness_are_said_to_be_constant():
     force, stiffness = system.assumptions
     assert "one Fd > 0 that does not change" in force
     assert "does not change" in stiffness
-    assert [force.kind, stiffness.kind] == [INPUTS, TISSUE]
+    assert [force.id, stiffness.id] == ["constant-force.force", "constant-force.stiffness"]
 
 
 def test_where_contact_is_kept_nothing_changes():

@@ -11,7 +11,7 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
-from nrs_design.proof.evidence import CoupledAxes, UnstableMode
+from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.certify import Limits, certify
 from nrs_design.switched.assumptions import UNCOUPLED
 from nrs_design.switched.coupled import AxesCoupling, couple_axes
@@ -144,7 +144,7 @@ def test_an_axis_that_is_unstable_by_itself_is_refuted():
     stiff = thesis_robot(("41.5", "120"), ("1.04",), "0.01", load=NO_LOAD)
     found = certify(couple_axes(stiff, LINKS), limits=ANY_RATE)
     assert found.verdict is Verdict.REFUTED
-    assert isinstance(found.statements[0], UnstableMode)
+    assert found.statements[0].names_unstable_mode
     assert "on which the others do not act" in found.statements[0].claim(found.system)
 
 

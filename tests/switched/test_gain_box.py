@@ -15,7 +15,7 @@ from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import realize
 from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
-from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic, UnstableMode
+from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.spec.interval import Interval
@@ -82,8 +82,8 @@ class TestPublished:
             found = certify(system, limits=Limits(optimize_rate=False))
             assert found.verdict is verdict
             if verdict is Verdict.REFUTED:
-                assert isinstance(found.evidence, UnstableMode)
-                assert found.evidence.mode == "insertion/soft/Bt-min"
+                assert found.evidence.names_unstable_mode
+                assert found.evidence.steps[0][0] == "insertion/soft/Bt-min"
 
 
 class TestCorners:

@@ -11,7 +11,7 @@ import pytest
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import SpecError
 from nrs_design.pipeline import run_analysis, run_certification, run_design
-from nrs_design.proof.evidence import UnstablePeriod
+from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.switched.assemble import assemble
@@ -122,7 +122,7 @@ def test_a_mass_that_changes_too_much_is_refuted():
     # Found by the search for periods, with more digits.
     names = "lively/hand/k-min/b-min/m-max", "lively/hand/k-max/b-min/m-min"
     period = zip(names, (Fraction(1, 2), Fraction(1, 4)), strict=True)
-    assert UnstablePeriod(tuple(period), 4).find_fault(system) is None
+    assert GrowingSequence(tuple(period), 4).find_fault(system) is None
 
 
 @pytest.mark.parametrize(

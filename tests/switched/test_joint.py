@@ -12,10 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.evidence import ConewiseQuadratic, UnstablePeriod
+from nrs_design.proof.evidence import ConewiseQuadratic, GrowingSequence
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
-from nrs_design.switched.assumption_kinds import MOTOR
 from tests.proof.truth import combine
 from tests.search.support import thesis_robot
 
@@ -54,7 +53,7 @@ def test_a_tolerance_of_27_percent_is_proved_for_opposite_corners_and_false_for_
     # Found by the search for periods, with more digits.
     names = "c1/soft/k-max/Km-min/tau-max", "c1/soft/k-max/Km-max/tau-min"
     period = zip(names, (Fraction(241, 4096), Fraction(181, 8192)), strict=True)
-    assert UnstablePeriod(tuple(period), 12).find_fault(system) is None
+    assert GrowingSequence(tuple(period), 12).find_fault(system) is None
 
 
 def test_states_and_assumptions():
@@ -66,7 +65,7 @@ def test_states_and_assumptions():
     assert "its gain stays in [0.0004744866, 0.0004938534] rad/s/rpm" in text
     assert "its time constant stays in [0.034398, 0.035802] s, and may change" in text
     assert "against an inertia of 1.213 kg*m^2" in text
-    assert system.assumptions[0].kind is MOTOR
+    assert system.assumptions[0].id == "motor.joint"
     unloaded = thesis_robot(SOFT, BOTH, "0.01", "0.02")
     assert "does not slow the motor" in " ".join(unloaded.assumptions)
 

@@ -28,7 +28,6 @@ from nrs_design.switched.modes import (
     to_force_coordinates,
     velocity_mode,
     with_idle,
-    with_memories,
 )
 from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
@@ -288,19 +287,13 @@ class TestOwnStates:
         assert polynomial(rows) == list(np.polyadd(objects(*LOOP.denominator, 0), loop))
 
 
-class TestPlaces:
-    """Where states stand that a mode does not use."""
-
-    def test_idle_states_decay_alone(self):
-        assert with_idle([[F(1), F(2)], [F(3), F(4)]], (0, 1), 4, F(5)) == [
-            [1, 2, 0, 0],
-            [3, 4, 0, 0],
-            [0, 0, -5, 0],
-            [0, 0, 0, -5],
-        ]
-
-    def test_memories_stand_in_the_order_of_the_environments(self):
-        rows = [[F(1), F(2)], [F(3), F(4)]]
-        creeps = {"nose": F(7), "concha": F(8)}
-        assert with_memories(rows, "concha", creeps) == [[1, 0, 2], [0, -7, 0], [3, 0, 4]]
-        assert with_memories([[F(1)]], None, {"nose": F(7)}) == [[1, 0], [0, -7]]
+@pytest.mark.parametrize(
+    ("rates", "expected"),
+    [
+        ({2: 5, 3: 5}, [[1, 2, 0, 0], [3, 4, 0, 0], [0, 0, -5, 0], [0, 0, 0, -5]]),
+        ({1: 7}, [[1, 0, 2], [0, -7, 0], [3, 0, 4]]),
+        ({}, [[1, 2], [3, 4]]),
+    ],
+)
+def test_idle_states_decay_alone(rates, expected):
+    assert with_idle([[F(1), F(2)], [F(3), F(4)]], rates) == expected

@@ -17,8 +17,8 @@ from nrs_design.pipeline import run_certification, run_design
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.switched.assemble import assemble
-from nrs_design.switched.modes import position_mode
-from nrs_design.switched.offset import lead, to_motion
+from nrs_design.switched.modes import position_mode, with_last
+from nrs_design.switched.offset import lead
 from tests.support import FORCE_LIMIT, ROBOT
 from tests.switched.support import LOOP, MOTION, polynomial
 
@@ -63,7 +63,7 @@ def test_lead_is_command_less_position(numerator, denominator):
 def test_modes_keep_their_poles():
     force, soft = ProportionalForce(F("0.02")), Elastic(F("43.0356"))
     for rows in (position_mode(MOTION, PositionControl()), position_mode(MOTION, force, soft)):
-        assert polynomial(to_motion(rows, MOTION)) == polynomial(rows)
+        assert polynomial(with_last(rows, lead(MOTION))) == polynomial(rows)
 
 
 def test_a_loop_that_does_not_rest_at_its_command_is_refused():
@@ -107,7 +107,7 @@ def test_run_with_the_memory_itself(seed, offset):
         "position": position_mode(MOTION, PositionControl()),
         "force": position_mode(MOTION, ProportionalForce(F("0.02")), Elastic(F(43))),
     }
-    modes = {name: np.array(to_motion(A, MOTION), float) for name, A in rows.items()}
+    modes = {name: np.array(with_last(A, lead(MOTION)), float) for name, A in rows.items()}
     y = np.array(lead(MOTION), float)
 
     def coordinates(xi, u):

@@ -103,9 +103,13 @@ TRIANGLE = Box(
 
 
 def test_a_triangle_has_three_corners():
-    names = [name for name, _ in corners(TRIANGLE, lambda x, y: x + y)]
-    assert names == ["m/x-min/y-min", "m/x-min/y-max", "m/x-max/y-max"]
-    assert [(v["x"], v["y"]) for v in TRIANGLE.values()] == [(1, -1), (2, F(7, 2)), (3, 4)]
+    found = {name: (v["x"], v["y"]) for name, v in TRIANGLE.named_values("m")}
+    assert found == {
+        "m/x-min/y-min": (1, -1),
+        "m/x-min/y-max": (2, F(7, 2)),
+        "m/x-max/y-max": (3, 4),
+    }
+    assert [name for name, _ in corners(TRIANGLE, lambda x, y: x + y)] == [*found]
 
 
 def test_what_is_beside_a_triangle_has_its_own_corners():

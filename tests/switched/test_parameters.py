@@ -11,11 +11,8 @@ from nrs_design.spec import parse_spec
 from nrs_design.spec.interval import Interval
 from nrs_design.switched.assemble import assemble_from_text
 from nrs_design.switched.parameters import (
-    Corner,
     UncertainParameter,
-    check_affine,
     corner_modes,
-    pair_ends,
 )
 
 ENTRIES = ("0", "k", "-2 - k", "3/4*k - m + 0.5", "(k - r)/3", "m", "1/6", "r + m + k")
@@ -122,7 +119,7 @@ def test_every_matrix_of_the_box_is_a_mean_of_corners(entries, ends, shares, var
         for share, (n, (low, high)) in zip(shares, ranges.items(), strict=True)
     }
     weights = dict(zip(names, shares, strict=True))
-    corners, _ = corner_modes(spec.modes[0], parameters)
+    corners = corner_modes(spec.modes[0], parameters)
     mean = [[Fraction(0)] * 2 for _ in range(2)]
     for corner in corners:
         weight = Fraction(1)
@@ -136,13 +133,12 @@ def test_every_matrix_of_the_box_is_a_mean_of_corners(entries, ends, shares, var
 
 
 def test_a_bent_box_is_a_defect():
-    corners = [[[Fraction(0)]], [[Fraction(2)]]]
-    check_affine([[Fraction(1)]], corners, "a")
-    with pytest.raises(InternalError, match="entry 1, 1 of mode a is not affine"):
-        check_affine([[Fraction(1, 2)]], corners, "a")
+    class Bent:
+        name, parameters = "a", {"k"}
 
+        def matrix(self, values):
+            return [[values["k"] ** 2]]
 
-def test_ends_are_paired_in_order():
-    corners = [Corner("a", "min"), Corner("b", "max"), Corner("c", "min"), Corner("d", "max")]
-    assert pair_ends(corners) == (("a", "b"), ("c", "d"))
-    assert pair_ends([Corner("a"), Corner("b")]) == ()
+    k = UncertainParameter("k", Interval(Fraction(1), Fraction(0), Fraction(2)), varies=True)
+    with pytest.raises(InternalError, match="mode a is not affine"):
+        corner_modes(Bent(), [k])

@@ -10,7 +10,6 @@ from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.simulation.saturation import saturated_rates
 from nrs_design.spec import read_spec
-from nrs_design.switched.assumption_kinds import LIMITED, NOT_SAMPLED_BUT_LIMITED
 from tests.support import ROOT
 
 TEXT = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
@@ -119,10 +118,10 @@ def test_the_largest_force_of_the_example(tmp_path):
 
 def test_what_is_taken_for_granted(tmp_path):
     system = system_of(tmp_path, TEXT)
-    (said,) = [text for text in system.assumptions if text.kind is LIMITED]
+    (said,) = [text for text in system.assumptions if text.kind.id == "limited"]
     assert "cut off at 0.139627 rad/s (rounded up)" in said
     assert "likewise at 2000 rpm" in said
-    (left,) = [text for text in system.assumptions if text.kind is NOT_SAMPLED_BUT_LIMITED]
+    (left,) = [text for text in system.assumptions if text.kind.id == "not-sampled-but-limited"]
     assert "friction are not modelled, saturation only where a statement says so" in left
     # Its name must not contradict what is proved of saturation.
     assert left.kind.name == "no sampling or friction, and saturation only as stated"

@@ -17,20 +17,14 @@ from nrs_design.spec.controllers import Command, ForceControllerSpec
 
 @dataclass(frozen=True, slots=True)
 class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
-    """Position correction ``Kp (Fd - F)`` of the force mode (thesis 6.32).
-
-    Parameters
-    ----------
-    Kp : Fraction
-        In rad/(N m).
-    """
+    """Position correction ``Kp (Fd - F)`` of the force mode (thesis 6.32)."""
 
     name: ClassVar[str] = "force"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)"})
     commands: ClassVar[Command] = ForceControllerSpec.commands
     holds_hand: ClassVar[bool] = True
 
-    Kp: Fraction
+    Kp: Fraction  # In rad/(N m)
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
         """Return ``-Kp F``: in contact with a spring ``A = Ap - Bp Kp k Cp`` (thesis 6.46)."""

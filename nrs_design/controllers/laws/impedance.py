@@ -32,15 +32,6 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
 
     With a spring it is ``vm = F / (Mt s + Bt + Kt/s)`` (thesis 2.2.6.2): the spring acts on the
     integral of vm, which is by how much the position reference has been moved.
-
-    Parameters
-    ----------
-    Mt : Fraction
-        Virtual inertia in kg m^2; zero makes the law static.
-    Bt : Fraction
-        Virtual damping in N m s/rad; positive.
-    Kt : Fraction
-        Virtual stiffness in N m/rad; zero is no spring, and then no gain of the law.
     """
 
     name: ClassVar[str] = "impedance"
@@ -49,8 +40,9 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     )
     commands: ClassVar[Command] = ImpedanceControllerSpec.commands
 
-    Mt: Fraction
-    Bt: Fraction
+    Mt: Fraction  # Virtual inertia in kg m^2; zero makes the law static
+    Bt: Fraction  # Virtual damping in N m s/rad; positive
+    # Virtual stiffness in N m/rad; zero is no spring, and then no gain of the law.
     Kt: Fraction = Fraction(0)
 
     @property

@@ -24,15 +24,7 @@ from nrs_design.spec.controllers import Command, IntegralControllerSpec
 
 @dataclass(frozen=True, slots=True)
 class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
-    """Position correction ``Kp (Fd - F) + w`` with ``w' = Ki (Fd - F)``.
-
-    Parameters
-    ----------
-    Kp : Fraction
-        In rad/(N m).
-    Ki : Fraction
-        In rad/(N m s).
-    """
+    """Position correction ``Kp (Fd - F) + w`` with ``w' = Ki (Fd - F)``."""
 
     name: ClassVar[str] = "pi-force"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"})
@@ -40,8 +32,8 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
     holds_hand: ClassVar[bool] = True
     bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
 
-    Kp: Fraction
-    Ki: Fraction
+    Kp: Fraction  # In rad/(N m)
+    Ki: Fraction  # In rad/(N m s)
 
     @property
     def states(self) -> tuple[str, ...]:

@@ -15,21 +15,13 @@ from nrs_design.controllers.sampled import SampledMotion
 
 @dataclass(frozen=True, slots=True)
 class ProportionalDerivative(AbstractLaw):
-    """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta a command.
-
-    Parameters
-    ----------
-    Kp : Fraction
-        In rpm/rad, or whatever the motor takes instead of rpm.
-    Kd : Fraction
-        In rpm s/rad, likewise.
-    """
+    """Motion control ``delta = Kp e + Kd e'`` (thesis 4.3), e in rad, delta a command."""
 
     name: ClassVar[str] = "motion"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rpm/rad", "Kd": "rpm*s/rad"})
 
-    Kp: Fraction
-    Kd: Fraction
+    Kp: Fraction  # In rpm/rad, or whatever the motor takes instead of rpm
+    Kd: Fraction  # In rpm s/rad, likewise
 
     @staticmethod
     def units_in(command: str) -> Mapping[str, str]:

@@ -16,22 +16,14 @@ from nrs_design.spec.controllers import Command, ParallelControllerSpec
 
 @dataclass(frozen=True, slots=True)
 class ParallelForce(AbstractCompliantLaw[ParallelControllerSpec]):
-    """Position command plus a PI of the force error, ``Xc + Kp (Fd - F) + w``.
-
-    Parameters
-    ----------
-    Kp : Fraction
-        In rad/(N m).
-    Ki : Fraction
-        In rad/(N m s): ``w' = Ki (Fd - F)``.
-    """
+    """Position command plus a PI of the force error, ``Xc + Kp (Fd - F) + w``."""
 
     name: ClassVar[str] = "parallel"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"})
     commands: ClassVar[Command] = ParallelControllerSpec.commands
 
-    Kp: Fraction
-    Ki: Fraction
+    Kp: Fraction  # In rad/(N m)
+    Ki: Fraction  # In rad/(N m s): ``w' = Ki (Fd - F)``
 
     @property
     def states(self) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws import ProportionalForce
 from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.force_loop import ForceLoop, design_force_gain, force_loop_response
-from nrs_design.design.goals import ForceRequirement, achieve_force
+from nrs_design.design.goals import ForceRequirement
 from nrs_design.design.laws.law import (
     AbstractControllerAnalysis,
     Choice,
@@ -76,18 +76,18 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
         If the nominal loop is unstable.
     """
     goals = goals_of(task.spec, given, FORCE_MEASURES)
-    requirement = ForceRequirement(
-        task.axis, task.corners(given), goals, controller.law, task.motion
-    )
     stiffness = task.plant.environment(given.environment).nominal.stiffness
     gain = float(controller.law.gains["Kp"])
     limits = task.spec.limits
     approach = Approach(given.offset, limits.velocity.si, limits.torque.si)
+    requirement = ForceRequirement(
+        task.axis, task.corners(given), goals, controller.law, task.motion, approach
+    )
     with naming(controller.name):
         loop = force_loop_response(task.motion, stiffness, gain)
         left = steady_force_error(task.motion, stiffness, gain, approach)
         peak = peak_force(task.motion, stiffness, gain, approach)
-        achieved = achieve_force(requirement, FORCE_MEASURES, approach)
+        achieved = requirement.achieved(FORCE_MEASURES)
     return ForceAnalysis(
         controller.name, achieved, stiffness, loop, approach, left, peak, task.motion
     )

@@ -16,7 +16,7 @@ from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
-from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement, achieve_impedance
+from nrs_design.design.goals import NOT_COMPUTED, Achieved, Requirement
 from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.impedance_optimum import (
     ImpedanceProblem,
@@ -40,7 +40,7 @@ from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
-from nrs_design.proof.bounds import upper_float
+from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
 from nrs_design.spec.interval import Interval
@@ -167,7 +167,7 @@ def analyze(
     )
     asked = dict(requirement.goals)
     measures = (*_measures(task), *(item for item in HAND_MEASURES if item in asked))
-    achieved = achieve_impedance(requirement, measures, Mt, Bt)
+    achieved = requirement.achieved(measures, Mt, Bt)
     creep = creep_of(task.spec, task.loop, given, controller) if task.sensor.errors else None
     return ImpedanceAnalysis(
         name=controller.name,
@@ -216,14 +216,24 @@ def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
     for corner in requirement.nominal if requirement.axis is not None else ():
         if requirement.loops(corner, np.array([Mt]), np.array([Bt])).stable[0]:
             continue
-        limit = requirement.family(corner).stiffness_limit(Mt, Bt)
         late = "".join(f", {text}" for text in corner.place.texts)
         raise DesignError(
             f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
             f"{corner.contact.stiffness:.6g} N m/rad{late}",
-            remedy=f"it is stable below {limit:.6g} N m/rad; raise Bt or lower Mt",
+            remedy=f"{_stable_below(requirement, Mt, Bt)}; raise Bt or lower Mt",
             at=("Bt",),
         )
+
+
+def _stable_below(requirement: Requirement, Mt: float, Bt: float) -> str:
+    """Say up to which stiffness nominal contact is stable at every age of the force sample."""
+    limit = min(requirement.family(c).stiffness_limit(Mt, Bt) for c in requirement.nominal)
+    (motor,) = {corner.place.motor for corner in requirement.nominal}
+    ranged = any(corner.place.motor != motor for corner in requirement.corners)
+    nominal = " with the nominal motor" if ranged else ""
+    if not limit:
+        return f"it is unstable{nominal} however soft the contact is"
+    return f"it is stable{nominal} below {lower(Fraction(limit), 6)} N m/rad"
 
 
 def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:

@@ -13,7 +13,7 @@ from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws.integral import IntegralForce
 from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.force_loop import design_force_gain, force_loop_response
-from nrs_design.design.goals import ForceRequirement, achieve_force
+from nrs_design.design.goals import ForceRequirement
 from nrs_design.design.laws.force import ForceAnalysis
 from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
 from nrs_design.design.measures import MARGINS
@@ -125,7 +125,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     with naming(name):
         loop = force_loop_response(motion, stiffness, Kp)
         peak = peak_force(task.motion, stiffness, Kp, approach)
-        achieved = achieve_force(requirement, MARGINS)
+        achieved = requirement.achieved(MARGINS)
     return ForceAnalysis(name, achieved, stiffness, loop, approach, 0.0, peak, motion)
 
 

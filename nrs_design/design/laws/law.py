@@ -29,21 +29,11 @@ from nrs_design.switched.cut_loop import AbstractAxis, Place, axis_of
 
 @dataclass(frozen=True)
 class Task:
-    """What the gains of every controller are chosen for.
+    """What the gains of every controller are chosen for."""
 
-    Parameters
-    ----------
-    spec : InteractionDesignSpec
-        Requirements and bounds.
-    plant : Plant
-        That it describes.
-    pd : ProportionalDerivative
-        The motion controller.
-    """
-
-    spec: InteractionDesignSpec
-    plant: Plant
-    pd: ProportionalDerivative
+    spec: InteractionDesignSpec  # Requirements and bounds
+    plant: Plant  # That it describes
+    pd: ProportionalDerivative  # The motion controller
 
     @property
     def loop(self) -> MotionLoop:
@@ -98,18 +88,10 @@ class Task:
 
 @dataclass(frozen=True)
 class AbstractControllerAnalysis(ABC):
-    """What the gains of one controller achieve.
+    """What the gains of one controller achieve."""
 
-    Parameters
-    ----------
-    name : str
-        Of the controller.
-    achieved : tuple of Achieved
-        The worst values over the contacts, beside the goals.
-    """
-
-    name: str
-    achieved: tuple[Achieved, ...]
+    name: str  # Of the controller
+    achieved: tuple[Achieved, ...]  # The worst values over the contacts, beside the goals
 
     def doubts(self) -> Iterator[Doubt]:
         """Yield what is doubtful about the gains, and no goal speaks of it."""
@@ -122,23 +104,15 @@ Choice = tuple[CompliantLaw, ImpedanceOptimum | None]
 
 @dataclass(frozen=True)
 class LawDesign:
-    """How the gains of one law are chosen and analyzed.
+    """How the gains of one law are chosen and analyzed."""
 
-    Parameters
-    ----------
-    choose : callable
-        Gives the law for a task and the spec of a controller.
-    analyze : callable or None
-        Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
-        controller (`given`), and the controller with the gains that ship; None where nothing is
-        measured.
-    too_stiff : callable or None
-        Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
-        where that is not known.
-    """
-
-    choose: Callable[[Task, Any], Choice]
+    choose: Callable[[Task, Any], Choice]  # Gives the law for a task and the spec of a controller
+    # Gives the analysis for what the gains were chosen for (`task`), what the spec says of the
+    # controller (`given`), and the controller with the gains that ship; None where nothing is
+    # measured.
     analyze: Callable[[Task, Any, Controller], AbstractControllerAnalysis] | None = None
+    # Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
+    # where that is not known.
     too_stiff: Callable[[Task, Any, Controller], Iterator[Doubt]] | None = None
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.doubts import find_doubts
 from nrs_design.identification.actuator.frequency_fit import fit_phasors, fit_response
-from nrs_design.identification.actuator.model import ActuatorFit, MotorFigures, fit_of
+from nrs_design.identification.actuator.model import FROM_THE_ROW, ActuatorFit, MotorFigures, fit_of
 from nrs_design.identification.actuator.phasors import Phasors, phasors_of
 from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
@@ -35,55 +35,25 @@ _WORTHWHILE = 0.2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ActuatorIdentification:
-    """Fits of one actuator.
+    """Fits of one actuator."""
 
-    Parameters
-    ----------
-    sources : tuple of Source
-        The files.
-    records : tuple of ActuatorRecord
-        None for a ready response.
-    phasors : tuple of Phasors
-        One for each record, where all are sinusoids.
-    fits : tuple of ActuatorFit
-        Every method that the data allow.
-    chosen : ActuatorFit
-        One of them.
-    reason : str
-        Why that one.
-    figures : MotorFigures or None
-        Derived from it and the data sheet, which are about commands in rpm.
-    frequency : ndarray, shape (m,)
-        In rad/s.
-    response : ndarray of complex, shape (m,)
-        Velocity over command without friction, in rad/s per unit of the command; empty where
-        records are no sinusoids.
-    doubts : tuple of str
-        What the model misses, and what that looks like.
-    unit : str
-        Of the command.
-    step : float or None
-        Usual time between samples in s; None for a ready response.
-    coverage : {"confidence", "tolerance", "prediction"}
-        What the ranges hold.
-    ranges : tuple of Estimate
-        Of gain and time constant, for a spec.
-    """
-
-    sources: tuple[Source, ...]
-    records: tuple[ActuatorRecord, ...]
-    phasors: tuple[Phasors, ...]
-    fits: tuple[ActuatorFit, ...]
-    chosen: ActuatorFit
-    reason: str
+    sources: tuple[Source, ...]  # The files
+    records: tuple[ActuatorRecord, ...]  # None for a ready response
+    phasors: tuple[Phasors, ...]  # One for each record, where all are sinusoids
+    fits: tuple[ActuatorFit, ...]  # Every method that the data allow
+    chosen: ActuatorFit  # One of them
+    reason: str  # Why that one
+    # Derived from it and the data sheet, which are about commands in rpm.
     figures: MotorFigures | None
-    frequency: Array
+    frequency: Array  # Shape (m,). In rad/s.
+    # Shape (m,). Velocity over command without friction, in rad/s per unit of the command; empty
+    # where records are no sinusoids.
     response: Complex
-    doubts: tuple[str, ...] = ()
-    unit: str = "rpm"
-    step: float | None = None
-    coverage: Coverage = "confidence"
-    ranges: tuple[Estimate, ...] = ()
+    doubts: tuple[str, ...] = ()  # What the model misses, and what that looks like
+    unit: str = "rpm"  # Of the command
+    step: float | None = None  # Usual time between samples in s; None for a ready response
+    coverage: Coverage = "confidence"  # What the ranges hold
+    ranges: tuple[Estimate, ...] = ()  # Of gain and time constant, for a spec
 
     @property
     def covers(self) -> str:
@@ -110,9 +80,9 @@ class ActuatorIdentification:
             return self.doubts
         return (
             *self.doubts,
-            f"the motor has a dead time of {late.low:.3g} s to {late.high:.3g} s, which the proof "
-            "leaves out: it acts on the motion loop, so that it is no part of sampling.delay (the "
-            "age of the force sample)",
+            f"the motor has a dead time of {late.low:.3g} s to {late.high:.3g} s ({FROM_THE_ROW}), "
+            "which the proof leaves out: it acts on the motion loop, so that it is no part of "
+            "sampling.delay (the age of the force sample)",
         )
 
     @property

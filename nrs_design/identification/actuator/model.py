@@ -27,23 +27,20 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+# A log does not say when within a sample a command began.
+FROM_THE_ROW = (
+    "counted from the row that first holds a command; one that began before it, by up to a sample, "
+    "is later by as much"
+)
+
+
 @dataclass(frozen=True, slots=True)
 class MotorFigures:
-    """What follows from the fit and the data sheet.
+    """What follows from the fit and the data sheet."""
 
-    Parameters
-    ----------
-    resistance : Estimate
-        Armature resistance R in ohm (thesis 4.6).
-    gradient : Estimate
-        Speed over torque in rpm/(N m) (thesis 4.10).
-    motor : MotorConstants
-        The data sheet.
-    """
-
-    resistance: Estimate
-    gradient: Estimate
-    motor: MotorConstants
+    resistance: Estimate  # Armature resistance R in ohm (thesis 4.6)
+    gradient: Estimate  # Speed over torque in rpm/(N m) (thesis 4.10)
+    motor: MotorConstants  # The data sheet
 
     @property
     def sheet(self) -> str:
@@ -57,32 +54,16 @@ class MotorFigures:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ActuatorFit:
-    """``tau v' + v = gain (delta(t - D) - friction sign v)``.
+    """``tau v' + v = gain (delta(t - D) - friction sign v)``."""
 
-    Parameters
-    ----------
-    method : str
-        How it was found.
-    gain : Estimate
-        In rad/s for each unit of the command.
-    time_constant : Estimate
-        In s; of a motor of second order the sum of both.
-    friction : Estimate or None
-        Coulomb friction in units of the command; None where the data cannot tell.
-    uncertainty : Uncertainty
-        Of the logarithms of these, in this order.
-    dead_time : Estimate or None
-        D in s; None where it was taken for zero.
-    motor : MotorModel or None
-        What was fitted in time; None for a fit in the frequency domain.
-    """
-
-    method: str
-    gain: Estimate
-    time_constant: Estimate
+    method: str  # How it was found
+    gain: Estimate  # In rad/s for each unit of the command
+    time_constant: Estimate  # In s; of a motor of second order the sum of both
+    # Coulomb friction in units of the command; None where the data cannot tell.
     friction: Estimate | None
-    uncertainty: Uncertainty
-    dead_time: Estimate | None = None
+    uncertainty: Uncertainty  # Of the logarithms of these, in this order
+    dead_time: Estimate | None = None  # D in s; None where it was taken for zero
+    # What was fitted in time; None for a fit in the frequency domain.
     motor: MotorModel | None = None
 
     @property

@@ -21,27 +21,13 @@ _DELAY_DIFFERENCE = 100.0
 
 @dataclass(frozen=True, slots=True)
 class MotorModel:
-    """``velocity = lags (gain (command(t - delay) - friction sign(velocity)))``.
+    """``velocity = lags (gain (command(t - delay) - friction sign(velocity)))``."""
 
-    Parameters
-    ----------
-    gain : float
-        In rad/s for each unit of the command.
-    time_constant : float
-        In s; of a motor of second order the sum of both.
-    friction : float or None
-        In units of the command; None leaves it out.
-    delay : float
-        Dead time in s.
-    damping : float or None
-        Damping ratio of a motor of second order.
-    """
-
-    gain: float
-    time_constant: float
-    friction: float | None
-    delay: float
-    damping: float | None = None
+    gain: float  # In rad/s for each unit of the command
+    time_constant: float  # In s; of a motor of second order the sum of both
+    friction: float | None  # In units of the command; None leaves it out
+    delay: float  # Dead time in s
+    damping: float | None = None  # Damping ratio of a motor of second order
 
     @property
     def lags(self) -> Lags:

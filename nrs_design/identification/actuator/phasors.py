@@ -24,24 +24,12 @@ _PURE = 0.98
 
 @dataclass(frozen=True, slots=True)
 class Phasors:
-    """One record at its frequency.
+    """One record at its frequency."""
 
-    Parameters
-    ----------
-    record : ActuatorRecord
-        The data.
-    frequency : float
-        In rad/s.
-    command : complex
-        Amplitude in rpm, as it acts on the motor.
-    velocity : complex
-        Amplitude in rad/s.
-    """
-
-    record: ActuatorRecord
-    frequency: float
-    command: complex
-    velocity: complex
+    record: ActuatorRecord  # The data
+    frequency: float  # In rad/s
+    command: complex  # Amplitude in rpm, as it acts on the motor
+    velocity: complex  # Amplitude in rad/s
 
 
 def phasors_of(record: ActuatorRecord) -> Phasors:

@@ -32,21 +32,11 @@ _FRICTION = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimeFit:
-    """A motor that fits records best.
+    """A motor that fits records best."""
 
-    Parameters
-    ----------
-    motor : MotorModel
-        With its parameters.
-    uncertainty : Uncertainty
-        Of `MotorModel.parameters`.
-    errors : ndarray, shape (n,)
-        Measured less fitted, of all records in turn.
-    """
-
-    motor: MotorModel
-    uncertainty: Uncertainty
-    errors: Array
+    motor: MotorModel  # With its parameters
+    uncertainty: Uncertainty  # Of `MotorModel.parameters`
+    errors: Array  # Shape (n,). Measured less fitted, of all records in turn.
 
     @property
     def tells_friction(self) -> bool:

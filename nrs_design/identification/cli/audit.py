@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import CertificateError
@@ -32,6 +33,7 @@ UNPROVED = "UNPROVED SPEC: {reason}; its ranges are only declared."
 _WIDEST, _BELOW = 60, "see below"
 
 
+@command("audit")
 def audit(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="Log of the running robot.")],
     spec: Annotated[Path, typer.Argument(metavar="SPEC", help="The spec that it runs by.")],
@@ -53,9 +55,7 @@ def audit(
     columns: ColumnMap = None,
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Tell whether a run stayed inside what was proved: times, delay, command, force.
 
     Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
@@ -72,13 +72,13 @@ def audit(
     from nrs_design.identification.running.bounds import parse_command_limit
     from nrs_design.spec import read_spec
 
-    outputs = Destinations.checked(None, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(None, report, date)
     loaded = read_spec(spec)
     bounds = read_run_bounds(loaded)
     limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
     reason, losable = _proof_of(certificate, loaded)
-    (run,) = read_all([log], read_run, columns or [], quiet=quiet)
-    with progress("judging", quiet=quiet):
+    (run,) = read_all([log], read_run, columns or [])
+    with progress("judging"):
         found = judge_run(
             run,
             bounds,
@@ -87,13 +87,14 @@ def audit(
             window=window,
             command_limit=limit,
         )
-    outputs.deliver(
-        "audit",
-        summary=lambda: _summary(found, loaded, certificate, reason),
-        show=lambda: _print(found, loaded.spec.name, reason),
+    return outputs.deliver(
+        Answer(
+            lambda: _summary(found, loaded, certificate, reason),
+            lambda: _print(found, loaded.spec.name, reason),
+            _EXIT[found.verdict],
+        ),
         page=lambda: _page(found, loaded.spec.name, reason),
     )
-    raise typer.Exit(_EXIT[found.verdict])
 
 
 def _page(found: RunJudgement, name: str, reason: str) -> Report:

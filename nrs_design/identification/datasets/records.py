@@ -48,24 +48,12 @@ _LOUDEST = 600.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TissueRecord:
-    """Reaction of a tissue to a motion.
+    """Reaction of a tissue to a motion."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    motion : Motion
-        Time in s and deflection in m (rad).
-    force : ndarray, shape (n,)
-        In N (N m).
-    rotational : bool
-        Whether the motion is a rotation about the pivot.
-    """
-
-    source: Source
-    motion: Motion
-    force: Array
-    rotational: bool
+    source: Source  # The file
+    motion: Motion  # Time in s and deflection in m (rad)
+    force: Array  # Shape (n,). In N (N m).
+    rotational: bool  # Whether the motion is a rotation about the pivot
 
     @property
     def name(self) -> str:
@@ -80,35 +68,18 @@ class TissueRecord:
 
 @dataclass(frozen=True, eq=False)
 class ActuatorRecord:
-    """Response of the actuator to a command.
+    """Response of the actuator to a command."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    group : str
-        Suffix of its columns, empty for none.
-    time, command, output : ndarray, shape (n,)
-        In s, in the unit of the command, and in rad or rad/s.
-    is_angle : bool
-        Whether the output is an angle; otherwise it is a velocity.
-    unit : str
-        Of the command, such as ``rpm``, ``V``, ``A`` or ``counts``.
-    part : int
-        Which of the stretches between pauses of a file this is, from 0.
-    pauses : str or None
-        How pauses part the file, in words, with the first part.
-    """
-
-    source: Source
-    group: str
+    source: Source  # The file
+    group: str  # Suffix of its columns, empty for none
+    # time, command, output: shape (n,). In s, in the unit of the command, and in rad or rad/s.
     time: Array
     command: Array
     output: Array
-    is_angle: bool = True
-    unit: str = "rpm"
-    part: int = 0
-    pauses: str | None = None
+    is_angle: bool = True  # Whether the output is an angle; otherwise it is a velocity
+    unit: str = "rpm"  # Of the command, such as ``rpm``, ``V``, ``A`` or ``counts``
+    part: int = 0  # Which of the stretches between pauses of a file this is, from 0
+    pauses: str | None = None  # How pauses part the file, in words, with the first part
 
     @property
     def name(self) -> str:
@@ -124,24 +95,13 @@ class ActuatorRecord:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrequencyResponse:
-    """Velocity over command, at some frequencies.
+    """Velocity over command, at some frequencies."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    frequency : ndarray, shape (m,)
-        In rad/s.
-    response : ndarray of complex, shape (m,)
-        In rad/s for each unit of the command.
-    unit : str
-        Of the command, which no column says: that of the motor of the thesis.
-    """
-
-    source: Source
-    frequency: Array
+    source: Source  # The file
+    frequency: Array  # Shape (m,). In rad/s.
+    # Shape (m,). In rad/s for each unit of the command.
     response: np.ndarray[tuple[int], np.dtype[np.complex128]]
-    unit: str = "rpm"
+    unit: str = "rpm"  # Of the command, which no column says: that of the motor of the thesis
 
 
 def read_tissue(
@@ -201,23 +161,14 @@ def read_actuator(
 
 @dataclass(frozen=True, eq=False)
 class SignalRecord:
-    """What was sent, and what came of it.
+    """What was sent, and what came of it."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    time, sent, seen : ndarray, shape (n,)
-        In s, and in whatever units.
-    names : tuple of str
-        Of both columns in the file.
-    """
-
-    source: Source
+    source: Source  # The file
+    # time, sent, seen: shape (n,). In s, and in whatever units.
     time: Array
     sent: Array
     seen: Array
-    names: tuple[str, str]
+    names: tuple[str, str]  # Of both columns in the file
 
     @cached_property
     def step(self) -> float:
@@ -271,24 +222,15 @@ def read_signals(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PoseRecord:
-    """Wrenches of a sensor at rest in some poses.
+    """Wrenches of a sensor at rest in some poses."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    down : ndarray, shape (n, 3)
-        Directions of gravity along the axes of the sensor, of length 1.
-    force, torque : ndarray, shape (n, 3)
-        Measured along the axes of the sensor, in N and N m.
-    turns : ndarray, shape (n, 3, 3), or None
-        Rotations from the axes of the sensor to those of the world, where they are known.
-    """
-
-    source: Source
-    down: Array
+    source: Source  # The file
+    down: Array  # Shape (n, 3). Directions of gravity along the axes of the sensor, of length 1.
+    # force, torque: shape (n, 3). Measured along the axes of the sensor, in N and N m.
     force: Array
     torque: Array
+    # Shape (n, 3, 3). Rotations from the axes of the sensor to those of the world, where they are
+    # known.
     turns: Array | None = None
 
 

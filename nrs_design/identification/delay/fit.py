@@ -24,33 +24,20 @@ _DIFFERENCE = 1e-4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DelayFit:
-    """One model with the delay that fits best.
+    """One model with the delay that fits best."""
 
-    Parameters
-    ----------
-    follower : AbstractFollower
-        The model.
-    delay : float
-        In s.
-    uncertainty : Uncertainty
-        Of the delay in samples, first, and of the logarithms of the other parameters.
-    sensitivity, errors : ndarray, shape (m,)
-        Change of the output by one sample of delay, and measured less fitted.
-    rows : ndarray of int, shape (m,)
-        Samples that were fitted: those that the command before the record cannot reach.
-    fitted : ndarray, shape (n,)
-        Output of the model.
-    solution : ndarray, shape (p,)
-        Gain, offset and initial state: factors of the columns of the model.
-    """
-
-    follower: AbstractFollower
-    delay: float
+    follower: AbstractFollower  # The model
+    delay: float  # In s
+    # Of the delay in samples, first, and of the logarithms of the other parameters.
     uncertainty: Uncertainty
+    # sensitivity, errors: shape (m,). Change of the output by one sample of delay, and measured
+    # less fitted.
     sensitivity: Array
     errors: Array
+    # Shape (m,). Samples that were fitted: those that the command before the record cannot reach.
     rows: NDArray[np.int64]
-    fitted: Array
+    fitted: Array  # Shape (n,). Output of the model.
+    # Shape (p,). Gain, offset and initial state: factors of the columns of the model.
     solution: Array
 
     @property

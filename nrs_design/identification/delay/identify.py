@@ -78,48 +78,28 @@ _SCANNED = 5000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DelayIdentification:
-    """What a record says about a delay.
+    """What a record says about a delay."""
 
-    Parameters
-    ----------
-    record : SignalRecord
-        The data.
-    fits : tuple of DelayFit
-        One for each model.
-    chosen : DelayFit
-        The simplest of those whose BIC none clearly beats.
-    delay : Estimate
-        In s, with a 95 % interval.
-    samples : Estimate
-        The same in samples of the record.
-    peak : tuple of float
-        Lag in s at which both columns are most alike, lag of the dynamics included, and their
-        correlation there.
-    parts : tuple of (float, Estimate)
-        The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
-        together.
-    smooth : bool
-        Whether the command is smooth between samples, so that a copy tells parts of them.
-        Otherwise, or beside a lag, nobody knows when within a sample a logged command began: the
-        interval is a sample wide, at least.
-    held : tuple of float
-        From and to, in samples: they hold the interval and every part of the record. Where errors
-        are not noise, they hold those of a copy, too: then a lag may stand for a part of the delay.
-        Of a command of one frequency, they hold all from zero to those of a copy.
-    doubts : tuple of str
-        What speaks against it.
-    """
-
-    record: SignalRecord
-    fits: tuple[DelayFit, ...]
-    chosen: DelayFit
-    delay: Estimate
-    samples: Estimate
+    record: SignalRecord  # The data
+    fits: tuple[DelayFit, ...]  # One for each model
+    chosen: DelayFit  # The simplest of those whose BIC none clearly beats
+    delay: Estimate  # In s, with a 95 % interval
+    samples: Estimate  # The same in samples of the record
+    # Lag in s at which both columns are most alike, lag of the dynamics included, and their
+    # correlation there.
     peak: tuple[float, float]
+    # The delay in samples in parts of the record, by their middle in s, at 95 % for all of them
+    # together.
     parts: tuple[tuple[float, Estimate], ...]
+    # Whether the command is smooth between samples, so that a copy tells parts of them. Otherwise,
+    # or beside a lag, nobody knows when within a sample a logged command began: the interval is a
+    # sample wide, at least.
     smooth: bool
+    # From and to, in samples: they hold the interval and every part of the record. Where errors are
+    # not noise, they hold those of a copy, too: then a lag may stand for a part of the delay. Of a
+    # command of one frequency, they hold all from zero to those of a copy.
     held: tuple[float, float]
-    doubts: tuple[str, ...]
+    doubts: tuple[str, ...]  # What speaks against it
 
     @property
     def whole_samples(self) -> tuple[int, int]:
@@ -130,6 +110,11 @@ class DelayIdentification:
     def is_lag(self) -> bool:
         """Whether dynamics lie between the columns: they leave nothing but noise."""
         return not self._is_copy and self.chosen.uncertainty.whiteness >= WHITE
+
+    @property
+    def untold(self) -> str | None:
+        """Why the record does not tell the delay, if it does not."""
+        return _untold(self.record, self.samples)
 
     @property
     def _is_copy(self) -> bool:
@@ -225,7 +210,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
         record, fits, chosen, samples.scaled(step), samples, peak, parts, smooth, ends,
         (
             *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
-            *_doubts(record, chosen, value, half, parts),
+            *_doubts(record, chosen, value, half, peak[0], parts, _untold(record, samples)),
         ),
     )  # fmt: skip
 
@@ -490,8 +475,8 @@ def _rivals(
         if fit.bic <= chosen.bic + _CLEARLY and abs(samples) > half + 1:
             yield (
                 f"{fit.follower.name} with a delay of {max(fit.delay / record.step, 0.0):.3g} "
-                "samples explains it nearly as well: a motion of one frequency does not tell a "
-                "delay from a lag"
+                "samples explains it nearly as well: this record does not tell a delay from a "
+                "lag"
             )
 
 
@@ -524,17 +509,31 @@ def _opposed(record: SignalRecord, fit: DelayFit) -> Iterator[str]:
         yield f"{record.names[1]} moves against {record.names[0]}: their signs are opposite"
 
 
+def _untold(record: SignalRecord, samples: Estimate) -> str | None:
+    """Say that an interval is longer than its record: it is no number to show without a doubt."""
+    length = float(np.ptp(record.time))
+    if (samples.high - samples.low) * record.step <= length:
+        return None
+    return f"not told by this record: its interval is longer than the {length:.3g} s"
+
+
 def _doubts(
     record: SignalRecord,
     fit: DelayFit,
     value: float,
     half: float,
+    peak: float,
     parts: Sequence[tuple[float, Estimate]],
+    untold: str | None,
 ) -> Iterator[str]:
     yield from doubt_step(record.step)
-    if value + half < 0:
+    if untold is not None:
+        yield f"the delay is {untold}"
+    # Where the fit tells nothing, the correlation still tells which column comes first.
+    early = -value if untold is None else -peak / record.step
+    if early > (half if untold is None else 1.0):
         yield (
-            f"{record.names[1]} comes {-value:.3g} samples before {record.names[0]}: the columns "
+            f"{record.names[1]} comes {early:.3g} samples before {record.names[0]}: the columns "
             "are swapped, or their clocks differ"
         )
     yield from _opposed(record, fit)

@@ -18,15 +18,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class AbstractFollower(ABC):
-    """A model of what follows a command; gain, offset and initial state are linear.
+    """A model of what follows a command; gain, offset and initial state are linear."""
 
-    Parameters
-    ----------
-    shape : tuple of float
-        Logarithms of its other parameters.
-    """
-
-    shape: tuple[float, ...]
+    shape: tuple[float, ...]  # Logarithms of its other parameters
 
     name: ClassVar[str]
 

@@ -16,18 +16,10 @@ from nrs_design.spec.quantity import parse_quantity
 
 @dataclass(frozen=True, slots=True)
 class Stiffness:
-    """Stiffness that a controller may meet, in N m/rad.
+    """Stiffness that a controller may meet, in N m/rad."""
 
-    Parameters
-    ----------
-    ranges : tuple of (float, float)
-        Of the environments that it touches.
-    foreign : tuple of str
-        Environments among them that no window can tell.
-    """
-
-    ranges: tuple[tuple[float, float], ...]
-    foreign: tuple[str, ...]
+    ranges: tuple[tuple[float, float], ...]  # Of the environments that it touches
+    foreign: tuple[str, ...]  # Environments among them that no window can tell
 
 
 class Unseen(NamedTuple):
@@ -40,53 +32,27 @@ class Unseen(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class RunBounds:
-    """What a run may do.
+    """What a run may do."""
 
-    Parameters
-    ----------
-    stiffness : mapping of str to Stiffness or None
-        By controller; None for one without contact.
-    stays : mapping of str to (float, float)
-        Shortest and longest time in each controller, in s.
-    transitions : frozenset of (str, str) or None
-        Allowed switches; None allows all.
-    names_contacts : bool
-        Whether there are other rules, about what is touched, which no log says.
-    torque : float
-        Largest torque in N m.
-    delay : float or None
-        Delay margin that the design must keep, in s; None if none is asked for.
-    lever_arm : float or None
-        That turns linear columns into rotational ones, in m; None where environments have none or
-        several.
-    period : float or None
-        Of the processor that the proof is about, in s; None for a proof in continuous time.
-    losable : bool or None
-        Whether the spec asks for a proof that holds while contact is lost; None if it leaves that
-        to the proof.
-    command : str
-        Unit of the motor's command.
-    unseen : tuple of Unseen
-        What else must hold, and no log shows.
-    saturates : float or None
-        Command at which the driver saturates, in that unit; None if the spec does not say.
-    proved : bool
-        Whether a valid certificate proves the spec; else it is only declared.
-    """
-
-    stiffness: Mapping[str, Stiffness | None]
-    stays: Mapping[str, tuple[float, float]]
-    transitions: frozenset[tuple[str, str]] | None
-    names_contacts: bool
-    torque: float
-    delay: float | None
+    stiffness: Mapping[str, Stiffness | None]  # By controller; None for one without contact
+    stays: Mapping[str, tuple[float, float]]  # Shortest and longest time in each controller, in s
+    transitions: frozenset[tuple[str, str]] | None  # Allowed switches; None allows all
+    names_contacts: bool  # Whether there are other rules, about what is touched, which no log says
+    torque: float  # Largest torque in N m
+    delay: float | None  # Delay margin that the design must keep, in s; None if none is asked for
+    # That turns linear columns into rotational ones, in m; None where environments have none or
+    # several.
     lever_arm: float | None
+    # Of the processor that the proof is about, in s; None for a proof in continuous time.
     period: float | None
+    # Whether the spec asks for a proof that holds while contact is lost; None if it leaves that to
+    # the proof.
     losable: bool | None
-    command: str
-    unseen: tuple[Unseen, ...] = ()
+    command: str  # Unit of the motor's command
+    unseen: tuple[Unseen, ...] = ()  # What else must hold, and no log shows
+    # Command at which the driver saturates, in that unit; None if the spec does not say.
     saturates: float | None = None
-    proved: bool = False
+    proved: bool = False  # Whether a valid certificate proves the spec; else it is only declared
 
     @property
     def source(self) -> str:

@@ -22,43 +22,19 @@ class BoundStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """Where a run first left a bound.
+    """Where a run first left a bound."""
 
-    Parameters
-    ----------
-    time : float
-        In s, as in the log.
-    words : str
-        What happened.
-    """
-
-    time: float
-    words: str
+    time: float  # In s, as in the log
+    words: str  # What happened
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One bound and what the run says about it.
+    """One bound and what the run says about it."""
 
-    Parameters
-    ----------
-    name : str
-        What is judged.
-    status : BoundStatus
-        The outcome.
-    measured : str
-        What the log shows; for what is not judged, why.
-    allowed : str
-        The bound.
-    basis : str
-        Where the bound comes from.
-    first : Violation or None
-        The first time it was left.
-    """
-
-    name: str
-    status: BoundStatus
-    measured: str
-    allowed: str
-    basis: str
-    first: Violation | None = None
+    name: str  # What is judged
+    status: BoundStatus  # The outcome
+    measured: str  # What the log shows; for what is not judged, why
+    allowed: str  # The bound
+    basis: str  # Where the bound comes from
+    first: Violation | None = None  # The first time it was left

@@ -34,21 +34,13 @@ _OPPOSED = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactEstimate:
-    """What a log shows of stiffness and contact.
+    """What a log shows of stiffness and contact."""
 
-    Parameters
-    ----------
-    checks : tuple of Check
-        Stiffness and contact.
-    windows : tuple of Window
-        Those in which something moves while a torque acts; stiffness at the pivot in N m/rad.
-    share : float
-        Of the time of the log, in how much of it the windows, or a torque of exactly zero, tell
-        something.
-    """
-
-    checks: tuple[Check, Check]
+    checks: tuple[Check, Check]  # Stiffness and contact
+    # Those in which something moves while a torque acts; stiffness at the pivot in N m/rad.
     windows: tuple[Window, ...]
+    # Of the time of the log, in how much of it the windows, or a torque of exactly zero, tell
+    # something.
     share: float
 
 

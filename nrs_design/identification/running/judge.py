@@ -25,27 +25,13 @@ WINDOW = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunJudgement:
-    """All checks of a run.
+    """All checks of a run."""
 
-    Parameters
-    ----------
-    log : RunLog
-        The data.
-    bounds : RunBounds
-        What the spec promises.
-    checks : tuple of Check
-        One for each bound.
-    windows : tuple of Window
-        Stiffness at the pivot in N m/rad, estimated.
-    share : float
-        Of the time of the log, in which stiffness or free motion could be estimated.
-    """
-
-    log: RunLog
-    bounds: RunBounds
-    checks: tuple[Check, ...]
-    windows: tuple[Window, ...]
-    share: float
+    log: RunLog  # The data
+    bounds: RunBounds  # What the spec promises
+    checks: tuple[Check, ...]  # One for each bound
+    windows: tuple[Window, ...]  # Stiffness at the pivot in N m/rad, estimated
+    share: float  # Of the time of the log, in which stiffness or free motion could be estimated
 
     @property
     def first(self) -> Check | None:

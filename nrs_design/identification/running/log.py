@@ -20,30 +20,15 @@ _OPTIONAL = ("angle", "torque", "deflection", "force", "velocity", "command", "m
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunLog:
-    """A log.
+    """A log."""
 
-    Parameters
-    ----------
-    source : Source
-        The file.
-    time : ndarray, shape (n,)
-        In s, from zero.
-    columns : dict of str to ndarray
-        By quantity, shape (n,) each, in SI; the mode as an index into the labels.
-    labels : tuple of str
-        Names of modes in the order in which they come.
-    begin : float
-        Time of the first row in the file, in s.
-    command_unit : str
-        Of the command, if there is one.
-    """
-
-    source: Source
-    time: Array
+    source: Source  # The file
+    time: Array  # Shape (n,). In s, from zero.
+    # By quantity, shape (n,) each, in SI; the mode as an index into the labels.
     columns: dict[str, Array]
-    labels: tuple[str, ...]
-    begin: float
-    command_unit: str
+    labels: tuple[str, ...]  # Names of modes in the order in which they come
+    begin: float  # Time of the first row in the file, in s
+    command_unit: str  # Of the command, if there is one
 
     @property
     def step(self) -> float:

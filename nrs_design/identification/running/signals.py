@@ -17,7 +17,7 @@ from nrs_design.identification.statistics import CONFIDENCE, student_quantile
 from nrs_design.proof.bounds import lower, upper
 
 # Clocks of loop and log differ by less than this part of a period.
-_UNEVEN = 0.05
+_UNEVEN = 0.01
 
 
 def _assumed(bounds: RunBounds) -> str:
@@ -44,12 +44,10 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     except DataError as error:
         return Check("delay", BoundStatus.NOT_JUDGED, error.message, "", "")
     low, high = found.delay.low, found.delay.high
-    length = float(log.time[-1] - log.time[0])
-    if high - low > length:
-        words = f"not told by this record: its interval is longer than the {length:.3g} s"
-    else:
-        outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
-        words = f"{found.delay.value:.3g} {outwards} s"
+    if found.untold is not None:
+        return Check("delay", BoundStatus.NOT_JUDGED, found.untold, "", "")
+    outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
+    words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
         return Check(
             "delay", BoundStatus.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", ""
@@ -93,8 +91,7 @@ def _time_of(bounds: RunBounds) -> str:
     if bounds.period is None:
         return f"none: the {model} is in continuous time"
     return (
-        f"none: the {model} is about a motion that follows at once, sampled every "
-        f"{bounds.period:g} s"
+        f"none: the {model} is about a motion without dead time, sampled every {bounds.period:g} s"
     )
 
 

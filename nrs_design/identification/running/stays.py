@@ -21,31 +21,16 @@ _SAME = 1.5
 
 @dataclass(frozen=True, slots=True)
 class _Stay:
-    """A time in one mode; a log tells switches to a row, and not what was before and after it.
+    """A time in one mode; a log tells switches to a row, and not what was before and after it."""
 
-    Parameters
-    ----------
-    mode : str
-        The controller.
-    begin : float
-        Time of its first row, in s.
-    shortest, longest : float
-        Between which it lasted in s, whatever was before the log.
-    logged : float
-        How long it may have been within the log, in s.
-    ended : bool
-        Whether a switch ended it within the log.
-    gap : bool
-        Whether rows are missing within or beside it.
-    """
-
-    mode: str
-    begin: float
+    mode: str  # The controller
+    begin: float  # Time of its first row, in s
+    # shortest, longest: between which it lasted in s, whatever was before the log.
     shortest: float
     longest: float
-    logged: float
-    ended: bool
-    gap: bool
+    logged: float  # How long it may have been within the log, in s
+    ended: bool  # Whether a switch ended it within the log
+    gap: bool  # Whether rows are missing within or beside it
 
 
 def judge_stays(log: RunLog, bounds: RunBounds) -> Check:

@@ -23,22 +23,14 @@ _NOISIER = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Slope of force over deflection in one window.
+    """Slope of force over deflection in one window."""
 
-    Parameters
-    ----------
-    first, last : int
-        First row, and the row after the last one.
-    value : float
-        Least squares, in force over deflection.
-    low, high : float
-        How far noise may have moved it, at 95 % for all windows together; infinite where nothing
-        moves. The slope is the stiffness only if that does not change within the window.
-    """
-
+    # first, last: first row, and the row after the last one.
     first: int
     last: int
-    value: float
+    value: float  # Least squares, in force over deflection
+    # low, high: how far noise may have moved it, at 95 % for all windows together; infinite where
+    # nothing moves. The slope is the stiffness only if that does not change within the window.
     low: float
     high: float
 

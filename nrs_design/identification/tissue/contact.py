@@ -46,46 +46,28 @@ _SMOOTH = 5
 
 @dataclass(frozen=True, slots=True)
 class Touch:
-    """Rows of one touch.
+    """Rows of one touch."""
 
-    Parameters
-    ----------
-    first, end : int
-        Beyond the position of contact.
-    met, lost : int
-        With force. Where the tissue is not at rest, it is met later than at the position of
-        contact, and lost earlier.
-    """
-
+    # Beyond the position of contact.
     first: int
+    # met, lost: with force. Where the tissue is not at rest, it is met later than at the position
+    # of contact, and lost earlier.
     met: int
     lost: int
+    # Beyond the position of contact.
     end: int
 
 
 @dataclass(frozen=True, eq=False)
 class DetectedContact:
-    """Which samples are in contact.
+    """Which samples are in contact."""
 
-    Parameters
-    ----------
-    zero : float
-        Position of contact, m (rad); the deflection is counted from it.
-    ends : tuple of float
-        Of the 99 % interval of the position of contact, from there into the tissue.
-    side : int
-        1 if the tissue is where positions are larger, else -1.
-    beyond : ndarray of bool, shape (n,)
-        Beyond the position of contact.
-    clear : ndarray of bool, shape (n,)
-        With a force that is clearly not that of the air.
-    """
-
-    zero: float
+    zero: float  # Position of contact, m (rad); the deflection is counted from it
+    # Of the 99 % interval of the position of contact, from there into the tissue.
     ends: tuple[float, float]
-    side: int
-    beyond: Flags
-    clear: Flags
+    side: int  # 1 if the tissue is where positions are larger, else -1
+    beyond: Flags  # Shape (n,). Beyond the position of contact.
+    clear: Flags  # Shape (n,). With a force that is clearly not that of the air.
 
     @cached_property
     def touches(self) -> tuple[Touch, ...]:
@@ -103,23 +85,14 @@ class DetectedContact:
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """Where a force leaves that of the air, on one way in.
+    """Where a force leaves that of the air, on one way in."""
 
-    Parameters
-    ----------
-    at, low, high : float
-        Position, and its 99 % interval.
-    gain : float
-        What n log(SSE) gains against a smooth curve without a corner.
-    flat : bool
-        Whether the force stays before it, and it explains enough.
-    """
-
+    # at, low, high: position, and its 99 % interval.
     at: float
     low: float
     high: float
-    gain: float
-    flat: bool
+    gain: float  # What n log(SSE) gains against a smooth curve without a corner
+    flat: bool  # Whether the force stays before it, and it explains enough
 
 
 def find_contact(record: TissueRecord) -> DetectedContact | None:

@@ -24,27 +24,13 @@ from nrs_design.spec.provenance import COVERS, Coverage
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TissueIdentification:
-    """All laws on the same records, and the choice among them.
+    """All laws on the same records, and the choice among them."""
 
-    Parameters
-    ----------
-    records : tuple of TissueRecord
-        The data.
-    models : tuple of ModelFit
-        In the order of `LAWS`.
-    chosen : ModelFit
-        One of them.
-    reason : str
-        Why that one.
-    tangent : Tangent or None
-        Of the chosen law about a preload, if one is given.
-    """
-
-    records: tuple[TissueRecord, ...]
-    models: tuple[ModelFit, ...]
-    chosen: ModelFit
-    reason: str
-    tangent: Tangent | None = None
+    records: tuple[TissueRecord, ...]  # The data
+    models: tuple[ModelFit, ...]  # In the order of `LAWS`
+    chosen: ModelFit  # One of them
+    reason: str  # Why that one
+    tangent: Tangent | None = None  # Of the chosen law about a preload, if one is given
 
     @property
     def written(self) -> tuple[AbstractContactLaw, tuple[Estimate, ...]]:

@@ -33,24 +33,12 @@ OFFSET_UNITS: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True)
 class Offset:
-    """An offset with its 95 % interval.
+    """An offset with its 95 % interval."""
 
-    Parameters
-    ----------
-    name : str
-        ``zero`` (position of contact), ``tare`` (force in air) or ``drift`` (of the tare).
-    estimate : Estimate
-        In m, N or N/s (rad, N m, N m/s).
-    fitted : bool
-        Whether it was fitted; else it is as given.
-    provided : str
-        What it rests on, empty for the record alone.
-    """
-
-    name: str
-    estimate: Estimate
-    fitted: bool
-    provided: str = ""
+    name: str  # ``zero`` (position of contact), ``tare`` (force in air) or ``drift`` (of the tare)
+    estimate: Estimate  # In m, N or N/s (rad, N m, N m/s)
+    fitted: bool  # Whether it was fitted; else it is as given
+    provided: str = ""  # What it rests on, empty for the record alone
 
 
 def is_linear(kind: type[AbstractContactLaw]) -> bool:

@@ -45,42 +45,20 @@ _REACH = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordFit:
-    """A law that fits a record best, and how well it is known.
+    """A law that fits a record best, and how well it is known."""
 
-    Parameters
-    ----------
-    trial : Trial
-        The data as they were fitted.
-    law : AbstractContactLaw
-        With the fitted parameters.
-    offsets : tuple of Offset
-        Position of contact, tare and drift.
-    fitted : ndarray, shape (n,)
-        Force of law and offsets in all samples of the trial.
-    uncertainty : Uncertainty
-        Of the logarithms of the parameters.
-    rmse : float
-        Root of the mean squared force error, in N (N m).
-    free : int
-        Parameters and offsets that were fitted.
-    agreeing, starts : int
-        How many searches there were, and how many of them ended here.
-    doubts : tuple of str
-        Why the record may not determine the parameters.
-    slips : tuple of str
-        Those of them that say that it is likely read in another unit or sign than it has.
-    """
-
-    trial: Trial
-    law: AbstractContactLaw
-    offsets: tuple[Offset, ...]
-    fitted: Array
-    uncertainty: Uncertainty
-    rmse: float
-    free: int
+    trial: Trial  # The data as they were fitted
+    law: AbstractContactLaw  # With the fitted parameters
+    offsets: tuple[Offset, ...]  # Position of contact, tare and drift
+    fitted: Array  # Shape (n,). Force of law and offsets in all samples of the trial.
+    uncertainty: Uncertainty  # Of the logarithms of the parameters
+    rmse: float  # Root of the mean squared force error, in N (N m)
+    free: int  # Parameters and offsets that were fitted
+    # agreeing, starts: how many searches there were, and how many of them ended here.
     agreeing: int
     starts: int
-    doubts: tuple[str, ...]
+    doubts: tuple[str, ...]  # Why the record may not determine the parameters
+    # Those of them that say that it is likely read in another unit or sign than it has.
     slips: tuple[str, ...]
 
     @property

@@ -35,27 +35,14 @@ _SLACK = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModelFit:
-    """A law with its parameters over all records.
+    """A law with its parameters over all records."""
 
-    Parameters
-    ----------
-    fits : tuple of RecordFit
-        One for each record.
-    law : AbstractContactLaw
-        With the pooled parameters.
-    estimates : tuple of Estimate
-        Pooled parameters with 95 % intervals that contain the spread between records.
-    rmse : tuple of float
-        Of the pooled law in each record, as in thesis tables 2.4 and 2.5.
-    coverage : {"confidence", "tolerance", "prediction"}
-        What the ranges hold.
-    """
-
-    fits: tuple[RecordFit, ...]
-    law: AbstractContactLaw
+    fits: tuple[RecordFit, ...]  # One for each record
+    law: AbstractContactLaw  # With the pooled parameters
+    # Pooled parameters with 95 % intervals that contain the spread between records.
     estimates: tuple[Estimate, ...]
-    rmse: tuple[float, ...]
-    coverage: Coverage
+    rmse: tuple[float, ...]  # Of the pooled law in each record, as in thesis tables 2.4 and 2.5
+    coverage: Coverage  # What the ranges hold
 
     @property
     def ranges(self) -> tuple[Estimate, ...]:

@@ -131,17 +131,10 @@ class LeastSquaresProblem:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A law with a position of contact, and what follows from them; each thing is computed once.
+    """A law with a position of contact, and what follows from them; each thing is computed once."""
 
-    Parameters
-    ----------
-    problem : LeastSquaresProblem
-        With n used samples.
-    values : ndarray, shape (p,) or (p + 1,)
-        Logarithms of the parameters, and the move of the zero in travels of the record.
-    """
-
-    problem: LeastSquaresProblem
+    problem: LeastSquaresProblem  # With n used samples
+    # Shape (p,). Logarithms of the parameters, and the move of the zero in travels of the record.
     values: Array
 
     @cached_property

@@ -29,31 +29,17 @@ _BIC = 10.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Series:
-    """A Prony series of one record.
+    """A Prony series of one record."""
 
-    Parameters
-    ----------
-    record : str
-        Its name.
-    rest : float
-        Stiffness at rest, N/m (N m/rad).
-    arms, times : tuple of float
-        Stiffness in N/m (N m/rad) and relaxation time in s of each arm, the fastest first.
-    rmse : float
-        Root of the mean squared force error, in N (N m).
-    bic : tuple of float
-        Of the series with one term, two, and so on.
-    reduced : AbstractLinearLaw or None
-        The one relaxation that stands for all of them.
-    """
-
-    record: str
-    rest: float
+    record: str  # Its name
+    rest: float  # Stiffness at rest, N/m (N m/rad)
+    # arms, times: stiffness in N/m (N m/rad) and relaxation time in s of each arm, the fastest
+    # first.
     arms: tuple[float, ...]
     times: tuple[float, ...]
-    rmse: float
-    bic: tuple[float, ...]
-    reduced: AbstractLinearLaw | None
+    rmse: float  # Root of the mean squared force error, in N (N m)
+    bic: tuple[float, ...]  # Of the series with one term, two, and so on
+    reduced: AbstractLinearLaw | None  # The one relaxation that stands for all of them
 
     def text(self, *, rotational: bool) -> str:
         """Return it in words, with the law that it reduces to."""

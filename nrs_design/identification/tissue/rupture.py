@@ -30,21 +30,11 @@ _GROWTH = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Rupture:
-    """Where a tissue tears.
+    """Where a tissue tears."""
 
-    Parameters
-    ----------
-    peak : int
-        Last row before the force falls.
-    fall : float
-        By which part of its range.
-    time : float
-        In s.
-    """
-
-    peak: int
-    fall: float
-    time: float
+    peak: int  # Last row before the force falls
+    fall: float  # By which part of its range
+    time: float  # In s
 
     @property
     def reason(self) -> str:

@@ -23,27 +23,15 @@ _DIGITS = 4
 
 @dataclass(frozen=True, slots=True)
 class Tangent:
-    """A spring and a damper for every small motion about a range of preloads.
+    """A spring and a damper for every small motion about a range of preloads."""
 
-    Parameters
-    ----------
-    law : KelvinVoigt
-        In the middle of the preloads.
-    ranges : tuple of Estimate
-        Of stiffness and damping over all preloads.
-    low, high : float
-        Preloads: deflections in m (rad).
-    about : float
-        A deflection in their middle, of few digits, in m (rad).
-    power : tuple of Estimate
-        The power law itself: stiffness and damping at that deflection, and the exponent.
-    """
-
-    law: KelvinVoigt
-    ranges: tuple[Estimate, ...]
+    law: KelvinVoigt  # In the middle of the preloads
+    ranges: tuple[Estimate, ...]  # Of stiffness and damping over all preloads
+    # low, high: preloads: deflections in m (rad).
     low: float
     high: float
-    about: float
+    about: float  # A deflection in their middle, of few digits, in m (rad)
+    # The power law itself: stiffness and damping at that deflection, and the exponent.
     power: tuple[Estimate, Estimate, Estimate]
 
 

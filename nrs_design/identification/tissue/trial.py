@@ -34,54 +34,30 @@ _LOADED = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Preparation:
-    """What is done to every record before it is fitted.
+    """What is done to every record before it is fitted."""
 
-    Parameters
-    ----------
-    start, end : float or None
-        Part of the record, in s from its beginning.
-    contact : {"auto", "given"}
-        Look for air, or take the whole record as in contact.
-    zero : float or None
-        Position of contact in m (rad); None fits it.
-    tare : float or None
-        Force in air in N (N m); None fits it.
-    drift : {"auto", "fit", "none"}
-        Whether the tare moves in proportion to time; ``auto`` where the air tells.
-    skip_cycles : int
-        First loading cycles that are set apart.
-    negate : bool
-        Change the sign of the force.
-    """
-
+    # start, end: part of the record, in s from its beginning.
     start: float | None = None
     end: float | None = None
+    # Look for air, or take the whole record as in contact.
     contact: Literal["auto", "given"] = "auto"
-    zero: float | None = None
-    tare: float | None = None
+    zero: float | None = None  # Position of contact in m (rad); None fits it
+    tare: float | None = None  # Force in air in N (N m); None fits it
+    # Whether the tare moves in proportion to time; ``auto`` where the air tells.
     drift: Literal["auto", "fit", "none"] = "auto"
-    skip_cycles: int = 0
-    negate: bool = False
+    skip_cycles: int = 0  # First loading cycles that are set apart
+    negate: bool = False  # Change the sign of the force
 
 
 @dataclass(frozen=True, slots=True)
 class Cut:
-    """A part of a record that is not used.
+    """A part of a record that is not used."""
 
-    Parameters
-    ----------
-    first, last : float
-        Time in s from the beginning of the record.
-    reason : str
-        Why.
-    samples : int
-        How many there are.
-    """
-
+    # first, last: time in s from the beginning of the record.
     first: float
     last: float
-    reason: str
-    samples: int
+    reason: str  # Why
+    samples: int  # How many there are
 
     def __str__(self) -> str:
         """Return it in words."""
@@ -91,54 +67,22 @@ class Cut:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trial:
-    """A record as it is fitted.
+    """A record as it is fitted."""
 
-    Parameters
-    ----------
-    record : TissueRecord
-        As it was read.
-    preparation : Preparation
-        What was asked for.
-    motion : Motion
-        Deflection of the tissue, positive into it and 0 in air; n samples.
-    position : ndarray, shape (n,)
-        The same, but negative in air.
-    force : ndarray, shape (n,)
-        On the tissue in N (N m), with any tare.
-    used : ndarray of bool, shape (n,)
-        Samples that are fitted.
-    touching : ndarray of bool, shape (n,)
-        Samples in contact.
-    reference : float
-        Position that the deflection is counted from, m (rad).
-    side : int
-        1 if the tissue is where positions are larger, else -1.
-    found : DetectedContact or None
-        None if no air shows, or was not looked for.
-    drift : bool
-        Whether the tare is fitted as moving.
-    cuts : tuple of Cut
-        What is not used, and why.
-    cycles : tuple of slice
-        Loading cycles, among all samples.
-    stretch : ndarray of int, shape (n,)
-        Counts up at every pause of the record.
-    """
-
-    record: TissueRecord
-    preparation: Preparation
-    motion: Motion
-    position: Array
-    force: Array
-    used: Flags
-    touching: Flags
-    reference: float
-    side: int
-    found: DetectedContact | None
-    drift: bool
-    cuts: tuple[Cut, ...]
-    cycles: tuple[slice, ...]
-    stretch: NDArray[np.int64]
+    record: TissueRecord  # As it was read
+    preparation: Preparation  # What was asked for
+    motion: Motion  # Deflection of the tissue, positive into it and 0 in air; n samples
+    position: Array  # Shape (n,). The same, but negative in air.
+    force: Array  # Shape (n,). On the tissue in N (N m), with any tare.
+    used: Flags  # Shape (n,). Samples that are fitted.
+    touching: Flags  # Shape (n,). Samples in contact.
+    reference: float  # Position that the deflection is counted from, m (rad)
+    side: int  # 1 if the tissue is where positions are larger, else -1
+    found: DetectedContact | None  # None if no air shows, or was not looked for
+    drift: bool  # Whether the tare is fitted as moving
+    cuts: tuple[Cut, ...]  # What is not used, and why
+    cycles: tuple[slice, ...]  # Loading cycles, among all samples
+    stretch: NDArray[np.int64]  # Shape (n,). Counts up at every pause of the record.
 
     @property
     def unrested(self) -> tuple[slice, ...]:

@@ -15,13 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Elastic(AbstractLinearLaw):
-    """A spring.
-
-    Parameters
-    ----------
-    k : float or Fraction
-        Stiffness in N/m (N m/rad).
-    """
+    """A spring."""
 
     name: ClassVar[str] = "elastic"
     formula: ClassVar[str] = "F = k δ"
@@ -29,7 +23,7 @@ class Elastic(AbstractLinearLaw):
     keys: ClassVar[tuple[str, ...]] = ("stiffness",)
     front: ClassVar[str] = "k"
 
-    k: Number
+    k: Number  # Stiffness in N/m (N m/rad)
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m)."""

@@ -16,29 +16,16 @@ from nrs_design.spec.interval import Interval
 
 @dataclass(frozen=True, slots=True)
 class Environment:
-    """A linear environment, seen as a rotation about the pivot (thesis 2.5).
+    """A linear environment, seen as a rotation about the pivot (thesis 2.5)."""
 
-    Parameters
-    ----------
-    name : str
-        As in the spec.
-    law : type of AbstractLinearLaw
-        What relates its force to its deflection.
-    ranges : tuple of Interval
-        Of the parameters, in the order of the law: N m/rad and N m s/rad.
-    parts : tuple of Environment
-        What it consists of, where several environments are touched at once.
-    each_losable : bool
-        Whether each of these parts may be lost on its own.
-    nonlinear : type of AbstractNonlinearLaw or None
-        Its own law, where the linear one stands for it within a preload.
-    """
-
-    name: str
-    law: type[AbstractLinearLaw]
+    name: str  # As in the spec
+    law: type[AbstractLinearLaw]  # What relates its force to its deflection
+    # Of the parameters, in the order of the law: N m/rad and N m s/rad.
     ranges: tuple[Interval, ...]
+    # What it consists of, where several environments are touched at once.
     parts: tuple[Environment, ...] = ()
-    each_losable: bool = False
+    each_losable: bool = False  # Whether each of these parts may be lost on its own
+    # Its own law, where the linear one stands for it within a preload.
     nonlinear: type[AbstractNonlinearLaw] | None = None
 
     @property

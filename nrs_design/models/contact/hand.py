@@ -25,17 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Hand(AbstractLinearLaw):
-    """A spring, a damper and a mass that moves with the contact.
-
-    Parameters
-    ----------
-    k : float or Fraction
-        Stiffness in N/m (N m/rad).
-    b : float or Fraction
-        Damping in N s/m (N m s/rad); may be zero.
-    m : float or Fraction
-        Mass in kg (kg m^2); may be zero.
-    """
+    """A spring, a damper and a mass that moves with the contact."""
 
     name: ClassVar[str] = "hand"
     formula: ClassVar[str] = "F = k δ + b δ' + m δ''"
@@ -46,9 +36,9 @@ class Hand(AbstractLinearLaw):
     front: ClassVar[str] = "k"
     has_mass: ClassVar[bool] = True
 
-    k: Number
-    b: Number
-    m: Number
+    k: Number  # Stiffness in N/m (N m/rad)
+    b: Number  # Damping in N s/m (N m s/rad); may be zero
+    m: Number  # Mass in kg (kg m^2); may be zero
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m)."""

@@ -18,17 +18,7 @@ LEAST_EXPONENT, LARGEST_EXPONENT = 1.1, 1.3
 
 @dataclass(frozen=True)
 class HuntCrossley(AbstractNonlinearLaw):
-    """A spring and a damper that both stiffen with the deflection; no force without contact.
-
-    Parameters
-    ----------
-    rho : float
-        In N/m^phi (N m/rad^phi).
-    lam : float
-        In N s/m^(phi+1) (N m s/rad^(phi+1)).
-    phi : float
-        Exponent.
-    """
+    """A spring and a damper that both stiffen with the deflection; no force without contact."""
 
     name: ClassVar[str] = "hunt-crossley"
     title: ClassVar[str] = "a Hunt-Crossley law"
@@ -36,9 +26,9 @@ class HuntCrossley(AbstractNonlinearLaw):
     kinds: ClassVar[tuple[str, ...]] = ("power stiffness", "power damping", "exponent")
     takes_velocity: ClassVar[bool] = True
 
-    rho: float
-    lam: float
-    phi: float
+    rho: float  # In N/m^phi (N m/rad^phi)
+    lam: float  # In N s/m^(phi+1) (N m s/rad^(phi+1))
+    phi: float  # Exponent
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m); 0 where the deflection is negative."""

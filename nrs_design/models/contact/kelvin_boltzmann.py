@@ -28,15 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KelvinBoltzmann(AbstractLinearLaw):
-    """A spring k2 in a row with a spring k1 beside a damper b.
-
-    Parameters
-    ----------
-    k1, k2 : float or Fraction
-        Stiffnesses in N/m (N m/rad).
-    b : float or Fraction
-        Damping in N s/m (N m s/rad).
-    """
+    """A spring k2 in a row with a spring k1 beside a damper b."""
 
     name: ClassVar[str] = "kelvin-boltzmann"
     formula: ClassVar[str] = "F + η3 F' = η1 δ + η2 δ'"
@@ -47,9 +39,10 @@ class KelvinBoltzmann(AbstractLinearLaw):
     remembers: ClassVar[bool] = True
     states: ClassVar[tuple[str, ...]] = ("delta [rad]", "damper deflection [rad]")
 
+    # k1, k2: stiffnesses in N/m (N m/rad).
     k1: Number
     k2: Number
-    b: Number
+    b: Number  # Damping in N s/m (N m s/rad)
 
     @classmethod
     def from_eta(cls, eta1: float, eta2: float, eta3: float) -> KelvinBoltzmann:

@@ -23,15 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class KelvinVoigt(AbstractLinearLaw):
-    """A spring beside a damper.
-
-    Parameters
-    ----------
-    k : float or Fraction
-        Stiffness in N/m (N m/rad).
-    b : float or Fraction
-        Damping in N s/m (N m s/rad); may be zero.
-    """
+    """A spring beside a damper."""
 
     name: ClassVar[str] = "kelvin-voigt"
     formula: ClassVar[str] = "F = k δ + b δ'"
@@ -41,8 +33,8 @@ class KelvinVoigt(AbstractLinearLaw):
     may_vanish: ClassVar[frozenset[str]] = frozenset({"b"})
     front: ClassVar[str] = "k"
 
-    k: Number
-    b: Number
+    k: Number  # Stiffness in N/m (N m/rad)
+    b: Number  # Damping in N s/m (N m s/rad); may be zero
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction at the samples, in N (N m)."""

@@ -38,17 +38,12 @@ class Element:
     """What touches, as springs and dampers: ``F = k (delta - d) + c delta'``, ``b d' = F - h d``.
 
     A law without memory has ``d = 0`` for ever.
-
-    Parameters
-    ----------
-    k, c : float
-        Stiffness in N/m (N m/rad) and damping in N s/m (N m s/rad).
-    h, b : float
-        Of the spring and the damper behind it, in the same units; b is infinite without memory.
     """
 
+    # k, c: stiffness in N/m (N m/rad) and damping in N s/m (N m s/rad).
     k: float
     c: float = 0.0
+    # h, b: of the spring and the damper behind it, in the same units; b is infinite without memory.
     h: float = 0.0
     b: float = math.inf
 

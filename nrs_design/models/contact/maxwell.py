@@ -28,15 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Maxwell(AbstractLinearLaw):
-    """A spring and a damper in a row.
-
-    Parameters
-    ----------
-    k : float or Fraction
-        Stiffness in N/m (N m/rad).
-    b : float or Fraction
-        Damping in N s/m (N m s/rad).
-    """
+    """A spring and a damper in a row."""
 
     name: ClassVar[str] = "maxwell"
     formula: ClassVar[str] = "F + (b/k) F' = b δ'"
@@ -48,8 +40,8 @@ class Maxwell(AbstractLinearLaw):
     states: ClassVar[tuple[str, ...]] = ("spring stretch [rad]",)
     has_rest: ClassVar[bool] = False
 
-    k: Number
-    b: Number
+    k: Number  # Stiffness in N/m (N m/rad)
+    b: Number  # Damping in N s/m (N m s/rad)
 
     @property
     def relaxation_time(self) -> float:

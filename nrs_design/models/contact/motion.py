@@ -19,17 +19,10 @@ class Motion:
 
     Between two samples the deflection is taken as linear. Before the first one it is taken to
     have rested there for long, so that a relaxing element carries no force at the start.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        In s, strictly increasing, n >= 2.
-    deflection : ndarray, shape (n,)
-        In m, or in rad at the pivot.
     """
 
-    time: Array
-    deflection: Array
+    time: Array  # Shape (n,). In s, strictly increasing, n >= 2.
+    deflection: Array  # Shape (n,). In m, or in rad at the pivot.
 
     def __len__(self) -> int:
         """Return the number of samples."""

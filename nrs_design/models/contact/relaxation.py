@@ -20,17 +20,10 @@ class Relaxation:
 
     The deflection is linear between samples, so that ``y+ = a y + (1 - a)/h Delta`` with
     ``h = dt / tau`` and ``a = exp(-h)`` has no discretization error.
-
-    Parameters
-    ----------
-    motion : Motion
-        Deflection, n samples.
-    time_constant : float
-        tau in s.
     """
 
-    motion: Motion
-    time_constant: float
+    motion: Motion  # Deflection, n samples
+    time_constant: float  # tau in s
 
     @cached_property
     def _h(self) -> Array:

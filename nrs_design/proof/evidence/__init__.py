@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
     from nrs_design.proof.evidence.constant_force import ConstantForce
     from nrs_design.proof.evidence.coupled_axes import CoupledAxes
+    from nrs_design.proof.evidence.growing_sequence import GrowingSequence
     from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
     from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
     from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
@@ -29,11 +30,6 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
     from nrs_design.proof.evidence.periodic_quadratic import PeriodicQuadratic
     from nrs_design.proof.evidence.saturated_ellipsoid import SaturatedEllipsoid
-    from nrs_design.proof.evidence.unstable_contact import UnstableContact
-    from nrs_design.proof.evidence.unstable_mixture import UnstableMixture
-    from nrs_design.proof.evidence.unstable_mode import UnstableMode
-    from nrs_design.proof.evidence.unstable_period import UnstablePeriod
-    from nrs_design.proof.evidence.unstable_value import UnstableValue
 
 __all__ = [
     "KINDS",
@@ -46,6 +42,7 @@ __all__ = [
     "ConewiseQuadratic",
     "ConstantForce",
     "CoupledAxes",
+    "GrowingSequence",
     "InvariantEllipsoid",
     "ModePolynomial",
     "ModeQuadratic",
@@ -54,11 +51,6 @@ __all__ = [
     "PeriodicQuadratic",
     "SaturatedEllipsoid",
     "Shows",
-    "UnstableContact",
-    "UnstableMixture",
-    "UnstableMode",
-    "UnstablePeriod",
-    "UnstableValue",
     "class_of",
     "read_evidence",
 ]
@@ -73,6 +65,7 @@ KINDS: Mapping[str, str] = {
     "conewise-quadratic": "ConewiseQuadratic",
     "constant-force": "ConstantForce",
     "coupled-axes": "CoupledAxes",
+    "growing-sequence": "GrowingSequence",
     "invariant-ellipsoid": "InvariantEllipsoid",
     "mode-polynomial": "ModePolynomial",
     "mode-quadratic": "ModeQuadratic",
@@ -80,11 +73,6 @@ KINDS: Mapping[str, str] = {
     "parameter-quadratic": "ParameterQuadratic",
     "periodic-quadratic": "PeriodicQuadratic",
     "saturated-ellipsoid": "SaturatedEllipsoid",
-    "unstable-contact": "UnstableContact",
-    "unstable-mixture": "UnstableMixture",
-    "unstable-mode": "UnstableMode",
-    "unstable-period": "UnstablePeriod",
-    "unstable-value": "UnstableValue",
 }
 
 __getattr__ = late_names(__name__, {name: kind.replace("-", "_") for kind, name in KINDS.items()})

@@ -19,25 +19,21 @@ from nrs_design.proof.exact import (
     is_symmetric,
     is_too_large,
 )
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 
-WHILE_KEPT = "This holds as long as contact is kept, the environment pulling as it pushes."
+PULLING = ", the environment pulling as it pushes"
 ROUNDED = "What single-precision arithmetic rounds in the law is included."
 NOT_ROUNDED = "This holds for the law computed without rounding."
 GROWN_WITHOUT_ROUNDING = (
-    "This growth is that of the law computed without rounding, in modes that enclose what the "
-    "motor does: there may be no motor in the range that grows so."
+    "The instability is proved for exact arithmetic and for an over-approximation of the motor; no "
+    "real motor in the range need be unstable."
 )
 GROWN_ALONE = (
     "This growth is that of one axis on which the others do not act, which is within what is said "
     "of them."
-)
-GROWN_IN_CONTACT = "This growth is that in kept contact, the environment pulling as it pushes."
-GROWN_AT_ANY_DEFLECTION = (
-    "This growth is that of contact that is lost and made at any deflection, the environment "
-    "pulling as it pushes."
 )
 # The same in a few words, beside a verdict that leaves the loss of contact open.
 IN_KEPT_CONTACT = "in kept contact"
@@ -55,43 +51,20 @@ class Shows(StrEnum):
     CONVERGENCE = "convergence under a constant force"
     REGION = "decay from a region under saturation"
 
-
-# That no common quadratic function exists is said of matrices, whatever happens to contact.
-_IN_CONTACT: Mapping[Shows, tuple[str, ...]] = {
-    Shows.STABILITY: (WHILE_KEPT,),
-    Shows.BOUND: (WHILE_KEPT,),
-    Shows.CONVERGENCE: (WHILE_KEPT,),
-    Shows.REGION: (WHILE_KEPT,),
-}
-_EXACT: Mapping[Shows, tuple[str, ...]] = {
-    Shows.STABILITY: (NOT_ROUNDED,),
-    Shows.BOUND: (NOT_ROUNDED,),
-    Shows.CONVERGENCE: (NOT_ROUNDED,),
-    Shows.REGION: (NOT_ROUNDED,),
-    Shows.INSTABILITY: (GROWN_WITHOUT_ROUNDING,),
-}
+    @property
+    def is_good(self) -> bool:
+        """Whether it must hold of every motion, not of one that grows."""
+        return self in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
 
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """What evidence of a bound says, in numbers.
+    """What evidence of a bound says, in numbers."""
 
-    Parameters
-    ----------
-    output : Output
-        What is bounded.
-    level : Fraction
-        Its size is never above this, from rest.
-    channels : tuple of Channel
-        The disturbances that act at once; no other does.
-    share : Fraction
-        How fast what is left of an earlier state goes: in 1/s, or per step.
-    """
-
-    output: Output
-    level: Fraction
-    channels: tuple[Channel, ...]
-    share: Fraction
+    output: Output  # What is bounded
+    level: Fraction  # Its size is never above this, from rest
+    channels: tuple[Channel, ...]  # The disturbances that act at once; no other does
+    share: Fraction  # How fast what is left of an earlier state goes: in 1/s, or per step
 
 
 class AbstractEvidence(ABC):
@@ -203,22 +176,41 @@ class AbstractEvidence(ABC):
         if system.sample_time is not None and rate is not None:
             said.append(_in_seconds(rate, system.sample_time))
         said += self._said_of_contact(system)
-        if system.roundings:
-            said += (ROUNDED,) if self.covers_rounding else _EXACT.get(self.shows, ())
+        if system.roundings and self.covers_rounding:
+            said.append(ROUNDED)
+        elif system.roundings and self.shows.is_good:
+            said.append(NOT_ROUNDED)
+        elif system.roundings and self.shows is Shows.INSTABILITY:
+            said.append(GROWN_WITHOUT_ROUNDING)
         if system.couplings and self.shows is Shows.INSTABILITY:
             said.append(GROWN_ALONE)
         return " ".join(said)
 
-    def _said_of_contact(self, system: SwitchedSystem) -> tuple[str, ...]:
+    def _said_of_contact(self, system: SwitchedSystem) -> Iterator[str]:
         """Say for which contact it holds, where that is not the one that the system describes."""
-        if self.shows is Shows.INSTABILITY:
-            pulled = not self.covers_loss(system)
-            if system.flights is not None and pulled:
-                return (GROWN_AT_ANY_DEFLECTION,)
-            return (GROWN_IN_CONTACT,) if system.contact is not None and pulled else ()
-        if system.contact is None or self.covers_lost_contact:
-            return ()
-        return _IN_CONTACT.get(self.shows, ())
+        pulling = PULLING if self._is_pulled(system) else ""
+        if self.shows is Shows.INSTABILITY and not self.covers_loss(system):
+            if system.flights is not None:
+                said = "This growth is that of contact that is lost and made at any deflection"
+                yield f"{said}{pulling}."
+            elif system.contact is not None:
+                yield f"This growth is that in kept contact{pulling}."
+        elif self.shows.is_good and system.contact is not None and not self.covers_lost_contact:
+            yield f"This holds as long as contact is kept{pulling}."
+
+    def _is_pulled(self, system: SwitchedSystem) -> bool:
+        """Tell whether the environment acts in a mode of it, which is then none of free motion."""
+        if system.flights is not None:
+            flying = frozenset(system.flights.flying)
+            free = [mode.A for mode in system.modes if mode.name in flying]
+        else:
+            free = [] if system.contact is None else [mode.A for mode in system.contact.free]
+        return any(A not in free for A in self.used_matrices(system))
+
+    def used_matrices(self, system: SwitchedSystem) -> list[RationalMatrix]:
+        """Return the matrices of the modes that it is about."""
+        used = self.used
+        return [mode.A for mode in system.modes if used is None or mode.name in used]
 
     @abstractmethod
     def claim_in_scope(self, system: SwitchedSystem) -> str:
@@ -294,20 +286,14 @@ class AbstractEvidence(ABC):
             return f"evidence of kind {self.kind} does not cover this kind of switching"
         if not system.is_uniform and not self.allows_unequal_modes:
             return f"evidence of kind {self.kind} needs modes of equal size"
-        if system.contact is not None and system.contact.required and self._takes_contact():
+        loses = system.contact is not None and system.contact.required
+        if loses and self.shows.is_good and not self.covers_lost_contact:
             return f"evidence of kind {self.kind} does not cover the loss of contact"
-        if system.couplings and self._is_good() and not self.covers_coupling:
+        if system.couplings and self.shows.is_good and not self.covers_coupling:
             return f"evidence of kind {self.kind} does not cover what axes do to each other"
         if system.clock is not None and not self.covers_clock:
             return f"evidence of kind {self.kind} does not know that modes take turns"
         return self.find_misfit(system)
-
-    def _takes_contact(self) -> bool:
-        """Tell whether it shows something good of kept contact only."""
-        return self._is_good() and not self.covers_lost_contact
-
-    def _is_good(self) -> bool:
-        return self.shows in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
 
 
 def _in_seconds(rate: Fraction, step: Fraction) -> str:

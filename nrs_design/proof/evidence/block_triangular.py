@@ -25,13 +25,6 @@ class BlockTriangular(AbstractEvidence):
     The family is stable iff every family of diagonal blocks is, at any rate slower than the
     slowest of theirs; and it has a common quadratic function iff every block has one. So one
     block that is unstable, or has no such function, settles the family.
-
-    Parameters
-    ----------
-    blocks : tuple of tuple of int
-        Indices of the states of each block.
-    parts : tuple of (int, AbstractEvidence)
-        Index of a block, and evidence for its family of diagonal blocks.
     """
 
     kind: ClassVar[str] = "block-triangular"
@@ -39,7 +32,8 @@ class BlockTriangular(AbstractEvidence):
     attains_rate: ClassVar[bool] = False
     covers_mixtures: ClassVar[bool] = True
 
-    blocks: Blocks
+    blocks: Blocks  # Indices of the states of each block
+    # Index of a block, and evidence for its family of diagonal blocks.
     parts: tuple[tuple[int, AbstractEvidence], ...]
 
     @property

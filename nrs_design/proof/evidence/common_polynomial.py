@@ -42,32 +42,21 @@ class CommonPolynomial(AbstractFunction):
 
     Since ``z' N_i z = 0`` for all x, mode i satisfies ``V' = z'(L'Q + QL - N_i) z`` with the
     lifted mode L, and ``V' < -2 d alpha V`` if ``-(L'Q + QL + 2 d alpha Q) + N_i > 0``.
-
-    Parameters
-    ----------
-    degree : int
-        The d: V has degree 2d.
-    Q : tuple of tuple of int, shape (K, K)
-        Numerators of the Gram matrix, in the monomials as `lift.monomials` orders them.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    vanishing : tuple of matrices, each of shape (K, K)
-        One N_i per mode, over the same denominator, times the positive integer that clears the
-        denominators of the decrease: that of the mode times that of ``2 d alpha`` times it, or in
-        discrete time that of the mode to the power 2d times that of ``rho^d`` squared.
-    rate : Fraction
-        alpha in 1/s, or rho per step.
     """
 
     kind: ClassVar[str] = "common-polynomial"
     bounds_at_once: ClassVar[bool] = True
     covers_mixtures: ClassVar[bool] = True
 
-    degree: int
+    degree: int  # The d: V has degree 2d
+    # Shape (K, K). Numerators of the Gram matrix, in the monomials as `lift.monomials` orders them.
     Q: Matrix
-    denominator_log2: int
+    denominator_log2: int  # Q is these numerators over two to this power
+    # Shape (K, K). One N_i per mode, over the same denominator, times the positive integer that
+    # clears the denominators of the decrease: that of the mode times that of ``2 d alpha`` times
+    # it, or in discrete time that of the mode to the power 2d times that of ``rho^d`` squared.
     vanishing: tuple[Matrix, ...]
-    rate: Fraction
+    rate: Fraction  # alpha in 1/s, or rho per step
 
     @property
     def keeps_bound_in_mixtures(self) -> bool:

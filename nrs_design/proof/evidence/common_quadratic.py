@@ -32,29 +32,19 @@ _FAILURE = "V does not decrease at the claimed rate"
 
 @dataclass(frozen=True, slots=True)
 class CommonQuadratic(AbstractFunction):
-    """``V(x) = x' Q x`` decreases in every mode.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    rate : Fraction
-        Continuous time: the decay rate alpha in 1/s, with ``A'Q + QA + 2 alpha Q < 0``.
-        Discrete time: the contraction rho per step, with ``A'QA < rho^2 Q``.
-    roundings : tuple of int
-        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
-        arithmetic rounds is covered.
-    """
+    """``V(x) = x' Q x`` decreases in every mode."""
 
     kind: ClassVar[str] = "common-quadratic"
     bounds_at_once: ClassVar[bool] = True
     covers_mixtures: ClassVar[bool] = True
 
-    Q: tuple[tuple[int, ...], ...]
-    denominator_log2: int
+    Q: tuple[tuple[int, ...], ...]  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q is these numerators over two to this power
+    # Continuous time: the decay rate alpha in 1/s, with ``A'Q + QA + 2 alpha Q < 0``. Discrete
+    # time: the contraction rho per step, with ``A'QA < rho^2 Q``.
     rate: Fraction
+    # Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+    # arithmetic rounds is covered.
     roundings: tuple[int, ...] = ()
 
     @property

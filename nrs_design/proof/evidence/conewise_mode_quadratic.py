@@ -53,18 +53,6 @@ class ConewiseModeQuadratic(AbstractFunction):
     for all i, j in contact and f, g free. A convex combination of modes has that of their
     functions, and the conditions hold for it: they are affine in the functions, and concave in a
     map. So the largest of all functions decreases too, whatever comes next.
-
-    Parameters
-    ----------
-    touching, flying : tuple of (str, matrix)
-        Names and integer numerators of the Q_i, shape (n, n), and R_f, shape (n - 1, n - 1), in
-        the order of the modes.
-    denominator_log2 : int
-        All of them, and the multipliers, are over two to this power.
-    rate : Fraction
-        The rho per step.
-    multipliers : tuple of int
-        The lambda_f.
     """
 
     kind: ClassVar[str] = "conewise-mode-quadratic"
@@ -72,11 +60,13 @@ class ConewiseModeQuadratic(AbstractFunction):
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
+    # touching, flying: names and integer numerators of the Q_i, shape (n, n), and R_f, shape (n -
+    # 1, n - 1), in the order of the modes.
     touching: Functions
     flying: Functions
-    denominator_log2: int
-    rate: Fraction
-    multipliers: tuple[int, ...]
+    denominator_log2: int  # All of them, and the multipliers, are over two to this power
+    rate: Fraction  # The rho per step
+    multipliers: tuple[int, ...]  # The lambda_f
 
     @property
     def keeps_bound_in_mixtures(self) -> bool:

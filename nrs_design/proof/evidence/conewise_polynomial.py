@@ -28,13 +28,6 @@ class ConewisePolynomial(AbstractEvidence):
     common polynomial of the free modes in y alone, whose Gram matrix is the block of Q that belongs
     to the monomials without delta. It is continuous where the two meet. For continuous time, and
     for springs: an environment with damping, which could pull, is not covered.
-
-    Parameters
-    ----------
-    in_contact : CommonPolynomial
-        For the modes in contact, with the rate that is claimed.
-    vanishing_free : tuple of matrices
-        For each free mode, a form in the monomials of y that vanishes, as in `CommonPolynomial`.
     """
 
     kind: ClassVar[str] = "conewise-polynomial"
@@ -43,7 +36,8 @@ class ConewisePolynomial(AbstractEvidence):
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
-    in_contact: CommonPolynomial
+    in_contact: CommonPolynomial  # For the modes in contact, with the rate that is claimed
+    # For each free mode, a form in the monomials of y that vanishes, as in `CommonPolynomial`.
     vanishing_free: tuple[Matrix, ...]
 
     @property

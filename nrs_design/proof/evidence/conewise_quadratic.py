@@ -62,22 +62,6 @@ class ConewiseQuadratic(AbstractFunction):
       q: ``rho^2 Q - F'QF + mu (e q + q' e') > 0`` if the deflection stays, and if it does not
       ``rho^2 Q - N' Q_yy N + mu (e q + q' e') + lambda (e c + c' e') > 0``, each mu and this lambda
       one for all free modes.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    rate : Fraction
-        The alpha in 1/s, or rho per step.
-    multipliers : tuple of int
-        The lambdas, over the denominator of Q: in continuous time one for each free mode and each
-        force in turn; in discrete time one, and for each force three more, as in
-        `nrs_design.proof.steps.Steps`.
-    roundings : tuple of int
-        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
-        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "conewise-quadratic"
@@ -85,10 +69,15 @@ class ConewiseQuadratic(AbstractFunction):
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
-    Q: Matrix
-    denominator_log2: int
-    rate: Fraction
+    Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q is these numerators over two to this power
+    rate: Fraction  # The alpha in 1/s, or rho per step
+    # The lambdas, over the denominator of Q: in continuous time one for each free mode and each
+    # force in turn; in discrete time one, and for each force three more, as in
+    # `nrs_design.proof.steps.Steps`.
     multipliers: tuple[int, ...]
+    # Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+    # arithmetic rounds is covered.
     roundings: tuple[int, ...] = ()
 
     @property

@@ -42,24 +42,15 @@ class ConstantForce(AbstractEvidence):
 
     Both are linear in A: convex combinations are covered. Free, V falls by a positive amount in
     every second, so the time without contact is finite.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    slope : int
-        The s, over the same denominator; positive.
     """
 
     kind: ClassVar[str] = "constant-force"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
-    Q: Matrix
-    denominator_log2: int
-    slope: int
+    Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q is these numerators over two to this power
+    slope: int  # The s, over the same denominator; positive
 
     @property
     def shows(self) -> Shows:

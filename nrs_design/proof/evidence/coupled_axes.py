@@ -58,23 +58,6 @@ class CoupledAxes(AbstractFunction):
     In discrete time, the forms are those of `nrs_design.proof.steps.Steps` for every motion, with
     the tau of what axes do to each other, and with those of what their arithmetic rounds if that is
     covered; their sums over the axes give ``V+ <= rho^2 V``.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q, tau and lambda are these numerators over two to this power.
-    rate : Fraction
-        The alpha in 1/s, or rho per step.
-    taus : tuple of int
-        One for each coupling of the system.
-    multipliers : tuple of int
-        The lambdas, as in `nrs_design.proof.evidence.conewise_quadratic`: in continuous time for
-        each free mode and each force in turn; none where contact is kept.
-    roundings : tuple of int
-        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
-        arithmetic rounds is covered.
     """
 
     kind: ClassVar[str] = "coupled-axes"
@@ -83,11 +66,15 @@ class CoupledAxes(AbstractFunction):
     covers_lost_contact: ClassVar[bool] = True
     covers_coupling: ClassVar[bool] = True
 
-    Q: Matrix
-    denominator_log2: int
-    rate: Fraction
-    taus: tuple[int, ...]
+    Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q, tau and lambda are these numerators over two to this power
+    rate: Fraction  # The alpha in 1/s, or rho per step
+    taus: tuple[int, ...]  # One for each coupling of the system
+    # The lambdas, as in `nrs_design.proof.evidence.conewise_quadratic`: in continuous time for each
+    # free mode and each force in turn; none where contact is kept.
     multipliers: tuple[int, ...] = ()
+    # Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+    # arithmetic rounds is covered.
     roundings: tuple[int, ...] = ()
 
     @property

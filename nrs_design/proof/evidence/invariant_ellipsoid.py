@@ -60,28 +60,6 @@ class InvariantEllipsoid(AbstractEvidence):
     entries and ``sum tau_k (w_k^2 - (q_k (x, d))^2)`` as further terms with one tau_k >= 0 for all
     motions, which add up to nothing positive over the axes. So V comes down to N, and
     ``[[Q, q'], [q, level^2/N]] > 0`` gives ``z^2 < level^2 V/N`` on every axis.
-
-    Parameters
-    ----------
-    channels : tuple of str
-        Names of the disturbances that act at once.
-    output : str
-        Name of the output.
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    shares : tuple of Fraction
-        The a_i: in 1/s, or per step with a sum below 1.
-    level : Fraction
-        In the unit of the output.
-    multipliers : tuple of int
-        Over the denominator of Q; none where contact is kept.
-    roundings : tuple of int
-        Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
-        arithmetic rounds is covered.
-    taus : tuple of int
-        Over the denominator of Q: one for each coupling of the system.
     """
 
     kind: ClassVar[str] = "invariant-ellipsoid"
@@ -89,15 +67,17 @@ class InvariantEllipsoid(AbstractEvidence):
     covers_lost_contact: ClassVar[bool] = True
     covers_coupling: ClassVar[bool] = True
 
-    channels: tuple[str, ...]
-    output: str
-    Q: Matrix
-    denominator_log2: int
-    shares: tuple[Fraction, ...]
-    level: Fraction
-    multipliers: tuple[int, ...] = ()
+    channels: tuple[str, ...]  # Names of the disturbances that act at once
+    output: str  # Name of the output
+    Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q is these numerators over two to this power
+    shares: tuple[Fraction, ...]  # The a_i: in 1/s, or per step with a sum below 1
+    level: Fraction  # In the unit of the output
+    multipliers: tuple[int, ...] = ()  # Over the denominator of Q; none where contact is kept
+    # Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
+    # arithmetic rounds is covered.
     roundings: tuple[int, ...] = ()
-    taus: tuple[int, ...] = ()
+    taus: tuple[int, ...] = ()  # Over the denominator of Q: one for each coupling of the system
 
     @property
     def shows(self) -> Shows:

@@ -36,24 +36,17 @@ class ModePolynomial(AbstractEvidence):
     The monomials follow a linear system themselves: ``z(A x) = L z(x)``, at a switch too. What
     `ModeQuadratic` asks of the modes is asked of the lifted ones, at the rate ``rho^d``; and as
     only monomials of some x matter, a form that vanishes identically may be added to each decrease.
-
-    Parameters
-    ----------
-    degree : int
-        The d: every V_i has degree 2d.
-    quadratic : ModeQuadratic
-        The Q_i, in the monomials as `lift.monomials` orders them, with the rate ``rho``.
-    vanishing : tuple of matrices
-        For each decrease, in the order of `ModeQuadratic.decreases`, integers N with ``z' N z = 0``
-        for all x.
     """
 
     kind: ClassVar[str] = "mode-polynomial"
     allows_unequal_modes: ClassVar[bool] = True
     attains_rate: ClassVar[bool] = True
 
-    degree: int
+    degree: int  # The d: every V_i has degree 2d
+    # The Q_i, in the monomials as `lift.monomials` orders them, with the rate ``rho``.
     quadratic: ModeQuadratic
+    # For each decrease, in the order of `ModeQuadratic.decreases`, integers N with ``z' N z = 0``
+    # for all x.
     vanishing: tuple[Matrix, ...]
 
     @property

@@ -55,28 +55,18 @@ class ModeQuadratic(AbstractFunction):
     show this for the shortest stay (Geromel and Colaneri 2006, for a dwell time; thesis 5.13, for
     none). A mode that must be left may be unstable: there it is shown for every stay from the
     shortest to the longest. In discrete time ``A_i / rho`` and its powers.
-
-    Parameters
-    ----------
-    functions : tuple of (str, matrix)
-        Mode names and the integer numerators of their Q_i, in the order of the modes.
-    denominator_log2 : int
-        All Q_i are these numerators over two to this power.
-    rate : Fraction
-        alpha in 1/s, or rho per step.
-    leaving : tuple of str
-        Modes in which V_i need not decrease, because they have a longest dwell time.
-    pieces : int
-        In continuous time, each stay in such a mode is enclosed in so many equal pieces.
     """
 
     kind: ClassVar[str] = "mode-quadratic"
     allows_unequal_modes: ClassVar[bool] = True
 
+    # Mode names and the integer numerators of their Q_i, in the order of the modes.
     functions: tuple[tuple[str, Matrix], ...]
-    denominator_log2: int
-    rate: Fraction
+    denominator_log2: int  # All Q_i are these numerators over two to this power
+    rate: Fraction  # alpha in 1/s, or rho per step
+    # Modes in which V_i need not decrease, because they have a longest dwell time.
     leaving: tuple[str, ...] = ()
+    # In continuous time, each stay in such a mode is enclosed in so many equal pieces.
     pieces: int = 1
 
     def fits(self, switching: Switching) -> bool:

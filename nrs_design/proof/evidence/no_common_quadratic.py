@@ -21,17 +21,13 @@ class NoCommonQuadratic(AbstractEvidence):
 
     If Q > 0 decreased in every mode, then ``0 > sum tr X_i (A_i'Q + Q A_i) = tr Q S >= 0`` with S
     that sum, a contradiction (X_i is not zero for all i, since S is not).
-
-    Parameters
-    ----------
-    factors : tuple of (str, matrix)
-        Mode names and the integer matrices L_i with n rows; modes left out have X_i = 0.
     """
 
     kind: ClassVar[str] = "no-common-quadratic"
     # It is a statement about matrices: no motion, with contact or without, is spoken of.
     covers_lost_contact: ClassVar[bool] = True
 
+    # Mode names and the integer matrices L_i with n rows; modes left out have X_i = 0.
     factors: tuple[tuple[str, Matrix], ...]
 
     @property

@@ -28,24 +28,16 @@ class ParameterQuadratic(AbstractFunction):
     With ``M_ab = -(A_a'Q_b + Q_b A_a + 2 alpha Q_b)``, the decrease at p is
     ``(1-p)^2 M_ll + p(1-p) (M_lh + M_hl) + p^2 M_hh``, positive definite if the three
     matrices ``M_ll``, ``M_hh`` and ``M_lh + M_hl`` are. The same for every pair of ends.
-
-    Parameters
-    ----------
-    low, high : tuple of tuple of int, shape (n, n)
-        Numerators of Q at the two ends of the parameter.
-    denominator_log2 : int
-        Both are over two to this power.
-    rate : Fraction
-        alpha in 1/s.
     """
 
     kind: ClassVar[str] = "parameter-quadratic"
     bounds_at_once: ClassVar[bool] = True
 
+    # low, high: shape (n, n). Numerators of Q at the two ends of the parameter.
     low: Matrix
     high: Matrix
-    denominator_log2: int
-    rate: Fraction
+    denominator_log2: int  # Both are over two to this power
+    rate: Fraction  # alpha in 1/s
 
     @property
     def keeps_bound_in_mixtures(self) -> bool:

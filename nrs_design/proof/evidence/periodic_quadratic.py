@@ -35,20 +35,6 @@ class PeriodicQuadratic(AbstractFunction):
     system of their own, and the conditions are those of `nrs_design.proof.steps.Steps` for it, from
     Q_j to Q_(j+1): ``rho^2 Q_j - A' Q_(j+1) A > 0`` for every mode, and where contact may be lost,
     ``w = (y, max(delta, 0))``, with what `nrs_design.proof.evidence.conewise_quadratic` adds.
-
-    Parameters
-    ----------
-    functions : tuple of matrix, each of shape (n, n)
-        Integer numerators of the Q_j, from the first step of a round on.
-    denominator_log2 : int
-        All of them, and all multipliers, are over two to this power.
-    rate : Fraction
-        The rho per step.
-    multipliers : tuple of tuple of int
-        For each step, as in `nrs_design.proof.evidence.conewise_quadratic`; empty where contact is
-        not lost.
-    roundings : tuple of tuple of int
-        For each step the multipliers for what the arithmetic rounds, if that is covered.
     """
 
     kind: ClassVar[str] = "periodic-quadratic"
@@ -57,10 +43,14 @@ class PeriodicQuadratic(AbstractFunction):
     covers_lost_contact: ClassVar[bool] = True
     covers_clock: ClassVar[bool] = True
 
+    # Shape (n, n). Integer numerators of the Q_j, from the first step of a round on.
     functions: tuple[Matrix, ...]
-    denominator_log2: int
-    rate: Fraction
+    denominator_log2: int  # All of them, and all multipliers, are over two to this power
+    rate: Fraction  # The rho per step
+    # For each step, as in `nrs_design.proof.evidence.conewise_quadratic`; empty where contact is
+    # not lost.
     multipliers: tuple[tuple[int, ...], ...] = ()
+    # For each step the multipliers for what the arithmetic rounds, if that is covered.
     roundings: tuple[tuple[int, ...], ...] = ()
 
     @property

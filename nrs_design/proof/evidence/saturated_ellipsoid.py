@@ -44,32 +44,18 @@ class SaturatedEllipsoid(AbstractEvidence):
 
     and the set ``V <= 1`` lies where the rows keep their limits: ``[[Q, h'], [h, limit^2]] > 0``.
     All are linear in the matrices: convex combinations of modes are covered.
-
-    Parameters
-    ----------
-    Q : tuple of tuple of int, shape (n, n)
-        Numerators of the symmetric matrix.
-    denominator_log2 : int
-        Q is these numerators over two to this power.
-    rate : Fraction
-        The alpha in 1/s.
-    H : tuple of tuple of int, shape (signals, n)
-        Numerators of the rows h.
-    H_denominator_log2 : int
-        H is these numerators over two to this power.
-    level : Fraction
-        Motions that begin at the start of the system, at this size at most, begin in ``V <= 1``.
     """
 
     kind: ClassVar[str] = "saturated-ellipsoid"
     covers_mixtures: ClassVar[bool] = True
     covers_lost_contact: ClassVar[bool] = True
 
-    Q: Matrix
-    denominator_log2: int
-    rate: Fraction
-    H: Matrix
-    H_denominator_log2: int
+    Q: Matrix  # Shape (n, n). Numerators of the symmetric matrix.
+    denominator_log2: int  # Q is these numerators over two to this power
+    rate: Fraction  # The alpha in 1/s
+    H: Matrix  # Shape (signals, n). Numerators of the rows h.
+    H_denominator_log2: int  # H is these numerators over two to this power
+    # Motions that begin at the start of the system, at this size at most, begin in ``V <= 1``.
     level: Fraction
 
     @property

@@ -34,27 +34,13 @@ _ROWS = 10
 
 @dataclass(frozen=True, eq=False)
 class BoundedSignal:
-    """One quantity over time.
+    """One quantity over time."""
 
-    Parameters
-    ----------
-    label : str
-        With its unit.
-    values : ndarray, shape (N + 1, r)
-        For every row of it.
-    limit : float or None
-        Of the spec.
-    bound : ndarray, shape (N + 1,), or None
-        Certified.
-    one_sided : bool
-        Nothing bounds negative values.
-    """
-
-    label: str
-    values: Array
-    limit: float | None
-    bound: Array | None
-    one_sided: bool = False
+    label: str  # With its unit
+    values: Array  # Shape (N + 1, r). For every row of it.
+    limit: float | None  # Of the spec
+    bound: Array | None  # Shape (N + 1,). Certified.
+    one_sided: bool = False  # Nothing bounds negative values
 
 
 @styled

@@ -119,7 +119,7 @@ def _draw_bounds(axes: Axes, item: ImpedanceAnalysis, found: CostMap) -> None:
 
 @styled
 def draw_delay_borne(items: Sequence[ImpedanceAnalysis], sampled: float | None) -> Figure:
-    """Draw the smallest dead time that destabilizes, over the stiffness of the contact.
+    """Draw the delay margin over the stiffness of the contact.
 
     Parameters
     ----------

@@ -54,78 +54,40 @@ _LETTERS = 56
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
-    """One signal.
+    """One signal."""
 
-    Parameters
-    ----------
-    t, y : ndarray, shape (N,)
-        In s, and in the unit of the panel.
-    label : str
-        For the legend.
-    look : int
-        Which colour and dashes.
-    printed : bool
-        Whether these are numbers that a publication prints: crosses, not a line.
-    """
-
+    # t, y: shape (N,). In s, and in the unit of the panel.
     t: NDArray[np.float64]
     y: NDArray[np.float64]
-    label: str
-    look: int = 0
+    label: str  # For the legend
+    look: int = 0  # Which colour and dashes
+    # Whether these are numbers that a publication prints: crosses, not a line.
     printed: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """Axes with signals.
+    """Axes with signals."""
 
-    Parameters
-    ----------
-    label : str
-        Quantity and unit.
-    curves : tuple of Curve
-        Signals.
-    limits : tuple of float
-        Horizontal lines.
-    limit : str
-        What they are.
-    ticks : tuple of float
-        Where the axis has numbers; by default matplotlib says.
-    other : tuple of (str, float) or None
-        Quantity and unit of a second scale at the right, and what one unit is there.
-    """
-
-    label: str
-    curves: tuple[Curve, ...]
-    limits: tuple[float, ...] = ()
-    limit: str = "limit"
-    ticks: tuple[float, ...] = ()
+    label: str  # Quantity and unit
+    curves: tuple[Curve, ...]  # Signals
+    limits: tuple[float, ...] = ()  # Horizontal lines
+    limit: str = "limit"  # What they are
+    ticks: tuple[float, ...] = ()  # Where the axis has numbers; by default matplotlib says
+    # Quantity and unit of a second scale at the right, and what one unit is there.
     other: tuple[str, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PanelColumn:
-    """A run: a column of panels.
+    """A run: a column of panels."""
 
-    Parameters
-    ----------
-    title : str
-        Above it; may be empty.
-    panels : tuple of Panel
-        From top to bottom, alike in all columns.
-    span : tuple of (float, float)
-        Which time is shown, in s.
-    stays : tuple of (float, float, str)
-        From when to when which controller is in force; empty where there is but one.
-    instants : tuple of float
-        Times that a publication names, in s.
-    """
-
-    title: str
-    panels: tuple[Panel, ...]
-    span: tuple[float, float]
+    title: str  # Above it; may be empty
+    panels: tuple[Panel, ...]  # From top to bottom, alike in all columns
+    span: tuple[float, float]  # Which time is shown, in s
+    # From when to when which controller is in force; empty where there is but one.
     stays: tuple[tuple[float, float, str], ...] = ()
-    instants: tuple[float, ...] = ()
+    instants: tuple[float, ...] = ()  # Times that a publication names, in s
 
 
 @styled

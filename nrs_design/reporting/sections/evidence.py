@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from nrs_design.reporting.document import Paragraph, Section
-from nrs_design.reporting.kinds import page_of
-from nrs_design.reporting.kinds.shared.run import unbounded_run
+from nrs_design.reporting.evidence import page_of
+from nrs_design.reporting.evidence.runs import unbounded_run
 
 if TYPE_CHECKING:
     from nrs_design.search.certification import Certification

@@ -7,43 +7,12 @@ from typing import TYPE_CHECKING
 
 from nrs_design.reporting.document import Linked, Sentence
 from nrs_design.spec import InteractionDesignSpec, SwitchedSystemSpec
-from nrs_design.switched import assumption_kinds as kinds
 
 if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
     from nrs_design.switched.assumption import AssumptionKind
 
 At = tuple[str | int, ...]
-# Where a spec says what an assumption is about.
-_ASSUMED: dict[AssumptionKind, At] = {
-    kinds.MOTOR: ("actuator",),
-    kinds.NOMINAL_MOTOR: ("actuator",),
-    kinds.LOAD: ("actuator", "load_inertia"),
-    kinds.COMMAND_UNIT: ("actuator", "gain"),
-    kinds.INPUTS: ("disturbances",),
-    kinds.FRICTION: ("disturbances",),
-    kinds.LINKS: ("coupling",),
-    kinds.JOINT_SPEED: ("coupling",),
-    kinds.GRAVITY: ("coupling",),
-    kinds.TISSUE: ("environments",),
-    kinds.PRELOAD: ("environments",),
-    kinds.LINEARIZED: ("environments",),
-    kinds.COVERAGE: ("environments",),
-    kinds.DOUBT: ("environments",),
-    kinds.CONTACTS: ("controllers",),
-    kinds.CONTACT_KEPT: ("contact",),
-    kinds.CONTACT_LOST: ("contact",),
-    kinds.IDLE: ("idle_states",),
-    kinds.RULES: ("switching",),
-    kinds.ANY_SIGNAL: ("switching",),
-    kinds.LOGIC: ("mode_logic",),
-    kinds.PERIOD: ("sampling", "period"),
-    kinds.SAMPLE_AGE: ("sampling", "delay"),
-    kinds.SENSOR: ("sensor",),
-    kinds.NUMBERS: ("controllers",),
-    kinds.MATRICES: ("modes",),
-    kinds.RANGE: ("parameters",),
-}
 
 
 def linked(loaded: LoadedSpec, text: str, *at: str | int) -> str:
@@ -100,4 +69,4 @@ def contact_at(loaded: LoadedSpec, text: str) -> At:
 
 def assumed_at(kind: AssumptionKind) -> At:
     """Return where a spec says what an assumption is about, if it does."""
-    return _ASSUMED.get(kind, ())
+    return tuple(kind.field.split(".")) if kind.field else ()

@@ -11,7 +11,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Bullets, Paragraph, Section
-from nrs_design.reporting.kinds import page_of
+from nrs_design.reporting.evidence import page_of
 from nrs_design.reporting.sections.head import NO_CLAIM
 from nrs_design.reporting.sections.titles import MEANT
 from nrs_design.spec import InteractionDesignSpec

@@ -12,13 +12,13 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.release import physical_outputs
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
+from nrs_design.reporting.evidence import page_of
 from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
 from nrs_design.reporting.formatting import number
-from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.places import linked
+from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.release import certified, simulate_release
-from nrs_design.simulation.rounds import all_modes
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result

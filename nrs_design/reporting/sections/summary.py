@@ -14,8 +14,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.reporting.document import Derived, Light, Sentence, State
+from nrs_design.reporting.evidence import page_of
 from nrs_design.reporting.formatting import plural
-from nrs_design.reporting.kinds import page_of
 from nrs_design.reporting.register import register_of
 from nrs_design.reporting.sections.goals import judged_goals
 from nrs_design.reporting.sections.head import proved_rate, saturated
@@ -62,7 +62,7 @@ def summary_of(result: Result) -> tuple[str, str]:
         return _proved(result, evidence), granted
     kept = _grown(system, evidence)
     if system.roundings:
-        kept += ", among modes that enclose what the motor does"
+        kept += ", for an over-approximation of the motor"
     name = page_of(system, evidence).name
     return (
         f"Refuted: no guarantee of stability is possible under {_signals(system)}{kept}; the "

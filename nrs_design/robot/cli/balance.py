@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
 from nrs_design.cli.tables import print_table
 from nrs_design.robot.cli.options import Figures, write_figures
 
@@ -19,9 +19,11 @@ _COLUMNS = {
 }
 
 
+@command("robot-balance")
 def balance(
-    spec: SpecFile, figures: Figures = None, as_json: Json = False, quiet: Quiet = False
-) -> None:
+    spec: SpecFile,
+    figures: Figures = None,
+) -> Answer:
     """Compute the passive balance, and the torque that remains over the workspace.
 
     Example: nrs-design robot balance specs/robots/neuroboscope.nrs.yaml
@@ -37,7 +39,7 @@ def balance(
         from nrs_design.robot.reporting.figures.robot import draw_balance
 
         drawn = draw_balance(torques.gravity, torques.residual)
-        files = write_figures(figures, {"balance": drawn}, quiet=quiet)
+        files = write_figures(figures, {"balance": drawn})
     content: dict[str, Any] = {
         "tilt": wanted.tilt,
         "left": asdict(wanted.left),
@@ -47,11 +49,10 @@ def balance(
         "units": {"mass": "kg", "distance": "m", "stiffness": "N/m", "torque": "N*m"},
         "files": files,
     }
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-balance", head | content)
-    if as_json or quiet:
-        return
+    return Answer(lambda: spec_facts(loaded) | content, lambda: _print(content))
+
+
+def _print(content: dict[str, Any]) -> None:
     print_table(
         "",
         ["leg", *(title for title, _ in _COLUMNS.values())],

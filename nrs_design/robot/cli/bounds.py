@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile, read_work
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.options import SpecFile, read_work
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.robot.cli.options import Figures, write_figures
 
@@ -28,6 +29,7 @@ _ROWS = (
 )
 
 
+@command("robot-bounds")
 def bounds(
     spec: SpecFile,
     phi: Annotated[
@@ -57,9 +59,7 @@ def bounds(
         typer.Option("--check", help="Compute again what the file beside the spec claims."),
     ] = False,
     figures: Figures = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Bound inertia, Coriolis torques and gravity of the links over a workspace, rigorously.
 
     Boxes of poses are halved until interval arithmetic shows each of them to be below a goal, which
@@ -74,7 +74,7 @@ def bounds(
     --depth 155,235
     """
     if check:
-        _check(spec, budget, as_json=as_json, quiet=quiet)
+        return _check(spec, budget)
     from nrs_design import __version__
     from nrs_design.output import BOUNDS, check_place, write_output
     from nrs_design.pipeline import placed
@@ -88,34 +88,35 @@ def bounds(
         check_place(file, BOUNDS)
     loaded, _, robot = run_robot(spec)
     space = _narrowed(Space.of(robot.workspace), phi, psi, depth)
-    with placed(loaded), progress(f"bounds of {loaded.spec.name}", quiet=quiet, lines=True) as step:
+    with placed(loaded), progress(f"bounds of {loaded.spec.name}", lines=True) as step:
         found = compute_bounds(robot, space, budget, step)
     document = bounds_document(loaded.spec.name, loaded.sha256, space, found, __version__)
-    files = _draw(figures, robot, space, found, quiet=quiet) if figures is not None else []
+    files = _draw(figures, robot, space, found) if figures is not None else []
     if file is not None:
         write_output(file, json_text(document) + "\n", replaces=BOUNDS)
-        note(f"written to {file}", quiet=quiet)
-    if as_json:
-        content = {key: value for key, value in document.items() if key != "schema"}
-        print_json("robot-bounds", content | {"file": file and str(file), "files": files})
-    elif not quiet:
-        _print(document)
+        note(f"written to {file}")
+    content = {key: value for key, value in document.items() if key != "schema"}
+    content |= {"file": file and str(file), "files": files}
+    return Answer(lambda: content, lambda: _print(document))
 
 
-def _check(spec: Path, budget: float, *, as_json: bool, quiet: bool) -> None:
+def _check(spec: Path, budget: float) -> Answer:
     from nrs_design.robot.pipeline import check_robot_bounds
 
-    with progress(f"bounds of {spec.name}", quiet=quiet, lines=True) as step:
+    with progress(f"bounds of {spec.name}", lines=True) as step:
         file, faults = check_robot_bounds(spec, budget, step)
-    if as_json:
-        print_json("robot-bounds-check", {"file": str(file), "faults": list(faults)})
-    elif faults:
+
+    def show() -> None:
+        if not faults:
+            say(f"{file} holds: every bound was computed again")
+            return
         say(f"REJECTED: {file} claims what does not hold", verdict="rejected")
         for fault in faults:
             say(f"  {fault}")
-    elif not quiet:
-        say(f"{file} holds: every bound was computed again")
-    raise typer.Exit(exit_codes.REFUTED if faults else exit_codes.PROVED)
+
+    facts = {"file": str(file), "faults": list(faults)}
+    code = exit_codes.unless(faults)
+    return Answer(lambda: facts, show, code, loud=bool(faults), name="robot-bounds-check")
 
 
 def _narrowed(space: Space, phi: float | None, psi: float | None, depth: str | None) -> Space:
@@ -154,9 +155,7 @@ def _print(document: Mapping[str, Any]) -> None:
     print_table("", ["quantity", "bound (shown)", "found", "at phi, psi, d", "boxes"], rows)
 
 
-def _draw(
-    figures: Path, robot: Robot, space: Space, found: Mapping[str, Enclosed], *, quiet: bool
-) -> list[str]:
+def _draw(figures: Path, robot: Robot, space: Space, found: Mapping[str, Enclosed]) -> list[str]:
     from nrs_design.robot.reporting.figures.robot_bounds import draw_bounds
 
-    return write_figures(figures, {"bounds": draw_bounds(robot, space, found)}, quiet=quiet)
+    return write_figures(figures, {"bounds": draw_bounds(robot, space, found)})

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, say
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import insist, say
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Robot, WorkspaceSurvey
 
 
-def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
+@command("robot-check")
+def check(spec: SpecFile) -> Answer:
     """Validate a robot spec: reach over its workspace, mass, and a sound mass matrix.
 
     Exit code 1: a part of the workspace that the spec declares cannot be reached.
@@ -31,19 +31,22 @@ def check(spec: SpecFile, as_json: Json = False, quiet: Quiet = False) -> None:
     with placed(loaded):
         survey = survey_workspace(robot)
         inertia = examine_inertia(robot).tolist()
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256, "valid": True}
-        print_json("robot-check", head | _summary(robot, survey, inertia))
-    elif not quiet:
-        say(f"{spec}: valid robot {loaded.spec.name!r}")
-        _print(robot, survey, inertia)
     if survey.obstacle is not None:
         place = loaded.place("workspace")
-        note(
+        insist(
             f"{spec}:{place.line}: {_share(1 - survey.reachable)} of the declared workspace cannot "
             f"be reached; {survey.obstacle.message}"
         )
-    raise typer.Exit(exit_codes.PROVED if survey.obstacle is None else exit_codes.REFUTED)
+
+    def show() -> None:
+        say(f"{spec}: valid robot {loaded.spec.name!r}")
+        _print(robot, survey, inertia)
+
+    return Answer(
+        lambda: {**spec_facts(loaded), "valid": True, **_summary(robot, survey, inertia)},
+        show,
+        exit_codes.unless(survey.obstacle is not None),
+    )
 
 
 def _share(fraction: float) -> str:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import note
 from nrs_design.cli.tables import print_table
 from nrs_design.robot.cli.options import Figures, write_figures
 
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from nrs_design.robot.models import Correction, SeparateCorrection, Sine, TiltTable
 
 
+@command("robot-correction")
 def correction(
     spec: SpecFile,
     table: Annotated[
@@ -25,9 +27,7 @@ def correction(
         ),
     ] = None,
     figures: Figures = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Compute correction coefficients over trajectories and over the tilt of the base.
 
     Example: nrs-design robot correction specs/robots/neuroboscope.nrs.yaml --table correction.csv
@@ -59,17 +59,18 @@ def correction(
 
         drawn = draw_correction(tilts, *with_angles)
         named = {"correction": drawn, "inertia-errors": draw_inertia_errors(apart)}
-        files += write_figures(figures, named, quiet=quiet)
+        files += write_figures(figures, named)
     if table is not None:
         write_output(table, to_csv(tilts), replaces=TABLE)
         files.insert(0, str(table))
-        note(f"table written to {table}", quiet=quiet)
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-correction", head | _document(rows, tilts, apart) | {"files": files})
-    elif not quiet:
+        note(f"table written to {table}")
+
+    def show() -> None:
         _print(rows, tilts)
         _print_apart(apart)
+
+    facts = spec_facts(loaded)
+    return Answer(lambda: facts | _document(rows, tilts, apart) | {"files": files}, show)
 
 
 def _document(

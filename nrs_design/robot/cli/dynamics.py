@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
 from nrs_design.robot.cli.options import (
     Acceleration,
     Figures,
@@ -40,6 +40,7 @@ TABLES: Tables = {
 }
 
 
+@command("robot-dynamics")
 def dynamics(
     spec: SpecFile,
     pose: Pose = None,
@@ -47,9 +48,7 @@ def dynamics(
     acceleration: Acceleration = None,
     tilt: Tilt = None,
     figures: Figures = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Print M, G, Ms and Gs at a pose, and the torques of a motion; or the torque's shares.
 
     Example: nrs-design robot dynamics specs/robots/neuroboscope.nrs.yaml --pose 0,0,0.2 --json
@@ -76,14 +75,9 @@ def dynamics(
     if figures is not None:
         from nrs_design.robot.reporting.figures.robot import draw_torque_shares
 
-        content["files"] = write_figures(
-            figures, {"torque-shares": draw_torque_shares(robot)}, quiet=quiet
-        )
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-dynamics", head | content)
-    elif not quiet:
-        print_quantities(content, TABLES)
+        content["files"] = write_figures(figures, {"torque-shares": draw_torque_shares(robot)})
+    facts = spec_facts(loaded) | content
+    return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
 
 
 def _at_pose(

@@ -10,8 +10,9 @@ from typing import Annotated
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters import ROBOT_FORMATS, Format
 
@@ -28,6 +29,7 @@ class RobotFormat(StrEnum):
             vars()[name.upper()] = name
 
 
+@command("robot-export")
 def export(
     spec: SpecFile,
     format_: Annotated[
@@ -49,9 +51,7 @@ def export(
             "and the exit code stays 3.",
         ),
     ] = False,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Export links, joints and inertias of a robot for MuJoCo or as URDF, or its control in C.
 
     No certificate covers the nonlinear dynamics of three axes: C and vectors are written with
@@ -79,22 +79,24 @@ def export(
     written: list[str] = []
     if unproved or not chosen.executable:
         module = import_module(f"nrs_design.robot.exporters.{chosen.module}")
-        with progress(f"exporting {loaded.spec.name}", quiet=quiet), placed(loaded):
+        with progress(f"exporting {loaded.spec.name}"), placed(loaded):
             contents = module.render(RobotExport(loaded, robot, origin))
         write_files(chosen, files, contents)
         written = list(map(str, files.values()))
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        verdict = {"verdict": INCONCLUSIVE} if chosen.executable else {}
-        print_json("robot-export", {**head, "format": str(format_), "files": written, **verdict})
-    elif not written:
-        # Nothing was written, which is an error of its own.
-        note(f"{loaded.spec.name}: not exported: {UNPROVED} (--unproved exports it and says so)")
-    elif not quiet:
-        unproved_text = f"UNPROVED ({UNPROVED}), " if chosen.executable else ""
-        say(f"{loaded.spec.name}: {unproved_text}exported to {', '.join(written)}")
-    if chosen.executable:
-        raise typer.Exit(exit_codes.OF_VERDICT[INCONCLUSIVE])
+    verdict = {"verdict": INCONCLUSIVE} if chosen.executable else {}
+    facts = {**spec_facts(loaded), "format": str(format_), "files": written, **verdict}
+
+    def show() -> None:
+        name = loaded.spec.name
+        if written:
+            unproved_text = f"UNPROVED ({UNPROVED}), " if chosen.executable else ""
+            say(f"{name}: {unproved_text}exported to {', '.join(written)}")
+        else:
+            note(f"{name}: not exported: {UNPROVED} (--unproved exports it and says so)")
+
+    code = exit_codes.INCONCLUSIVE if chosen.executable else exit_codes.PROVED
+    # That nothing was written is an error of its own.
+    return Answer(lambda: facts, show, code, loud=not written)
 
 
 def _check_unproved(chosen: Format, *, unproved: bool) -> None:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
 from nrs_design.robot.cli.options import Figures, Pose, read_pose, three_numbers, write_figures
 from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, print_quantities
 
@@ -36,6 +36,7 @@ TABLES: Tables = {
 }
 
 
+@command("robot-kinematics")
 def kinematics(
     spec: SpecFile,
     pose: Pose = None,
@@ -44,9 +45,7 @@ def kinematics(
         typer.Option("--joints", metavar="T1,T2,T3", help="Joint angles in rad, for their pose."),
     ] = None,
     figures: Figures = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Solve the kinematics at a pose or joint angles, or survey the workspace.
 
     Example: nrs-design robot kinematics specs/robots/neuroboscope.nrs.yaml --pose 0.1,-0.2,0.2
@@ -67,12 +66,9 @@ def kinematics(
     if figures is not None:
         from nrs_design.robot.reporting.figures.robot import draw_workspace
 
-        content["files"] = write_figures(figures, {"workspace": draw_workspace(robot)}, quiet=quiet)
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-kinematics", head | content)
-    elif not quiet:
-        print_quantities(content, TABLES)
+        content["files"] = write_figures(figures, {"workspace": draw_workspace(robot)})
+    facts = spec_facts(loaded) | content
+    return Answer(lambda: facts, lambda: print_quantities(content, TABLES))
 
 
 def _at_pose(robot: Robot, pose: tuple[float, ...]) -> dict[str, Any]:

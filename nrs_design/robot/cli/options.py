@@ -87,7 +87,7 @@ def read_pose(text: str, robot: Robot) -> tuple[float, float, float]:
     return phi, psi, d
 
 
-def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -> list[str]:
+def write_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:
     """Write every figure as SVG and PNG; return the files.
 
     Parameters
@@ -96,8 +96,6 @@ def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -
         Where they go.
     figures : mapping
         By the name of the file.
-    quiet : bool
-        Do not say where.
     """
     from nrs_design.output import PNG, SVG, Output, write_outputs
     from nrs_design.reporting.images import to_png, to_svg_file
@@ -109,5 +107,5 @@ def write_figures(folder: Path, figures: Mapping[str, Figure], *, quiet: bool) -
             (folder / f"{name}.png", to_png(figure), PNG),
         ]
     write_outputs(outputs)
-    note(f"figures written to {folder}", quiet=quiet)
+    note(f"figures written to {folder}")
     return [str(path) for path, _, _ in outputs]

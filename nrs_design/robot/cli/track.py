@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import print_json, progress, say
+from nrs_design.cli.command import Answer, command, spec_facts
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
 from nrs_design.robot.cli.options import Figures, Tilt, write_figures
@@ -39,6 +40,7 @@ class ExperimentOption(StrEnum):
     ALL = ALL
 
 
+@command("robot-track")
 def track(
     spec: SpecFile,
     controller: Annotated[
@@ -67,9 +69,7 @@ def track(
         ),
     ] = False,
     figures: Figures = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Simulate the motion controllers of thesis 4.2 to 4.4 and compare their tracking errors.
 
     Links and steps are those of `nrs-design simulate` with three axes. The loop is not: these laws
@@ -82,7 +82,7 @@ def track(
     loaded, robot_spec, robot = run_robot(spec)
     robot = _on_base(robot_spec, robot, tilt)
     moved = None if experiment is ExperimentOption.ALL else experiment.value
-    with progress("simulating", quiet=quiet) as tell:
+    with progress("simulating") as tell:
         records = _records(robot_spec, robot, controller, moved, period, tell)
         changes = _ablation(robot_spec, robot, moved, period, tell) if ablation else []
     runs = [_run(robot_spec, robot, record) for record in records]
@@ -91,16 +91,16 @@ def track(
         from nrs_design.robot.reporting.figures.tracking import draw_tracking
 
         drawn = draw_tracking(records, [run["measured_on_robot"] for run in runs])
-        files = write_figures(figures, {"tracking": drawn}, quiet=quiet)
-    if as_json:
-        head = {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}
-        print_json("robot-track", head | _document(robot, runs, changes) | {"files": files})
-    if as_json or quiet:
-        return
-    _print_runs(runs)
-    if ablation:
-        _print_ablation(changes)
-    _print_left_out()
+        files = write_figures(figures, {"tracking": drawn})
+
+    def show() -> None:
+        _print_runs(runs)
+        if ablation:
+            _print_ablation(changes)
+        _print_left_out()
+
+    facts = spec_facts(loaded)
+    return Answer(lambda: facts | _document(robot, runs, changes) | {"files": files}, show)
 
 
 def _on_base(spec: RobotSpec, robot: Robot, tilt: float | None) -> Robot:

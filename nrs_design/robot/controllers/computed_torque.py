@@ -20,33 +20,17 @@ class ComputedTorque:
 
     The law of the thesis knows the robot and not its motors. Their inertia and damping, as seen
     from the joints, can be added, to see what that costs; both are 0 in the thesis.
-
-    Parameters
-    ----------
-    Kp, Kd : float
-        In 1/s^2 and 1/s (thesis 4.15).
-    period : float
-        Time between two ticks in s.
-    encoder_ratio : float
-        Turns n of the encoder per turn of the joint.
-    command_per_torque : float
-        Command that holds a joint torque, ``gradient/N`` in rpm/(N m).
-    load : LoadModel
-        Inertia and weight.
-    rotor_inertia : float
-        Of a motor at its joint, in kg m^2.
-    motor_damping : float
-        Torque per speed of the reference, at the joint, in N m s/rad.
     """
 
+    # Kp, Kd: in 1/s^2 and 1/s (thesis 4.15).
     Kp: float
     Kd: float
-    period: float
-    encoder_ratio: float
-    command_per_torque: float
-    load: LoadModel
-    rotor_inertia: float = 0.0
-    motor_damping: float = 0.0
+    period: float  # Time between two ticks in s
+    encoder_ratio: float  # Turns n of the encoder per turn of the joint
+    command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
+    load: LoadModel  # Inertia and weight
+    rotor_inertia: float = 0.0  # Of a motor at its joint, in kg m^2
+    motor_damping: float = 0.0  # Torque per speed of the reference, at the joint, in N m s/rad
 
     def step(
         self, state: LawState, reference: JointReference, angle: Array

@@ -18,25 +18,14 @@ class IndependentJoint:
     ``delta = Kp e + Kd e' + (gradient/N) K_corr Gs``, the error e in encoder coordinates. The
     thesis prints 4.32 and 4.36 with the speed-torque gradient before all three terms; the PD of
     4.30 is designed from encoder angle to command, so that it is in rpm already.
-
-    Parameters
-    ----------
-    motion : ProportionalDerivative
-        Gains in rpm/rad and rpm s/rad, as on the robot in single precision.
-    period : float
-        Time between two ticks in s.
-    encoder_ratio : float
-        Turns of the encoder per turn of the joint.
-    command_per_torque : float
-        Command that holds a joint torque, ``gradient/N`` in rpm/(N m).
-    load : LoadModel or None
-        Where the weight comes from. None feeds nothing forward, for the balanced robot (4.36).
     """
 
+    # Gains in rpm/rad and rpm s/rad, as on the robot in single precision.
     motion: ProportionalDerivative
-    period: float
-    encoder_ratio: float
-    command_per_torque: float
+    period: float  # Time between two ticks in s
+    encoder_ratio: float  # Turns of the encoder per turn of the joint
+    command_per_torque: float  # Command that holds a joint torque, ``gradient/N`` in rpm/(N m)
+    # Where the weight comes from. None feeds nothing forward, for the balanced robot (4.36).
     load: LoadModel | None
 
     def step(

@@ -17,40 +17,21 @@ from nrs_design.robot.models.vectors import Array
 
 @dataclass(frozen=True, slots=True)
 class LoadTerms:
-    """Terms that hold where the encoders stand.
+    """Terms that hold where the encoders stand."""
 
-    Parameters
-    ----------
-    angle : ndarray
-        The encoders, shape (n, 3), in rad.
-    inertia : ndarray
-        Shape (n, 3, 3), in kg m^2.
-    gravity : ndarray
-        Shape (n, 3), in N m.
-    """
-
-    angle: Array
-    inertia: Array
-    gravity: Array
+    angle: Array  # The encoders, shape (n, 3), in rad
+    inertia: Array  # Shape (n, 3, 3), in kg m^2
+    gravity: Array  # Shape (n, 3), in N m
 
 
 @dataclass(frozen=True, slots=True)
 class LoadModel:
-    """Simplified dynamics with correction coefficients, ``K Ms`` and ``K Gs`` (thesis 4.17).
+    """Simplified dynamics with correction coefficients, ``K Ms`` and ``K Gs`` (thesis 4.17)."""
 
-    Parameters
-    ----------
-    robot : Robot
-        On its base.
-    encoder_ratio : float
-        Turns of the encoder per turn of the joint.
-    correction : tuple of float or None
-        K of the three joints (thesis 3.38). None takes the full dynamics M and G instead, which
-        are too much for the robot's processor: to see what the simplification costs.
-    """
-
-    robot: Robot
-    encoder_ratio: float
+    robot: Robot  # On its base
+    encoder_ratio: float  # Turns of the encoder per turn of the joint
+    # K of the three joints (thesis 3.38). None takes the full dynamics M and G instead, which are
+    # too much for the robot's processor: to see what the simplification costs.
     correction: tuple[float, float, float] | None
 
     def terms(self, angle: Array) -> LoadTerms:

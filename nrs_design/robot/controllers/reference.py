@@ -9,14 +9,10 @@ from nrs_design.robot.models.vectors import Array
 
 @dataclass(frozen=True, slots=True)
 class JointReference:
-    """Wanted motion of the joints, at one tick or at many.
+    """Wanted motion of the joints, at one tick or at many."""
 
-    Parameters
-    ----------
-    position, velocity, acceleration : ndarray
-        Of theta1, theta2, theta3 (not of the encoders), shape (..., 3), in rad and s.
-    """
-
+    # position, velocity, acceleration: of theta1, theta2, theta3 (not of the encoders), shape (...,
+    # 3), in rad and s.
     position: Array
     velocity: Array
     acceleration: Array

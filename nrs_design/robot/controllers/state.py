@@ -10,18 +10,11 @@ from nrs_design.robot.models.vectors import Array
 
 @dataclass(frozen=True, slots=True)
 class LawState:
-    """Memory of a law; empty before its first tick.
+    """Memory of a law; empty before its first tick."""
 
-    Parameters
-    ----------
-    error : ndarray or None
-        Tracking error of the last tick in encoder coordinates, shape (n, 3), in rad.
-    load : LoadTerms or None
-        The model at the last tick.
-    """
-
+    # Tracking error of the last tick in encoder coordinates, shape (n, 3), in rad.
     error: Array | None = None
-    load: LoadTerms | None = None
+    load: LoadTerms | None = None  # The model at the last tick
 
     def error_rate(self, error: Array, period: float) -> Array:
         """Return the backward difference of the error in rad/s; zero at the first tick."""

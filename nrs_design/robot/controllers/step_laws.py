@@ -35,20 +35,11 @@ TABLE_DIGITS = 6
 
 @dataclass(frozen=True, slots=True)
 class Joints:
-    """What the laws of a robot have in common.
+    """What the laws of a robot have in common."""
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    encoder_ratio : float
-        Turns of the encoder per turn of the joint.
-    command : Fraction or None
-        The command of a motor saturates there, rpm; a single-precision number, None for nowhere.
-    """
-
-    robot: Robot
-    encoder_ratio: float
+    robot: Robot  # The robot
+    encoder_ratio: float  # Turns of the encoder per turn of the joint
+    # The command of a motor saturates there, rpm; a single-precision number, None for nowhere.
     command: Fraction | None = None
 
     @property

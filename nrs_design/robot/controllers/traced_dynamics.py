@@ -40,31 +40,19 @@ class _Frame:
 
 @dataclass(frozen=True, slots=True)
 class _Loop:
-    """Crank l1 c and coupler l2 kappa of a leg.
+    """Crank l1 c and coupler l2 kappa of a leg."""
 
-    Parameters
-    ----------
-    crank, coupler : tuple
-        The two vectors.
-    across : Traced
-        One over the product of the coupler with the crank turned by a right angle.
-    along : Traced
-        The product of the coupler with the crank.
-    beta_1, beta_2, kappa_1, kappa_2 : Traced
-        Rates and accelerations of the angles of crank and coupler.
-    end_2 : tuple
-        Acceleration of the coupler's end.
-    """
-
+    # crank, coupler: the two vectors.
     crank: Pair
     coupler: Pair
-    across: Scalar
-    along: Scalar
+    across: Scalar  # One over the product of the coupler with the crank turned by a right angle
+    along: Scalar  # The product of the coupler with the crank
+    # beta_1, beta_2, kappa_1, kappa_2: rates and accelerations of the angles of crank and coupler.
     beta_1: Scalar
     beta_2: Scalar
     kappa_1: Scalar
     kappa_2: Scalar
-    end_2: Pair
+    end_2: Pair  # Acceleration of the coupler's end
 
 
 @dataclass(frozen=True, slots=True)

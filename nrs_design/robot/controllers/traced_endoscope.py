@@ -21,22 +21,14 @@ from nrs_design.robot.models.vectors import Scalar, Vector
 
 @dataclass(frozen=True, slots=True)
 class Axes:
-    """Base axes of the side legs, along that of the middle leg and across it.
+    """Base axes of the side legs, along that of the middle leg and across it."""
 
-    Parameters
-    ----------
-    first, second : tuple of float
-        In a length that makes the largest number one, and so that the endoscope points upwards.
-    up : float
-        Of their vector product, in that length.
-    size : float
-        That length: times it they are unit vectors.
-    """
-
+    # first, second: in a length that makes the largest number one, and so that the endoscope points
+    # upwards.
     first: tuple[float, float]
     second: tuple[float, float]
-    up: float
-    size: float
+    up: float  # Of their vector product, in that length
+    size: float  # That length: times it they are unit vectors
 
     @classmethod
     def of(cls, robot: Robot) -> Axes:
@@ -51,30 +43,16 @@ class Axes:
 
 @dataclass(frozen=True, slots=True)
 class Endoscope:
-    """Its direction.
+    """Its direction."""
 
-    Parameters
-    ----------
-    axes : Axes
-        Of the robot.
-    tangents : tuple
-        Of the turns of the side planes.
-    per_whole : Traced
-        One over the length of N.
-    cos_gamma, sin_gamma : Traced
-        In the plane of the middle leg.
-    cot : Traced
-        The cotangent there.
-    b : tuple
-        Direction in the plane of the middle leg across its base axis, in that of the three.
-    """
-
-    axes: Axes
-    tangents: tuple[Scalar, Scalar]
-    per_whole: Scalar
+    axes: Axes  # Of the robot
+    tangents: tuple[Scalar, Scalar]  # Of the turns of the side planes
+    per_whole: Scalar  # One over the length of N
+    # cos_gamma, sin_gamma: in the plane of the middle leg.
     cos_gamma: Scalar
     sin_gamma: Scalar
-    cot: Scalar
+    cot: Scalar  # The cotangent there
+    # Direction in the plane of the middle leg across its base axis, in that of the three.
     b: tuple[Scalar, Scalar]
 
     @classmethod

@@ -27,18 +27,10 @@ RESTING: Vector = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class TracedRobot:
-    """A robot at joint angles that are not known yet.
+    """A robot at joint angles that are not known yet."""
 
-    Parameters
-    ----------
-    robot : Robot
-        With its links, or without those that a law does not know of.
-    closed : Posture
-        Where its links are.
-    """
-
-    robot: Robot
-    closed: Posture
+    robot: Robot  # With its links, or without those that a law does not know of
+    closed: Posture  # Where its links are
 
     @classmethod
     def at(cls, robot: Robot, joints: Vector) -> TracedRobot:

@@ -12,11 +12,9 @@ from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.c_names import CNames, block_comment, harmless
 from nrs_design.exporters.c_step import (
     FLAGS,
-    MAGNITUDE_WITHIN,
-    REFUSALS,
     declarations,
     definitions,
-    helpers,
+    guards,
 )
 from nrs_design.exporters.outside import OUTSIDE
 from nrs_design.output import C_HEADER, C_SOURCE
@@ -131,7 +129,7 @@ def header_text(export: RobotExport, laws: Mapping[str, StepLaw]) -> str:
     ]
     for law, operations in laws.items():
         lines.append(block_comment([PURPOSES[law]], f"/* {law}\n".encode()))
-        lines += declarations(operations, names_of(name, law))
+        lines.append(declarations(operations, names_of(name, law)))
     return "\n".join([*lines, "#endif\n"])
 
 
@@ -149,11 +147,10 @@ def source_text(export: RobotExport, laws: Mapping[str, StepLaw]) -> str:
     lines = [
         _comment(export, (f"More is in {name}.h.",), C_SOURCE),
         f'#include "{name}.h"\n\n#include <float.h>\n#include <math.h>\n#include <stdint.h>\n',
-        REFUSALS.replace("the proof is about", "the laws need"),
-        *helpers(*laws.values(), within=MAGNITUDE_WITHIN),
+        guards(*laws.values(), about="the laws need", math=True),
     ]
     for law, operations in laws.items():
-        lines += definitions(operations, names_of(name, law))
+        lines.append(definitions(operations, names_of(name, law)))
     return "\n".join(lines)
 
 

@@ -14,21 +14,11 @@ from nrs_design.spec import LoadedSpec
 
 @dataclass(frozen=True, slots=True)
 class RobotExport:
-    """What a format of a robot is rendered from.
+    """What a format of a robot is rendered from."""
 
-    Parameters
-    ----------
-    loaded : LoadedSpec
-        Where it comes from.
-    robot : Robot
-        What it says.
-    origin : str
-        Where its spec is, seen from the file; see `nrs_design.ownership`.
-    """
-
-    loaded: LoadedSpec
-    robot: Robot
-    origin: str
+    loaded: LoadedSpec  # Where it comes from
+    robot: Robot  # What it says
+    origin: str  # Where its spec is, seen from the file; see `nrs_design.ownership`
 
 
 def home_joints(robot: Robot) -> list[float]:

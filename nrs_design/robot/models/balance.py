@@ -28,31 +28,19 @@ from nrs_design.spec import BalancedLegSpec, RobotSpec
 
 @dataclass(frozen=True, slots=True)
 class LegBalance:
-    """Counter-masses and spring of one side leg.
+    """Counter-masses and spring of one side leg."""
 
-    Parameters
-    ----------
-    arm_mass, coupler_mass : float
-        Counter-masses M_c and M_b in kg.
-    arm_distance, coupler_distance : float
-        Where they are, B_c from the coupler's end and B_b from the elbow, in m.
-    total_mass : float
-        M_a, everything that the spring holds, in kg. It is no counter-mass.
-    total_distance : float
-        B_a, its center of mass on the crank from the base joint, in m.
-    stiffness : float
-        Of the spring, in N/m.
-    spring_on_crank, spring_on_base : float
-        Its ends from the base joint, A0C_A and A0D0, in m.
-    """
-
+    # arm_mass, coupler_mass: counter-masses M_c and M_b in kg.
     arm_mass: float
     coupler_mass: float
+    # arm_distance, coupler_distance: where they are, B_c from the coupler's end and B_b from the
+    # elbow, in m.
     arm_distance: float
     coupler_distance: float
-    total_mass: float
-    total_distance: float
-    stiffness: float
+    total_mass: float  # M_a, everything that the spring holds, in kg. It is no counter-mass.
+    total_distance: float  # B_a, its center of mass on the crank from the base joint, in m
+    stiffness: float  # Of the spring, in N/m
+    # spring_on_crank, spring_on_base: its ends from the base joint, A0C_A and A0D0, in m.
     spring_on_crank: float
     spring_on_base: float
 

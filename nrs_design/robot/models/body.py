@@ -16,20 +16,11 @@ class Body:
 
     The moments add up: two bodies that move as one are the sum of their moments, without a
     detour through a common center of mass.
-
-    Parameters
-    ----------
-    mass : float
-        In kg.
-    first : tuple of float
-        ``integral r dm`` in kg m.
-    second : tuple of tuple of float
-        ``integral r r' dm`` in kg m^2, 3 x 3.
     """
 
-    mass: float
-    first: tuple[float, ...]
-    second: tuple[tuple[float, ...], ...]
+    mass: float  # In kg
+    first: tuple[float, ...]  # ``integral r dm`` in kg m
+    second: tuple[tuple[float, ...], ...]  # ``integral r r' dm`` in kg m^2, 3 x 3
 
     def plus(self, other: Body) -> Body:
         """Return both bodies as one; their frames must coincide."""

@@ -20,22 +20,13 @@ SAMPLES = 720
 
 @dataclass(frozen=True, slots=True)
 class Sine:
-    """Sines of phi, psi and d in phase (thesis table 3.5).
+    """Sines of phi, psi and d in phase (thesis table 3.5)."""
 
-    Parameters
-    ----------
-    phi, psi : float
-        Amplitudes in rad.
-    d : tuple of float
-        Smallest and largest depth in m.
-    period : float
-        In s; infinite for a motion so slow that only gravity counts.
-    """
-
+    # phi, psi: amplitudes in rad.
     phi: float
     psi: float
-    d: tuple[float, float]
-    period: float = inf
+    d: tuple[float, float]  # Smallest and largest depth in m
+    period: float = inf  # In s; infinite for a motion so slow that only gravity counts
 
 
 DEPTHS = ((0.150, 0.160), (0.195, 0.205), (0.240, 0.250))
@@ -51,24 +42,15 @@ DEPTH_SINES = tuple(Sine(0.0, 0.0, d) for d in DEPTHS)
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """Coefficients of the three joints, and what torque error they leave.
+    """Coefficients of the three joints, and what torque error they leave."""
 
-    Parameters
-    ----------
-    mean_ratio : ndarray
-        ``mean(T*/T)`` (thesis 3.38), shape (3,).
-    least_squares : ndarray
-        ``sum(T* T)/sum(T^2)``, shape (3,): it stays defined where a simplified torque passes zero.
-    mean_ratio_error, least_squares_error : ndarray
-        Root mean square of ``T* - K T`` with either, in N m, shape (3,).
-    spread : ndarray
-        Standard deviation of the ratio, shape (3,); large where the mean ratio means little.
-    """
-
-    mean_ratio: Array
+    mean_ratio: Array  # ``mean(T*/T)`` (thesis 3.38), shape (3,)
+    # ``sum(T* T)/sum(T^2)``, shape (3,): it stays defined where a simplified torque passes zero.
     least_squares: Array
+    # Root mean square of ``T* - K T`` with either, in N m, shape (3,).
     mean_ratio_error: Array
     least_squares_error: Array
+    # Standard deviation of the ratio, shape (3,); large where the mean ratio means little.
     spread: Array
 
 
@@ -137,17 +119,10 @@ def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Corre
 
 @dataclass(frozen=True, slots=True)
 class TiltTable:
-    """Coefficients against the tilt of the base (thesis fig. 3.12).
+    """Coefficients against the tilt of the base (thesis fig. 3.12)."""
 
-    Parameters
-    ----------
-    tilt : ndarray
-        theta4 in rad, shape (n,).
-    mean_ratio, least_squares : ndarray
-        Shape (n, 3).
-    """
-
-    tilt: Array
+    tilt: Array  # theta4 in rad, shape (n,)
+    # mean_ratio, least_squares: shape (n, 3).
     mean_ratio: Array
     least_squares: Array
 

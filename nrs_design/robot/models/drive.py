@@ -23,29 +23,15 @@ class JointDrive:
 
     with the speed K of the motor per command, ``gain * gearhead_ratio``, and N the ratio of both
     gears. The friction of the motor that the gain K accounts for is part of the damping.
-
-    Parameters
-    ----------
-    ratio : float
-        Motor turns per turn of the joint, 905 in the thesis.
-    encoder_ratio : float
-        Turns of the encoder, at the gearhead's output, per turn of the joint: 5 in the thesis.
-    inertia : float
-        Of the rotor, ``N^2 I_r`` in kg m^2.
-    damping : float
-        ``N^2/(K gradient)`` in N m s/rad.
-    torque_per_command : float
-        ``N/gradient`` in N m/rpm.
-    coulomb_friction : float
-        Largest dry friction as a command, in rpm.
     """
 
-    ratio: float
+    ratio: float  # Motor turns per turn of the joint, 905 in the thesis
+    # Turns of the encoder, at the gearhead's output, per turn of the joint: 5 in the thesis.
     encoder_ratio: float
-    inertia: float
-    damping: float
-    torque_per_command: float
-    coulomb_friction: float
+    inertia: float  # Of the rotor, ``N^2 I_r`` in kg m^2
+    damping: float  # ``N^2/(K gradient)`` in N m s/rad
+    torque_per_command: float  # ``N/gradient`` in N m/rpm
+    coulomb_friction: float  # Largest dry friction as a command, in rpm
 
     @property
     def friction_torque(self) -> float:

@@ -20,38 +20,25 @@ from nrs_design.robot.models.vectors import Array, Scalar, Vector, components, c
 
 @dataclass(frozen=True, slots=True)
 class LegPosture:
-    """Directions within the plane of one leg, and how crank and coupler follow the endoscope.
+    """Directions within the plane of one leg, and how crank and coupler follow the endoscope."""
 
-    Parameters
-    ----------
-    leg : Leg
-        The leg.
-    normal : tuple of array
-        Normal k of the plane.
-    cos_gamma, sin_gamma, cos_beta, sin_beta, cos_kappa, sin_kappa : array
-        Directions of endoscope, crank and coupler.
-    end : tuple of array
-        Coupler's end in the plane, in m.
-    end_gamma : tuple of array
-        Its derivative with respect to gamma; that with respect to d is (cos gamma, sin gamma).
-    sin_elbow, cos_elbow : array
-        Of the angle kappa - beta.
-    beta_gamma, beta_d, kappa_gamma, kappa_d : array
-        Partial derivatives of crank and coupler angle.
-    """
-
-    leg: Leg
-    normal: Vector
+    leg: Leg  # The leg
+    normal: Vector  # Normal k of the plane
+    # cos_gamma, sin_gamma, cos_beta, sin_beta, cos_kappa, sin_kappa: directions of endoscope, crank
+    # and coupler.
     cos_gamma: Scalar
     sin_gamma: Scalar
     cos_beta: Scalar
     sin_beta: Scalar
     cos_kappa: Scalar
     sin_kappa: Scalar
-    end: tuple[Scalar, Scalar]
+    end: tuple[Scalar, Scalar]  # Coupler's end in the plane, in m
+    # Its derivative with respect to gamma; that with respect to d is (cos gamma, sin gamma).
     end_gamma: tuple[Scalar, Scalar]
+    # sin_elbow, cos_elbow: of the angle kappa - beta.
     sin_elbow: Scalar
     cos_elbow: Scalar
+    # beta_gamma, beta_d, kappa_gamma, kappa_d: partial derivatives of crank and coupler angle.
     beta_gamma: Scalar
     beta_d: Scalar
     kappa_gamma: Scalar
@@ -60,23 +47,12 @@ class LegPosture:
 
 @dataclass(frozen=True, slots=True)
 class Posture:
-    """The whole robot at a pose, or at each pose of a batch.
+    """The whole robot at a pose, or at each pose of a batch."""
 
-    Parameters
-    ----------
-    W : tuple of array
-        Direction of the endoscope in the base frame (thesis 3.3).
-    d : array
-        Depth in m.
-    legs : tuple of LegPosture
-        Left, right, middle.
-    u1, u2 : tuple of array
-        Velocity of W per unit of ``sin(gamma) alpha'`` of the left and the right leg.
-    """
-
-    W: Vector
-    d: Scalar
-    legs: tuple[LegPosture, LegPosture, LegPosture]
+    W: Vector  # Direction of the endoscope in the base frame (thesis 3.3)
+    d: Scalar  # Depth in m
+    legs: tuple[LegPosture, LegPosture, LegPosture]  # Left, right, middle
+    # Velocity of W per unit of ``sin(gamma) alpha'`` of the left and the right leg.
     u1: Vector
     u2: Vector
 
@@ -133,21 +109,11 @@ def posture(robot: Robot, pose: ArrayLike) -> Posture:
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """What joint angles say of a pose, so that it need not be computed from the pose again.
+    """What joint angles say of a pose, so that it need not be computed from the pose again."""
 
-    Parameters
-    ----------
-    normals : tuple of Vector
-        Of the planes of the side legs.
-    sin_gamma : tuple of array
-        Of the endoscope in these planes.
-    crank : tuple of array
-        Cosine and sine of the middle leg's crank angle.
-    """
-
-    normals: tuple[Vector, Vector]
-    sin_gamma: tuple[Scalar, Scalar]
-    crank: tuple[Scalar, Scalar]
+    normals: tuple[Vector, Vector]  # Of the planes of the side legs
+    sin_gamma: tuple[Scalar, Scalar]  # Of the endoscope in these planes
+    crank: tuple[Scalar, Scalar]  # Cosine and sine of the middle leg's crank angle
 
 
 def close_loops(robot: Robot, W: Vector, d: Scalar, driven: Driven | None = None) -> Posture:

@@ -230,18 +230,11 @@ def joint_motion(
 
 @dataclass(frozen=True, slots=True)
 class SingularityMargins:
-    """Distances from what makes the robot lose or gain a degree of freedom.
+    """Distances from what makes the robot lose or gain a degree of freedom."""
 
-    Parameters
-    ----------
-    reach : ndarray
-        Shape (..., 3), in m: each leg's distance from being stretched or folded.
-    coupler : ndarray
-        Shape (..., 3): |cosine| of the angle between each coupler and the endoscope. Where that
-        of the middle leg vanishes, its crank has no hold on the depth.
-    """
-
-    reach: Array
+    reach: Array  # Shape (..., 3), in m: each leg's distance from being stretched or folded
+    # Shape (..., 3): |cosine| of the angle between each coupler and the endoscope. Where that of
+    # the middle leg vanishes, its crank has no hold on the depth.
     coupler: Array
 
 

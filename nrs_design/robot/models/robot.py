@@ -20,36 +20,22 @@ _ARM_FROM_PLATFORM = ((-1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, -1.0, 0.0))
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """A crank and a coupler in a plane through the pivot that turns about the base axis.
+    """A crank and a coupler in a plane through the pivot that turns about the base axis."""
 
-    Parameters
-    ----------
-    name : str
-        ``left``, ``right`` or ``middle``.
-    azimuth : float
-        Direction of the base axis in the base's x-y plane, in rad.
-    elbow_sign : int
-        -1 if the elbow bends outwards (thesis 3.10), 1 if inwards.
-    l0, l1, l2, l3 : float
-        Pivot to base joint, crank, coupler, coupler's end to endoscope axis, in m.
-    crank, coupler, arm : Body
-        Each in a frame with its origin in the joint nearer to the base, x along the link and z
-        normal to the leg's plane.
-    axis_inertia : float
-        Inertia about the base axis of what else turns with the plane, in kg m^2.
-    """
-
-    name: str
-    azimuth: float
-    elbow_sign: int
+    name: str  # ``left``, ``right`` or ``middle``
+    azimuth: float  # Direction of the base axis in the base's x-y plane, in rad
+    elbow_sign: int  # -1 if the elbow bends outwards (thesis 3.10), 1 if inwards
+    # l0, l1, l2, l3: pivot to base joint, crank, coupler, coupler's end to endoscope axis, in m.
     l0: float
     l1: float
     l2: float
     l3: float
+    # crank, coupler, arm: each in a frame with its origin in the joint nearer to the base, x along
+    # the link and z normal to the leg's plane.
     crank: Body
     coupler: Body
     arm: Body
-    axis_inertia: float
+    axis_inertia: float  # Inertia about the base axis of what else turns with the plane, in kg m^2
 
     @property
     def axis(self) -> Vector:
@@ -88,32 +74,18 @@ class TaskLimits:
 
 @dataclass(frozen=True)
 class Robot:
-    """Two side legs and a middle leg that carry a platform (2URRR-URR).
+    """Two side legs and a middle leg that carry a platform (2URRR-URR)."""
 
-    Parameters
-    ----------
-    legs : tuple of Leg
-        Left, right, middle. The joints are the plane angles theta1 and theta2 of the side legs
-        and the crank angle theta3 of the middle leg.
-    platform : Body
-        In a frame with its origin at depth d on the endoscope axis, x towards the middle leg and
-        z along the endoscope. It moves as one with the arm of the middle leg.
-    gravity : float
-        Gravitational acceleration in m/s^2.
-    base_tilt : float
-        theta4 in rad.
-    workspace : Workspace
-        Poses that the robot is made for.
-    task_limits : TaskLimits
-        Largest motion of the endoscope.
-    """
-
+    # Left, right, middle. The joints are the plane angles theta1 and theta2 of the side legs and
+    # the crank angle theta3 of the middle leg.
     legs: tuple[Leg, Leg, Leg]
+    # In a frame with its origin at depth d on the endoscope axis, x towards the middle leg and z
+    # along the endoscope. It moves as one with the arm of the middle leg.
     platform: Body
-    gravity: float
-    base_tilt: float
-    workspace: Workspace
-    task_limits: TaskLimits
+    gravity: float  # Gravitational acceleration in m/s^2
+    base_tilt: float  # theta4 in rad
+    workspace: Workspace  # Poses that the robot is made for
+    task_limits: TaskLimits  # Largest motion of the endoscope
 
     @property
     def gravity_vector(self) -> Vector:

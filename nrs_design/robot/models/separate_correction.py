@@ -15,26 +15,15 @@ from nrs_design.robot.models.vectors import Array
 
 @dataclass(frozen=True, slots=True)
 class SeparateCorrection:
-    """Coefficients by least squares over poses, and the error that each leaves.
+    """Coefficients by least squares over poses, and the error that each leaves."""
 
-    Parameters
-    ----------
-    gravity : ndarray
-        ``G = K Gs``, shape (3,): what a single correction has for gravity and inertia alike.
-    inertia_rows : ndarray
-        ``M = K Ms`` with one number for each joint, shape (3,).
-    inertia_entries : ndarray
-        One number for each entry of Ms, shape (3, 3).
-    gravity_error : float
-        Root mean square of ``G - K Gs`` over that of G.
-    single_error, rows_error, entries_error : float
-        The same for M, with the coefficients of gravity, by rows and by entries.
-    """
-
+    # ``G = K Gs``, shape (3,): what a single correction has for gravity and inertia alike.
     gravity: Array
-    inertia_rows: Array
-    inertia_entries: Array
-    gravity_error: float
+    inertia_rows: Array  # ``M = K Ms`` with one number for each joint, shape (3,)
+    inertia_entries: Array  # One number for each entry of Ms, shape (3, 3)
+    gravity_error: float  # Root mean square of ``G - K Gs`` over that of G
+    # single_error, rows_error, entries_error: the same for M, with the coefficients of gravity, by
+    # rows and by entries.
     single_error: float
     rows_error: float
     entries_error: float

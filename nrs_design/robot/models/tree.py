@@ -22,30 +22,14 @@ DRIVEN = {"theta1": "left_plane", "theta2": "right_plane", "theta3": "middle_cra
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A link that turns about z in the plane of its leg.
+    """A link that turns about z in the plane of its leg."""
 
-    Parameters
-    ----------
-    name : str
-        Such as ``left_crank``.
-    offset : float
-        From the joint of the link before to its own joint, along that link, in m.
-    length : float
-        From its joint to the next one, in m.
-    mass : float
-        In kg.
-    center : tuple of float
-        Center of mass in the frame of the link, in m.
-    inertia : tuple of tuple of float, 3 x 3
-        About the center of mass, in kg m^2.
-    """
-
-    name: str
-    offset: float
-    length: float
-    mass: float
-    center: tuple[float, ...]
-    inertia: tuple[tuple[float, ...], ...]
+    name: str  # Such as ``left_crank``
+    offset: float  # From the joint of the link before to its own joint, along that link, in m
+    length: float  # From its joint to the next one, in m
+    mass: float  # In kg
+    center: tuple[float, ...]  # Center of mass in the frame of the link, in m
+    inertia: tuple[tuple[float, ...], ...]  # About the center of mass, in kg m^2
 
 
 def links_of(robot: Robot, leg: Leg) -> list[Link]:

@@ -83,31 +83,19 @@ def thesis_grid(depths: ArrayLike = (0.15, 0.2, 0.24)) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class WorkspaceSurvey:
-    """What the robot can do of the workspace that its spec names.
+    """What the robot can do of the workspace that its spec names."""
 
-    Parameters
-    ----------
-    reachable : float
-        Share of the grid's poses that all legs reach, between 0 and 1.
-    joint_low, joint_high : ndarray
-        Range of each joint over the reachable poses in rad, shape (3,).
-    reach_margin : ndarray
-        Least distance of each leg from stretched or folded in m, shape (3,).
-    coupler_margin : ndarray
-        Least |cosine| between each leg's coupler and the endoscope, shape (3,).
-    deepest : tuple of tuple of float
-        (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None
-        where no depth of the range is reachable.
-    obstacle : PoseError or None
-        What keeps the robot from the farthest pose of the grid; None if all are reachable.
-    """
-
-    reachable: float
+    reachable: float  # Share of the grid's poses that all legs reach, between 0 and 1
+    # joint_low, joint_high: range of each joint over the reachable poses in rad, shape (3,).
     joint_low: Array
     joint_high: Array
-    reach_margin: Array
+    reach_margin: Array  # Least distance of each leg from stretched or folded in m, shape (3,)
+    # Least |cosine| between each leg's coupler and the endoscope, shape (3,).
     coupler_margin: Array
+    # (phi, psi, d) for each corner of the angles: the largest reachable d of the range, None where
+    # no depth of the range is reachable.
     deepest: tuple[tuple[float, float, float | None], ...]
+    # What keeps the robot from the farthest pose of the grid; None if all are reachable.
     obstacle: PoseError | None
 
 
@@ -157,18 +145,12 @@ def _deepest(robot: Robot, phi: float, psi: float) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class JointPeaks:
-    """Largest joint velocities in rad/s and accelerations in rad/s^2, and the poses they need.
+    """Largest joint velocities in rad/s and accelerations in rad/s^2, and the poses they need."""
 
-    Parameters
-    ----------
-    velocity, acceleration : ndarray
-        One number for each joint, shape (3,).
-    velocity_pose, acceleration_pose : ndarray
-        Where they occur, one row for each joint, shape (3, 3).
-    """
-
+    # velocity, acceleration: one number for each joint, shape (3,).
     velocity: Array
     acceleration: Array
+    # velocity_pose, acceleration_pose: where they occur, one row for each joint, shape (3, 3).
     velocity_pose: Array
     acceleration_pose: Array
 

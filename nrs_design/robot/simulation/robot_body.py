@@ -26,21 +26,11 @@ FASTEST = 1e4
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """A robot that stands in a pose, and what its drives do about gravity.
+    """A robot that stands in a pose, and what its drives do about gravity."""
 
-    Parameters
-    ----------
-    robot : Robot
-        All of its links.
-    rest : ndarray, shape (3,)
-        The pose (phi, psi, d) in which it begins, in rad and m.
-    holds : bool
-        Whether gravity is compensated in that pose alone; else in every pose.
-    """
-
-    robot: Robot
-    rest: Array
-    holds: bool = False
+    robot: Robot  # All of its links
+    rest: Array  # Shape (3,). The pose (phi, psi, d) in which it begins, in rad and m.
+    holds: bool = False  # Whether gravity is compensated in that pose alone; else in every pose
 
     @property
     def joints(self) -> Array:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import sys
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from nrs_design.cli.gate import OF_SEVERITY, GateFormat, format_of
-from nrs_design.cli.options import Json, Quiet, read_work
-from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.cli import exit_codes
+from nrs_design.cli.command import command
+from nrs_design.cli.gate import GateFormat, format_of
+from nrs_design.cli.options import read_work
+from nrs_design.cli.printing import note, progress, say, say_failure, wants_text
 from nrs_design.errors import NrsDesignError, SpecError
 from nrs_design.ros2.cli.options import Lag, range_of, read_lag
 from nrs_design.ros2.quantities import RATE, RATE_UNITS, ROTATIONAL, STIFFNESS
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 LONGEST_AGE = 20
 
 
+@command("ros2-check")
 def check(
     file: Annotated[
         Path, typer.Argument(metavar="FILE", help="Parameter file, such as controllers.yaml.")
@@ -57,9 +60,7 @@ def check(
     format_: Annotated[
         GateFormat, typer.Option("--format", help="What to print.")
     ] = GateFormat.TEXT,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> NoReturn:
     """Prove or refute every axis of the admittance controllers in a parameter file.
 
     The law of admittance_controller (ros2_controllers) is taken as an exact difference equation at
@@ -78,7 +79,7 @@ def check(
     from nrs_design.ros2.check import Question, check_file
     from nrs_design.search.certification import Limits
 
-    chosen = format_of(format_, as_json=as_json)
+    chosen = format_of(format_)
     question = Question(
         _ages(age),
         range_of("--stiffness", stiffness, STIFFNESS),
@@ -86,13 +87,13 @@ def check(
         None if rate is None else _rate(rate),
         read_lag(lag),
     )
-    with progress("checking", quiet=quiet) as step:
+    with progress("checking") as step:
         outcome = check_file(file, question, Limits(budget=budget), step)
     if chosen is not GateFormat.TEXT:
         sys.stdout.write(FORMATS[chosen](outcome))
-    elif not quiet:
+    elif wants_text():
         _show(outcome)
-    raise typer.Exit(OF_SEVERITY[outcome.severity])
+    raise typer.Exit(exit_codes.OF_SEVERITY[outcome.severity])
 
 
 def _show(outcome: GateOutcome) -> None:

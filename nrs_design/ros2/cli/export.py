@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet, SpecFile
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.options import SpecFile
+from nrs_design.cli.printing import note, progress, say
 from nrs_design.ros2.cli.options import Lag, read_lag
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ class RosAxis(StrEnum):
     RZ = "rz"
 
 
+@command("ros2-export")
 def export(
     spec: SpecFile,
     axis: Annotated[
@@ -34,9 +36,7 @@ def export(
     out: Annotated[Path, typer.Option(help="Folder for a file for each controller.")] = Path(
         "reports"
     ),
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Write the impedance controllers of a spec as parameters of admittance_controller.
 
     The law as that controller computes it, with its force filter, is proved at the rate of the
@@ -45,22 +45,16 @@ def export(
 
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
-    from nrs_design.pipeline import placed, run_design, search_limits, wrong_kind
+    from nrs_design.pipeline import placed, run_interaction, search_limits
     from nrs_design.ros2.export import export_controllers, not_for_ranges
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
-    designed = run_design(loaded)
-    if designed is None:
-        raise wrong_kind(
-            loaded,
-            f"a spec of kind {loaded.spec.kind} has no controllers to export",
-            "use a spec of kind interaction-design",
-        )
+    designed = run_interaction(loaded, "has no controllers to export")
     name = loaded.spec.name
     files = {c.name: out / f"{name}.{c.name}.ros2.yaml" for c in designed.design.controllers}
     _check(spec, files)
-    with progress(f"exporting {name}", quiet=quiet), placed(loaded):
+    with progress(f"exporting {name}"), placed(loaded):
         found = list(export_controllers(designed, axis, read_lag(lag), search_limits(loaded.spec)))
     worst = max((item.verdict for item in found), key=_SEVERITY.index)
     written = []
@@ -68,18 +62,24 @@ def export(
         for item in found:
             written.append(str(files[item.controller]))
             _write(spec, files[item.controller], item)
-    if as_json:
-        print_json("ros2-export", _summary(name, worst, found, written))
-    elif worst != "proved":
-        for item in found:
-            note(f"{name}: {item.controller}: {item.verdict} with admittance_controller")
-        note(f"{name}: not exported")
-    elif not quiet:
+
+    def show() -> None:
+        if not written:
+            for item in found:
+                note(f"{name}: {item.controller}: {item.verdict} with admittance_controller")
+            note(f"{name}: not exported")
+            return
         say(f"{name}: PROVED, exported to {', '.join(written)}", verdict="proved")
         for item in found:
             if item.ranged:
                 say(f"  {item.controller}: outside the proof: {not_for_ranges(item.ranged)}")
-    raise typer.Exit(exit_codes.OF_VERDICT[worst])
+
+    return Answer(
+        lambda: _summary(name, worst, found, written),
+        show,
+        exit_codes.OF_VERDICT[worst],
+        loud=not written,
+    )
 
 
 _SEVERITY = ("proved", "inconclusive", "refuted")

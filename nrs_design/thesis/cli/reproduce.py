@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.options import Json, Quiet
-from nrs_design.cli.printing import note, print_json, progress, say
+from nrs_design.cli.command import Answer, command
+from nrs_design.cli.printing import insist, note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _GALLERY = "figures.html"
 
 
+@command("reproduce")
 def reproduce(
     html: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the table as an HTML page, too.")
@@ -32,9 +33,7 @@ def reproduce(
             "and a CSV of each run there (some ten seconds).",
         ),
     ] = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Recompute the numbers that the thesis prints, and say which are printed differently.
 
     Exit code 0: every row is what it is on record to be. 1: a recomputed value has drifted.
@@ -51,23 +50,23 @@ def reproduce(
     for page in (html, figures and figures / _GALLERY):
         if page is not None:
             check_place(page, PAGE)
-    with progress("recomputing", quiet=quiet) as step:
+    with progress("recomputing") as step:
         table = recompute(step)
         gallery = None if figures is None else _draw(figures, step)
     if html is not None:
         link = None if figures is None else _link(html, figures / _GALLERY)
         write_output(html, render_page(table, link), replaces=PAGE)
-    if as_json:
-        print_json("reproduce", _summary(table, gallery))
-    elif not quiet:
-        _print(table, gallery)
     if html is not None:
-        note(f"page written to {html}", quiet=quiet)
+        note(f"page written to {html}")
     if figures is not None:
-        note(f"figures written to {figures / _GALLERY}", quiet=quiet)
+        note(f"figures written to {figures / _GALLERY}")
     for row in drifted(table):
-        note(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
-    raise typer.Exit(exit_codes.REFUTED if drifted(table) else exit_codes.PROVED)
+        insist(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
+    return Answer(
+        lambda: _summary(table, gallery),
+        lambda: _print(table, gallery),
+        exit_codes.unless(drifted(table)),
+    )
 
 
 def _draw(folder: Path, step: Progress) -> tuple[Counterpart, ...]:

@@ -58,25 +58,14 @@ _ROUNDING = 0.005
 
 @dataclass(frozen=True, slots=True)
 class Withdrawal:
-    """One of the four experiments of 6.3.2.3; its times and gain are in `experiments`.
+    """One of the four experiments of 6.3.2.3; its times and gain are in `experiments`."""
 
-    Parameters
-    ----------
-    figure, axis : str
-        Which.
-    speed : int
-        On the way out, deg/s.
-    printed_speed : str
-        The same in rad/s, as printed.
-    remark : str
-        On the print.
-    """
-
+    # figure, axis: which.
     figure: str
     axis: str
-    speed: int
-    printed_speed: str
-    remark: str = ""
+    speed: int  # On the way out, deg/s
+    printed_speed: str  # The same in rad/s, as printed
+    remark: str = ""  # On the print
 
 
 _SLIP = "The text of this experiment has phi where the caption, and the axis that moves, say psi."

@@ -26,60 +26,33 @@ class Reproducibility(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """One thing that the thesis says of a figure, beside the simulation.
+    """One thing that the thesis says of a figure, beside the simulation."""
 
-    Parameters
-    ----------
-    quantity : str
-        With its unit.
-    printed, simulated : str
-        Numbers, or words.
-    outcome : Reproducibility
-        Taken: an input of the run, which agrees because it was put in. Omitted: what decides it is
-        not in the thesis. Hardware only: no run can show it.
-    why : str
-        Of all outcomes but *reproduced*, the reason.
-    """
-
-    quantity: str
+    quantity: str  # With its unit
+    # printed, simulated: numbers, or words.
     printed: str
     simulated: str
+    # Taken: an input of the run, which agrees because it was put in. Omitted: what decides it is
+    # not in the thesis. Hardware only: no run can show it.
     outcome: Reproducibility
-    why: str = ""
+    why: str = ""  # Of all outcomes but *reproduced*, the reason
 
 
 @dataclass(frozen=True, slots=True)
 class Counterpart:
-    """What stands for a figure, or for several that show the same.
+    """What stands for a figure, or for several that show the same."""
 
-    Parameters
-    ----------
-    shows : mapping of str to str
-        Numbers of the figures, and what each shows in the print; empty where the thesis draws none.
-    section : str
-        Of the thesis.
-    title : str
-        What was simulated.
-    statements : tuple of Statement
-        Of the print beside the run.
-    given, chosen : tuple of str
-        Inputs of the run: from the thesis, and ours because the thesis omits them.
-    illustrations : tuple of Illustration
-        Drawn.
-    remark : str
-        What else to know; may be empty.
-    runs : mapping of str to TimeResponse
-        What is drawn, by the names of their files.
-    """
-
+    # Numbers of the figures, and what each shows in the print; empty where the thesis draws none.
     shows: Mapping[str, str]
-    section: str
-    title: str
-    statements: tuple[Statement, ...]
+    section: str  # Of the thesis
+    title: str  # What was simulated
+    statements: tuple[Statement, ...]  # Of the print beside the run
+    # given, chosen: inputs of the run: from the thesis, and ours because the thesis omits them.
     given: tuple[str, ...]
     chosen: tuple[str, ...] = ()
-    illustrations: tuple[Illustration, ...] = ()
-    remark: str = ""
+    illustrations: tuple[Illustration, ...] = ()  # Drawn
+    remark: str = ""  # What else to know; may be empty
+    # What is drawn, by the names of their files.
     runs: Mapping[str, TimeResponse] = field(default_factory=dict)
 
     @property

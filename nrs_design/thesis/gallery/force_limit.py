@@ -59,25 +59,14 @@ CONTROLLERS = (
 
 @dataclass(frozen=True, slots=True)
 class ForceLimitExperiment:
-    """One of the two experiments of 6.3.3.3.
+    """One of the two experiments of 6.3.3.3."""
 
-    Parameters
-    ----------
-    figure, axis : str
-        Which.
-    switches : tuple of str
-        When force control takes over, s, as printed.
-    turns : tuple of float
-        When the command of the run turns out of the tissue, s.
-    error : str
-        Largest steady-state error in %, as printed.
-    """
-
+    # figure, axis: which.
     figure: str
     axis: str
-    switches: tuple[str, str]
-    turns: tuple[float, float]
-    error: str
+    switches: tuple[str, str]  # When force control takes over, s, as printed
+    turns: tuple[float, float]  # When the command of the run turns out of the tissue, s
+    error: str  # Largest steady-state error in %, as printed
 
 
 EXPERIMENTS = (

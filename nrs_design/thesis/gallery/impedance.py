@@ -36,31 +36,17 @@ HELD = 4
 
 @dataclass(frozen=True, slots=True)
 class ImpedanceExperiment:
-    """One of the two experiments of 6.3.1.2.
+    """One of the two experiments of 6.3.1.2."""
 
-    Parameters
-    ----------
-    figure, axis : str
-        Which.
-    contact : str
-        When contact is made, s, as printed.
-    impedances : tuple of (float, str)
-        Instants in s and displayed impedances in N m s/rad, as printed.
-    rmse : str
-        N m s/rad, as printed.
-    tissue : float
-        Angle where the tissue begins in the run, deg.
-    command : tuple of (float, float)
-        Of the run: s and deg/s.
-    """
-
+    # figure, axis: which.
     figure: str
     axis: str
-    contact: str
+    contact: str  # When contact is made, s, as printed
+    # Instants in s and displayed impedances in N m s/rad, as printed.
     impedances: tuple[tuple[float, str], ...]
-    rmse: str
-    tissue: float
-    command: tuple[tuple[float, float], ...]
+    rmse: str  # N m s/rad, as printed
+    tissue: float  # Angle where the tissue begins in the run, deg
+    command: tuple[tuple[float, float], ...]  # Of the run: s and deg/s
 
 
 def _press(begin: float, held: float, end: float) -> tuple[tuple[float, float], ...]:

@@ -43,28 +43,17 @@ _LATE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class TwoContactsExperiment:
-    """One of the two experiments of 6.4.2.
+    """One of the two experiments of 6.4.2."""
 
-    Parameters
-    ----------
-    figure, axis : str
-        Which.
-    times : tuple of str
-        Into soft tissue, out of it, onto the stiff specimen: s, as printed.
-    errors : tuple of str
-        RMSE of the displayed impedance in soft and stiff contact, N m s/rad, as printed.
-    places : tuple of (float, float)
-        Angles where tissue and tool begin in the run, deg.
-    command : tuple of (float, float)
-        Of the run: s and deg/s.
-    """
-
+    # figure, axis: which.
     figure: str
     axis: str
+    # Into soft tissue, out of it, onto the stiff specimen: s, as printed.
     times: tuple[str, str, str]
+    # RMSE of the displayed impedance in soft and stiff contact, N m s/rad, as printed.
     errors: tuple[str, str]
-    places: tuple[float, float]
-    command: tuple[tuple[float, float], ...]
+    places: tuple[float, float]  # Angles where tissue and tool begin in the run, deg
+    command: tuple[tuple[float, float], ...]  # Of the run: s and deg/s
 
 
 EXPERIMENTS = (

@@ -1,6 +1,5 @@
 """`nrs-design audit`, as a user types it."""
 
-import json
 import re
 import shutil
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.identification import runs
-from tests.support import ROOT, SOFT_TISSUE, run
+from tests.support import ROOT, SOFT_TISSUE, document_of, run
 
 LIMIT = ("--command-limit", "3000")
 
@@ -20,8 +19,7 @@ def proof(tmp_path_factory):
     spec = folder / "soft-tissue.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
     certificate = folder / "soft-tissue.cert.json"
-    done = run("certify-switching", spec, "--out", certificate, cwd=folder)
-    assert done.returncode == 0, done.stderr
+    run("certify-switching", spec, "--out", certificate, cwd=folder, code=0)
     return spec, certificate
 
 
@@ -43,9 +41,18 @@ def without_command(tmp_path):
 @pytest.mark.slow
 def test_a_good_run_is_not_inside_as_its_stiffness_is_estimated(tmp_path, proof):
     spec, certificate = proof
-    done = run("audit", without_command(tmp_path), spec, "--certificate", certificate, *LIMIT,
-               "--report", "run.pdf", cwd=tmp_path)  # fmt: skip
-    assert done.returncode == 3, done.stdout
+    done = run(
+        "audit",
+        without_command(tmp_path),
+        spec,
+        "--certificate",
+        certificate,
+        *LIMIT,
+        "--report",
+        "run.pdf",
+        cwd=tmp_path,
+        code=3,
+    )
     assert (tmp_path / "run.pdf").read_bytes().startswith(b"%PDF")
     assert "INCONCLUSIVE: no bound was left as far as could be judged" in done.stdout
     (line,) = (s for s in done.stdout.splitlines() if s.startswith("estimated, not judged: "))
@@ -59,10 +66,15 @@ def test_a_good_run_is_not_inside_as_its_stiffness_is_estimated(tmp_path, proof)
 
 def test_outside(tmp_path, proof):
     spec, certificate = proof
-    done = run("audit", write(tmp_path, stiffness=60.0), spec, "--certificate", certificate,
-               "--json", cwd=tmp_path)  # fmt: skip
-    assert done.returncode == 1
-    document = json.loads(done.stdout)
+    document = document_of(
+        "audit",
+        write(tmp_path, stiffness=60.0),
+        spec,
+        "--certificate",
+        certificate,
+        cwd=tmp_path,
+        code=1,
+    )
     assert document["schema"] == "nrs-design/audit/1"
     assert (document["verdict"], document["proved"]) == ("outside", True)
     assert document["first_violation"]["check"] == "force"
@@ -75,25 +87,23 @@ def test_outside(tmp_path, proof):
 def test_no_stiffness_gives_an_exit_code(tmp_path, proof, stiffness):
     spec, certificate = proof
     log = write(tmp_path, stiffness=stiffness)
-    done = run("audit", log, spec, "--certificate", certificate, *LIMIT, cwd=tmp_path)
-    assert done.returncode == 3
+    done = run("audit", log, spec, "--certificate", certificate, *LIMIT, cwd=tmp_path, code=3)
     assert "left its bounds" not in done.stdout
     assert "estimated, not judged: stiffness" in done.stdout
 
 
 def test_lost_contact_is_inside_a_proof_that_covers_it(tmp_path, proof):
     spec, certificate = proof
-    done = run("audit", write(tmp_path, free=2.0), spec, "--certificate", certificate, *LIMIT,
-               "--json", cwd=tmp_path)  # fmt: skip
-    document = json.loads(done.stdout)
+    document = document_of(
+        "audit", write(tmp_path, free=2.0), spec, "--certificate", certificate, *LIMIT, cwd=tmp_path
+    )
     (contact,) = (c for c in document["checks"] if c["name"] == "contact")
     assert (contact["status"], contact["basis"]) == ("inside", "covered by the proof")
     assert document["verdict"] != "outside"
 
 
 def test_an_unproved_spec_is_said_loudly(tmp_path):
-    done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path)
-    assert done.returncode == 3
+    done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path, code=3)
     assert "UNPROVED SPEC: no certificate is named" in done.stdout
     # What is long stands below the table, once.
     table = done.stdout[: done.stdout.index("bound of ")].splitlines()
@@ -117,8 +127,7 @@ def test_without_a_certificate_nothing_speaks_of_a_proof(tmp_path):
 def test_a_foreign_certificate_is_rejected(tmp_path, proof):
     _, certificate = proof
     other = ROOT / "specs/neuroboscope/retuned-gains.nrs.yaml"
-    done = run("audit", write(tmp_path), other, "--certificate", certificate, cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("audit", write(tmp_path), other, "--certificate", certificate, cwd=tmp_path, code=2)
     assert "the certificate is rejected: it belongs to another spec" in done.stderr
 
 
@@ -134,8 +143,7 @@ def test_a_foreign_certificate_is_rejected(tmp_path, proof):
 def test_report(tmp_path, ending, stiffness, code):
     page = tmp_path / f"page.{ending}"
     log = write(tmp_path, stiffness=stiffness)
-    done = run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path)
-    assert done.returncode == code, done.stderr
+    run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path, code=code)
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
 
 

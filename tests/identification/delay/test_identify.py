@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import read_signals
+from nrs_design.identification.datasets import SignalRecord, read_signals
 from nrs_design.identification.delay import identify_delay
 from nrs_design.identification.delay.identify import correlation_peak, is_smooth
 from tests.identification import motors, signals
+from tests.identification.support import source
 from tests.support import ROOT
 
 SEEDS = 200
@@ -134,6 +135,19 @@ def test_swapped_columns_are_said():
     found = identify_delay(replace(record, sent=record.seen, seen=record.sent))
     assert any("before" in doubt for doubt in found.doubts)
     assert found.samples.value == 0.0
+
+
+@pytest.mark.slow
+def test_an_interval_longer_than_its_record_is_a_doubt():
+    """Swapped columns of a record of 20 s were "0 [0, 1033.5] s" without a doubt."""
+    random = np.random.default_rng(1)
+    time = 0.01 * np.arange(2000)
+    sent = np.convolve(np.cumsum(random.normal(size=2000)), np.hanning(41) / 20, "same")
+    seen = np.interp(time + 0.033, time, sent)
+    found = identify_delay(SignalRecord(source("swapped"), time, sent, seen, ("sent", "seen")))
+    assert found.delay.high > 20.0
+    assert any("not told by this record" in doubt for doubt in found.doubts)
+    assert any("3 samples before" in doubt for doubt in found.doubts)
 
 
 def test_a_delay_beyond_what_is_looked_for_has_no_interval():

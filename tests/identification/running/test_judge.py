@@ -380,6 +380,8 @@ def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path):
     assert "no whole" not in check(judged(log(tmp_path), SAMPLED), "jitter").measured
     slower = replace(SAMPLED, period=0.003)
     assert "no whole number of periods" in check(judged(log(tmp_path), slower), "jitter").measured
+    near = replace(SAMPLED, period=0.0019)
+    assert "no whole number of periods" in check(judged(log(tmp_path), near), "jitter").measured
     faster = replace(SAMPLED, period=0.001)
     assert "no whole" not in check(judged(log(tmp_path), faster), "jitter").measured
 

@@ -2,17 +2,20 @@
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import pytest
 
 from nrs_design.proof.channels import Rounding
+from nrs_design.proof.contact import Flights
 from nrs_design.proof.evidence import (
     KINDS,
     AbstractEvidence,
     Shows,
 )
 from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_indefinite
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -115,6 +118,41 @@ def test_what_is_taken_for_granted_of_contact_is_said(what, words):
         assert Said(what=what).claim(system) == f"It is so.{words}"
         assert Said(what=what).claim(replace(system, contact=None)) == "It is so."
         assert SaidOfAllContact(what=what).claim(system) == "It is so."
+
+
+@dataclass(frozen=True)
+class SaidOfOneMode(Said):
+    mode: str = "m0"
+
+    @property
+    def used(self):
+        return frozenset((self.mode,))
+
+
+def test_where_the_environment_does_not_act_nothing_pulls():
+    """At zero stiffness a mode of contact is one of free motion."""
+    system = bouncing()
+    (free,) = system.contact.free
+    slack = replace(system, modes=(Mode("m0", free.A), *system.modes[1:]))
+    constant = replace(slack, switching=Switching(fixed_ends=(("m0", "m1"),)))
+    grown = partial(SaidOfOneMode, what=Shows.INSTABILITY)
+    kept = "It is so. This growth is that in kept contact"
+    pulling = ", the environment pulling as it pushes"
+    assert grown().claim(slack) == f"{kept}."
+    assert grown(mode="m1").claim(slack) == f"{kept}{pulling}."
+    assert Said().claim(slack).endswith(f"{pulling}.")
+    assert not Said().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
+    for share, tail in (("0", "."), ("1/2", f"{pulling}.")):
+        value = replace(staying("m0 to m1"), share=Fraction(share))
+        assert value.claim(constant).endswith(f"in kept contact{tail}")
+    among = replace(
+        slack,
+        modes=(*slack.modes, Mode("free", free.A)),
+        contact=None,
+        flights=Flights(("m0", "m1"), ("free",)),
+    )
+    assert grown().claim(among).endswith("lost and made at any deflection.")
+    assert grown(mode="m1").claim(among).endswith(f"at any deflection{pulling}.")
 
 
 @dataclass(frozen=True)
@@ -327,21 +365,20 @@ SETS |= {"periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
 FACTS = {
     # The careful answer is no; these kinds show more.
-    "allows_unequal_modes": RULED | {"unstable-mode"},
+    "allows_unequal_modes": RULED | {"growing-sequence"},
     "attains_rate": FREE | RULED,
     "bounds_at_once": FREE,
-    "covers_clock": {"periodic-quadratic", "unstable-contact", "unstable-period"},
+    "covers_clock": {"periodic-quadratic", "growing-sequence"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
-    | {"unstable-contact"},
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"},
     "covers_mixtures": SETS
     | BOUNCING
     | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,
-    "names_unstable_mode": {"unstable-mode"},
+    "names_unstable_mode": {"growing-sequence"},
 }
 
 

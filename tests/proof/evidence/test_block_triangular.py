@@ -12,10 +12,10 @@ from nrs_design.proof.evidence import (
     CommonQuadratic,
     ModeQuadratic,
     NoCommonQuadratic,
-    UnstableMode,
     read_evidence,
 )
 from nrs_design.proof.evidence.block_triangular import diagonal_block
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import certify
@@ -74,13 +74,13 @@ def test_stability_needs_every_block_once(indices):
 
 def test_one_unstable_block_suffices():
     system = family([[-1, 5, 1], [0, 0, 1], [0, -1, 0]])
-    evidence = BlockTriangular(((0,), (1, 2)), ((1, UnstableMode("m0", "0 +- 1j")),))
+    evidence = BlockTriangular(((0,), (1, 2)), ((1, staying("m0")),))
     assert evidence.find_fault(system) is None
     assert certify(system).verdict is Verdict.REFUTED
 
 
 def test_parts_show_one_and_the_same():
-    parts = ((0, ONE), (1, UnstableMode("m0", "1")))
+    parts = ((0, ONE), (1, staying("m0")))
     assert BlockTriangular(((0,), (1,)), parts).find_fault(CASCADE) is not None
     assert BlockTriangular(((0,), (1,)), ()).find_fault(CASCADE) is not None
 
@@ -115,7 +115,7 @@ def test_resets_are_not_covered_whatever_the_parts_cover():
     rows = [[1, 0], [0, -1]]
     resets = Switching(resets=resets_between(("m0", "m1", [[1, 0], [0, 1]])))
     system = family(rows, rows)
-    evidence = BlockTriangular(((0,), (1,)), ((0, UnstableMode("m0", "1")),))
+    evidence = BlockTriangular(((0,), (1,)), ((0, staying("m0")),))
     assert evidence.find_fault(system) is None
     fault = evidence.find_fault(replace(system, switching=resets))
     assert fault == "evidence of kind block-triangular does not cover this kind of switching"
@@ -133,7 +133,7 @@ def test_every_part_must_fit_the_switching():
 
 def test_one_unstable_block_is_named_and_no_more():
     system = family([[1, 0], [0, 1]])
-    unstable = UnstableMode("m0", "1")
+    unstable = staying("m0")
     blocks, short = ((0,), (1,)), "there is not the evidence for the blocks that is needed"
     for parts, fault in (
         (((0, unstable),), None),
@@ -173,8 +173,8 @@ def test_the_claim_names_blocks_and_states():
 
 
 def test_a_part_must_fit_the_switching_too():
-    mixed = genuine("unstable-mixture")[1]
-    rows = [mode.A.fractions() for mode in genuine("unstable-mixture")[0].modes]
+    mixed = genuine("growing-sequence, average")[1]
+    rows = [mode.A.fractions() for mode in genuine("growing-sequence, average")[0].modes]
     system = family(*([[*A[0], 0], [*A[1], 0], [0, 0, -1]] for A in rows))
     evidence = BlockTriangular(((0, 1), (2,)), ((0, mixed),))
     assert evidence.find_fault(system) is None
@@ -211,13 +211,13 @@ def test_the_diagonal_block_of_a_family():
 
 def test_no_rate_follows_from_a_part_without_one():
     system = family([[1, 0], [0, -1]])
-    evidence = BlockTriangular(((0,), (1,)), ((0, UnstableMode("m0", "1")),))
+    evidence = BlockTriangular(((0,), (1,)), ((0, staying("m0")),))
     assert evidence.find_fault(system) is None
     assert evidence.proved_rate(system) is None
 
 
 def test_blocks_say_of_themselves_what_their_parts_do():
-    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), UnstableMode("m0", "0")
+    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), staying("m0")
     form = CommonPolynomial(1, ((1,),), 0, (), Fraction(1))
     quadratic = BlockTriangular(((0,), (1,)), ((0, one), (1, one)))
     mixed = BlockTriangular(((0,), (1,)), ((0, one), (1, form)))

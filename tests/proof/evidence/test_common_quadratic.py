@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.proof.channels import Rounding
-from nrs_design.proof.evidence import CommonQuadratic, Shows, UnstableMode
+from nrs_design.proof.evidence import CommonQuadratic, Shows
+from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Steps
@@ -115,7 +116,7 @@ def test_every_mode_counts():
 def test_no_modes_prove_nothing():
     empty = SwitchedSystem("empty", Time.CONTINUOUS, ("x1", "x2"), (), ())
     assert HALF.find_fault(empty) == "the system has no modes"
-    assert UnstableMode("m0", "1").find_fault(empty) is not None
+    assert staying("m0").find_fault(empty) is not None
 
 
 def test_malformed_modes():

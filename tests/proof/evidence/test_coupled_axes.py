@@ -229,7 +229,7 @@ def test_other_functions_do_not_cover_what_axes_do():
 
 
 def test_a_refutation_is_that_of_one_axis():
-    system, evidence = genuine("unstable-mode")
+    system, evidence = genuine("growing-sequence, mode")
     among = coupled(system, ([[[1], [0]]], [[[1, 0]]]))
     assert evidence.find_fault(among) is None
     assert evidence.claim(among).endswith("which is within what is said of them.")

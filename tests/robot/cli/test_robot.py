@@ -1,13 +1,12 @@
 """`nrs-design robot`, as a user types it."""
 
 import csv
-import json
 import re
 
 import pytest
 
 from nrs_design.spec.templates import TEMPLATES
-from tests.support import ROOT, SOFT_TISSUE, run
+from tests.support import ROOT, SOFT_TISSUE, document_of, run
 
 ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 COMMANDS = ("check", "kinematics", "dynamics", "correction", "balance")
@@ -15,10 +14,9 @@ PICTURES = ("correction", "inertia-errors")
 
 
 def document(*arguments, cwd):
-    result = run("robot", arguments[0], ROBOT, *arguments[1:], "--json", cwd=cwd)
-    # Deep corners of this workspace are out of reach, which only `check` is about.
-    assert result.returncode == int(arguments[0] == "check"), result.stderr
-    found = json.loads(result.stdout)
+    found = document_of(
+        "robot", arguments[0], ROBOT, *arguments[1:], cwd=cwd, code=int(arguments[0] == "check")
+    )
     assert found["schema"] == f"nrs-design/robot-{arguments[0]}/1"
     assert found["spec"] == "neuroboscope"
     return found
@@ -115,8 +113,7 @@ def test_columns_are_named(tmp_path):
 def test_check_refuses_a_robot_without_mass(tmp_path):
     text = re.sub(r"mass: [0-9.]+ g", "mass: 0 g", TEMPLATES["robot"])
     (tmp_path / "light.nrs.yaml").write_text(text.replace("14.81e-7 kg*m^2", "0 kg*m^2", 1))
-    result = run("robot", "check", "light.nrs.yaml", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("robot", "check", "light.nrs.yaml", cwd=tmp_path, code=2)
     assert result.stdout == ""
     assert "some motion of the robot moves no mass" in result.stderr
 
@@ -131,7 +128,7 @@ def test_balance(tmp_path):
 def test_correction_table_replaces_tables_only(tmp_path):
     record = tmp_path / "record.csv"
     record.write_text("time,force")
-    assert run("robot", "correction", ROBOT, "--table", "record.csv", cwd=tmp_path).returncode == 2
+    run("robot", "correction", ROBOT, "--table", "record.csv", cwd=tmp_path, code=2)
     assert record.read_text() == "time,force"
 
 
@@ -156,8 +153,7 @@ def test_correction_table_for_the_controller(tmp_path):
     [pytest.param(c, marks=[pytest.mark.slow] if c == "correction" else []) for c in COMMANDS],
 )
 def test_tables_for_people(tmp_path, command):
-    result = run("robot", command, ROBOT, cwd=tmp_path)
-    assert result.returncode == int(command == "check"), result.stderr
+    result = run("robot", command, ROBOT, cwd=tmp_path, code=int(command == "check"))
     assert len(result.stdout.splitlines()) > 3
     assert ("inertia, by entries" in result.stdout) is (command == "correction")
 
@@ -194,8 +190,7 @@ def test_figures(tmp_path, command, name):
     ],
 )
 def test_wrong_use_is_one_message_and_exit_code_2(tmp_path, arguments, said):
-    result = run("robot", *arguments, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("robot", *arguments, cwd=tmp_path, code=2)
     assert said in " ".join(result.stderr.replace("│", " ").split())
     assert result.stdout == ""
 
@@ -203,26 +198,21 @@ def test_wrong_use_is_one_message_and_exit_code_2(tmp_path, arguments, said):
 def test_no_balance_in_the_spec(tmp_path):
     text = TEMPLATES["robot"]
     (tmp_path / "bare.nrs.yaml").write_text(text[: text.index("# Thesis 4.4 and its")])
-    result = run("robot", "balance", "bare.nrs.yaml", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "no `balance`" in result.stderr
+    assert "no `balance`" in run("robot", "balance", "bare.nrs.yaml", cwd=tmp_path, code=2).stderr
 
 
 def test_other_commands_say_that_a_robot_has_nothing_to_certify(tmp_path):
     for command in ("certify-switching", "optimize", "tune", "export"):
-        result = run(command, ROBOT, cwd=tmp_path)
-        assert result.returncode == 2, command
-        assert "robot" in result.stderr
+        assert "robot" in run(command, ROBOT, cwd=tmp_path, code=2).stderr
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_fresh_robot_spec_is_valid(tmp_path):
-    assert run("init", "robot", "--out", "mine.nrs.yaml", cwd=tmp_path).returncode == 0
-    assert run("check", "-q", "mine.nrs.yaml", cwd=tmp_path).returncode == 0
+    run("init", "robot", "--out", "mine.nrs.yaml", cwd=tmp_path, code=0)
+    run("check", "-q", "mine.nrs.yaml", cwd=tmp_path, code=0)
     assert "valid robot 'mine'" in run("robot", "check", "mine.nrs.yaml", cwd=tmp_path).stdout
 
 
 def test_help_imports_nothing_heavy(tmp_path):
-    result = run("robot", "--help", cwd=tmp_path)
-    assert result.returncode == 0
+    result = run("robot", "--help", cwd=tmp_path, code=0)
     assert all(command in result.stdout for command in COMMANDS)

@@ -1,35 +1,30 @@
 """`nrs-design robot export`, as a user types it."""
 
-import json
 from pathlib import Path
 
 import pytest
 
-from tests.support import ROOT, run
+from tests.support import ROOT, document_of, run
 
 SPEC = str(ROOT / "specs/robots/neuroboscope.nrs.yaml")
 
 
 @pytest.mark.parametrize(("format_", "ending"), [("mjcf", "mjcf.xml"), ("urdf", "urdf")])
 def test_files(tmp_path, format_, ending):
-    done = run("robot", "export", SPEC, "--format", format_, "--out", "there", cwd=tmp_path)
-    assert done.returncode == 0
+    done = run("robot", "export", SPEC, "--format", format_, "--out", "there", cwd=tmp_path, code=0)
     file = tmp_path / f"there/neuroboscope.{ending}"
     assert f"there/neuroboscope.{ending}" in done.stdout
     before = file.read_bytes()
     again = ("robot", "export", SPEC, "--format", format_, "--out", file)
-    assert run(*again, cwd=tmp_path).returncode == 0
+    run(*again, cwd=tmp_path, code=0)
     assert file.read_bytes() == before
     file.write_text("<robot>mine</robot>")
-    refused = run(*again, cwd=tmp_path)
-    assert refused.returncode == 2
-    assert "not overwritten" in refused.stderr
+    assert "not overwritten" in run(*again, cwd=tmp_path, code=2).stderr
     assert file.read_text() == "<robot>mine</robot>"
 
 
 def test_a_file_of_another_ending_is_no_folder(tmp_path):
-    done = run("robot", "export", SPEC, "--format", "urdf", "--out", "x.txt", cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("robot", "export", SPEC, "--format", "urdf", "--out", "x.txt", cwd=tmp_path, code=2)
     assert "seems to be a file" in done.stderr
     assert "ends in .urdf" in done.stderr
     assert not list(tmp_path.iterdir())
@@ -40,10 +35,8 @@ C = ("robot", "export", SPEC, "--format", "c", "--out", "there")
 
 def test_c_is_not_written_without_unproved(tmp_path):
     """Nothing is proved of it."""
-    done = run(*C, cwd=tmp_path)
-    assert done.returncode == 3
-    assert "not exported: no certificate covers" in done.stderr
-    document = json.loads(run(*C, "--json", cwd=tmp_path).stdout)
+    assert "not exported: no certificate covers" in run(*C, cwd=tmp_path, code=3).stderr
+    document = document_of(*C, cwd=tmp_path)
     assert (document["verdict"], document["files"]) == ("inconclusive", [])
     assert not (tmp_path / "there").exists()
 
@@ -52,52 +45,43 @@ def test_c_is_not_written_without_unproved(tmp_path):
 def test_c_is_written_unproved(tmp_path):
     """The exit code says that nothing is proved, and every file does."""
     command = C
-    done = run(*command, "--unproved", cwd=tmp_path)
-    assert done.returncode == 3
+    done = run(*command, "--unproved", cwd=tmp_path, code=3)
     assert "UNPROVED (no certificate covers" in done.stdout
     files = [tmp_path / f"there/neuroboscope.{ending}" for ending in ("h", "c")]
     before = [file.read_bytes() for file in files]
     assert all(b"verdict: UNPROVED" in text for text in before)
-    document = json.loads(run(*command, "--unproved", "--json", cwd=tmp_path).stdout)
+    document = document_of(*command, "--unproved", cwd=tmp_path)
     assert document["verdict"] == "inconclusive"
     assert document["files"] == ["there/neuroboscope.h", "there/neuroboscope.c"]
     assert [file.read_bytes() for file in files] == before
     (tmp_path / "copy.nrs.yaml").write_bytes(Path(SPEC).read_bytes())
     copied = ("robot", "export", "copy.nrs.yaml", *command[3:], "--unproved")
-    refused = run(*copied, cwd=tmp_path)
-    assert refused.returncode == 2
-    assert "belongs to" in refused.stderr
+    assert "belongs to" in run(*copied, cwd=tmp_path, code=2).stderr
     vectors = ("robot", "export", SPEC, "--format", "vectors", "--unproved", "--out", "there")
-    assert run(*vectors, cwd=tmp_path).returncode == 3
+    run(*vectors, cwd=tmp_path, code=3)
     assert (
         "nrs-design/robot-vectors/1"
         in (tmp_path / "there/neuroboscope.robot-vectors.json").read_text()
     )
     copied = ("robot", "export", "copy.nrs.yaml", *vectors[3:])
-    refused = run(*copied, cwd=tmp_path)
-    assert refused.returncode == 2
-    assert "belongs to" in refused.stderr
+    assert "belongs to" in run(*copied, cwd=tmp_path, code=2).stderr
 
 
 def test_models_are_no_programs(tmp_path):
-    done = run("robot", "export", SPEC, "--unproved", cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("robot", "export", SPEC, "--unproved", cwd=tmp_path, code=2)
     assert "--unproved is for programs" in done.stderr
     assert not list(tmp_path.iterdir())
 
 
 def test_json(tmp_path):
-    done = run("robot", "export", SPEC, "--json", cwd=tmp_path)
-    document = json.loads(done.stdout)
+    document = document_of("robot", "export", SPEC, cwd=tmp_path)
     assert document["schema"] == "nrs-design/robot-export/1"
     assert document["files"] == ["reports/neuroboscope.mjcf.xml"]
 
 
 def test_what_is_no_robot(tmp_path):
     spec = str(ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml")
-    done = run("robot", "export", spec, cwd=tmp_path)
-    assert done.returncode == 2
-    assert "describes no robot" in done.stderr
+    assert "describes no robot" in run("robot", "export", spec, cwd=tmp_path, code=2).stderr
     assert not list(tmp_path.iterdir())
 
 
@@ -106,10 +90,9 @@ def test_the_model_of_another_spec_is_not_overwritten(tmp_path):
         (tmp_path / name).write_bytes(Path(SPEC).read_bytes())
     for format_ in ("mjcf", "urdf"):
         first = ("robot", "export", "a.nrs.yaml", "--format", format_)
-        assert run(*first, cwd=tmp_path).returncode == 0
+        run(*first, cwd=tmp_path, code=0)
         before = {path: path.read_bytes() for path in (tmp_path / "reports").iterdir()}
-        refused = run("robot", "export", "b.nrs.yaml", "--format", format_, cwd=tmp_path)
-        assert refused.returncode == 2
+        refused = run("robot", "export", "b.nrs.yaml", "--format", format_, cwd=tmp_path, code=2)
         assert "belongs to a.nrs.yaml" in refused.stderr
         assert {path: path.read_bytes() for path in before} == before
-        assert run(*first, cwd=tmp_path).returncode == 0
+        run(*first, cwd=tmp_path, code=0)

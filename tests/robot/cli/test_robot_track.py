@@ -1,11 +1,9 @@
 """`nrs-design robot track`, as a user types it."""
 
-import json
-
 import pytest
 
 from nrs_design.spec.templates import TEMPLATES
-from tests.support import ROOT, run
+from tests.support import ROOT, document_of, run
 
 ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 QUICK = ("--period", "0.5")
@@ -14,20 +12,9 @@ QUICK = ("--period", "0.5")
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     folder = tmp_path_factory.mktemp("track")
-    result = run(
-        "robot",
-        "track",
-        ROBOT,
-        "--experiment",
-        "phi",
-        *QUICK,
-        "--figures",
-        "f",
-        "--json",
-        cwd=folder,
+    return folder, document_of(
+        "robot", "track", ROBOT, "--experiment", "phi", *QUICK, "--figures", "f", cwd=folder, code=0
     )
-    assert result.returncode == 0, result.stderr
-    return folder, json.loads(result.stdout)
 
 
 @pytest.mark.slow
@@ -64,8 +51,8 @@ def test_table_for_people_beside_the_print(tmp_path):
         "--experiment",
         "phi",
         cwd=tmp_path,
+        code=0,
     )
-    assert result.returncode == 0, result.stderr
     (row,) = [line.split() for line in result.stdout.splitlines() if "independent-joint" in line]
     assert row[1:4] == ["phi", "10", "0.1075"]
     # Table 4.6.
@@ -78,8 +65,9 @@ def test_table_for_people_beside_the_print(tmp_path):
 def test_a_robot_of_ones_own(tmp_path):
     text = TEMPLATES["robot"].replace("mass: 797.2 g", "mass: 900 g")
     (tmp_path / "mine.nrs.yaml").write_text(text[: text.index("# Thesis 4.4 and its")])
-    result = run("robot", "track", "mine.nrs.yaml", "--experiment", "d", *QUICK, cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run(
+        "robot", "track", "mine.nrs.yaml", "--experiment", "d", *QUICK, cwd=tmp_path, code=0
+    )
     assert "computed-torque" in result.stdout
     assert "balanced" not in result.stdout
     assert "on the robot" not in result.stdout
@@ -88,8 +76,7 @@ def test_a_robot_of_ones_own(tmp_path):
 @pytest.mark.slow
 def test_ablation(tmp_path):
     options = ("--controller", "independent-joint", "--experiment", "psi", *QUICK, "--ablation")
-    result = run("robot", "track", ROBOT, *options, cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("robot", "track", ROBOT, *options, cwd=tmp_path, code=0)
     assert result.stdout.count("as designed") == 2
     assert "rotor inertia and motor damping in the law" in result.stdout
     assert "psi [deg]" in result.stdout
@@ -108,7 +95,6 @@ def test_ablation(tmp_path):
 def test_wrong_use_is_one_message_and_exit_code_2(tmp_path, change, options, said):
     text = TEMPLATES["robot"].replace(*change).split("END")[0]
     (tmp_path / "mine.nrs.yaml").write_text(text)
-    result = run("robot", "track", "mine.nrs.yaml", *options, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("robot", "track", "mine.nrs.yaml", *options, cwd=tmp_path, code=2)
     assert said in " ".join(result.stderr.replace("│", " ").split())
     assert result.stdout == ""

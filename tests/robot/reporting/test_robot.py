@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
 from nrs_design.reporting import render_html
@@ -11,7 +9,7 @@ from nrs_design.reporting.document import Illustration, Paragraph, Table
 from nrs_design.robot.models import thesis_tilts
 from nrs_design.robot.pipeline import run_robot
 from nrs_design.robot.reporting.robot import robot_report
-from tests.support import ROOT, run, thinned
+from tests.support import ROOT, document_of, thinned
 
 ROBOT = ROOT / "specs" / "robots" / "neuroboscope.nrs.yaml"
 
@@ -72,9 +70,7 @@ def test_unreachable_corners_are_said_with_the_exit_code_of_the_check(
         return robot_page
 
     monkeypatch.setattr("nrs_design.robot.reporting.robot.robot_report", made_before)
-    done = run("report", ROBOT, "--json", cwd=tmp_path)
-    assert done.returncode == 1
-    found = json.loads(done.stdout)
+    found = document_of("report", ROBOT, cwd=tmp_path, code=1)
     assert found["verdict"] == "unreachable"
     text = (tmp_path / found["files"][0]).read_text(encoding="utf-8")
     assert "the left leg is overstretched" in text

@@ -7,7 +7,7 @@ import shlex
 import pytest
 
 from tests.ros2.support import EXAMPLE, changed
-from tests.support import ROOT, run, typed
+from tests.support import ROOT, document_of, run, typed
 
 SOFT = ("--stiffness", "200..2000 N/m")
 
@@ -15,9 +15,8 @@ SOFT = ("--stiffness", "200..2000 N/m")
 @pytest.mark.slow
 def test_proved(tmp_path):
     done = typed(
-        "ros2", "check", EXAMPLE, *SOFT, "--age", "0..2", "--lag", "5..20 ms", cwd=tmp_path
+        "ros2", "check", EXAMPLE, *SOFT, "--age", "0..2", "--lag", "5..20 ms", cwd=tmp_path, code=0
     )
-    assert done.returncode == 0, done.stderr
     assert "axis x: from 200 to 2000 N/m: stable, in contact, rho <= 0.99" in done.stdout
     assert "PROVED" in done.stdout
     assert "a lag of first order, 5 to 20 ms" in done.stdout
@@ -25,9 +24,7 @@ def test_proved(tmp_path):
 
 def test_refuted_as_json_and_sarif(tmp_path):
     stiff = ("--stiffness", "90000 N/m", "--age", "2")
-    done = run("ros2", "check", EXAMPLE, *stiff, "--json", cwd=tmp_path)
-    assert done.returncode == 1
-    (found,) = json.loads(done.stdout)["specs"]
+    (found,) = document_of("ros2", "check", EXAMPLE, *stiff, cwd=tmp_path, code=1)["specs"]
     assert found["verdict"] == "refuted"
     done = run("ros2", "check", EXAMPLE, *stiff, "--format", "sarif", cwd=tmp_path)
     results = json.loads(done.stdout)["runs"][0]["results"]
@@ -38,8 +35,7 @@ def test_refuted_as_json_and_sarif(tmp_path):
 
 def test_what_surprises_people_is_on_stderr(tmp_path):
     file = changed(tmp_path, ("mass: [5.0, ", "mass: [6.0, "))
-    done = run("ros2", "check", file, *SOFT, cwd=tmp_path)
-    assert done.returncode == 0
+    done = run("ros2", "check", file, *SOFT, cwd=tmp_path, code=0)
     assert "warning: admittance_controller: admittance.mass: masses differ" in done.stderr
 
 
@@ -58,8 +54,7 @@ def test_what_surprises_people_is_on_stderr(tmp_path):
     ],
 )
 def test_wrong_options(tmp_path, options, message):
-    done = run("ros2", "check", EXAMPLE, *options, cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("ros2", "check", EXAMPLE, *options, cwd=tmp_path, code=2)
     assert message in done.stderr
     assert done.stdout == ""
 
@@ -106,16 +101,14 @@ def test_every_remedy_that_is_printed_works_when_pasted(tmp_path, changes, optio
 @pytest.mark.parametrize("rate", ["500", "500 1/s", "500 Hz", "500Hz"])
 def test_a_rate_may_have_its_unit(tmp_path, rate):
     file = changed(tmp_path, NO_RATE)
-    done = run("ros2", "check", file, *SOFT, "--rate", rate, cwd=tmp_path)
-    assert done.returncode == 0
+    done = run("ros2", "check", file, *SOFT, "--rate", rate, cwd=tmp_path, code=0)
     assert "runs 500 times per second, as --rate says" in done.stdout
 
 
 def test_a_controller_that_was_passed_over_is_named_and_not_proved(tmp_path):
     listed = "    admittance_controller: {type:"
     file = changed(tmp_path, (listed, f"    legs: {{type: my/Legs}}\n{listed}"))
-    done = run("ros2", "check", file, *SOFT, cwd=tmp_path)
-    assert done.returncode == 3
+    done = run("ros2", "check", file, *SOFT, cwd=tmp_path, code=3)
     assert "legs: passed over, so undecided: controller_manager runs it as my/Legs" in (
         done.stdout + done.stderr
     )
@@ -136,22 +129,17 @@ EXPORT = ("ros2", "export", "one-age.nrs.yaml", "--axis", "ry", "--lag", "5..20 
 
 @pytest.mark.slow
 def test_export(spec, tmp_path):
-    done = run(*EXPORT, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    done = run(*EXPORT, cwd=tmp_path, code=0)
     assert "PROVED, exported to out/soft-tissue-sampled.insertion.ros2.yaml" in done.stdout
     names = ["soft-tissue-sampled.insertion.ros2", "soft-tissue-sampled.withdrawal.ros2"]
     files = sorted(path.name for path in (tmp_path / "out").iterdir())
     assert files == [f"{name}.{ending}" for name in names for ending in ("cert.json", "yaml")]
     before = {path: path.read_bytes() for path in (tmp_path / "out").iterdir()}
     proof = "out/soft-tissue-sampled.insertion.ros2.cert.json"
-    assert run("verify", proof, cwd=tmp_path).returncode == 0
+    run("verify", proof, cwd=tmp_path, code=0)
     met = ("--rotational-stiffness", "41.51..44.24 N*m/rad", "--age", "1", "--lag", "5..20 ms")
-    checked = run(
-        "ros2", "check", "out/soft-tissue-sampled.insertion.ros2.yaml", *met, cwd=tmp_path
-    )
-    assert checked.returncode == 0
-    again = run(*EXPORT, "--json", cwd=tmp_path)
-    assert json.loads(again.stdout)["controllers"] == {
+    run("ros2", "check", "out/soft-tissue-sampled.insertion.ros2.yaml", *met, cwd=tmp_path, code=0)
+    assert document_of(*EXPORT, cwd=tmp_path)["controllers"] == {
         "insertion": "proved",
         "withdrawal": "proved",
     }
@@ -162,16 +150,13 @@ def test_export_overwrites_nothing_foreign(spec, tmp_path):
     (tmp_path / "out").mkdir()
     mine = tmp_path / "out/soft-tissue-sampled.withdrawal.ros2.yaml"
     mine.write_text("controller_manager: {}\n")
-    done = run(*EXPORT, cwd=tmp_path)
-    assert done.returncode == 2
-    assert "not overwritten" in done.stderr
+    assert "not overwritten" in run(*EXPORT, cwd=tmp_path, code=2).stderr
     assert [path.name for path in (tmp_path / "out").iterdir()] == [mine.name]
 
 
 def test_nothing_is_exported_where_one_controller_is_refuted(spec, tmp_path):
     spec.write_text(spec.read_text().replace("period: 2 ms", "period: 10 ms"))
-    done = run(*EXPORT, cwd=tmp_path)
-    assert done.returncode == 1
+    done = run(*EXPORT, cwd=tmp_path, code=1)
     assert "insertion: refuted with admittance_controller" in done.stderr
     assert "not exported" in done.stderr
     assert [path.name for path in tmp_path.iterdir()] == [spec.name]
@@ -179,8 +164,7 @@ def test_nothing_is_exported_where_one_controller_is_refuted(spec, tmp_path):
 
 def test_export_asks_for_the_axis_and_the_lag(spec, tmp_path):
     for options in (("--axis", "ry"), ("--lag", "0 ms"), ("--axis", "x", "--lag", "0 ms")):
-        assert run("ros2", "export", spec.name, *options, cwd=tmp_path).returncode == 2
+        run("ros2", "export", spec.name, *options, cwd=tmp_path, code=2)
     matrices = ROOT / "specs/examples/ando-shih.nrs.yaml"
-    done = run("ros2", "export", matrices, "--axis", "ry", "--lag", "0 ms", cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("ros2", "export", matrices, "--axis", "ry", "--lag", "0 ms", cwd=tmp_path, code=2)
     assert "no controllers to export" in done.stderr

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from nrs_design.reporting import Report
 
 
+@command("identify-actuator")
 def actuator(
     data: DataFiles,
     columns: ColumnMap = None,
@@ -42,9 +44,7 @@ def actuator(
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Fit gain, time constant, Coulomb friction and dead time of a motor that follows a velocity.
 
     Columns: time_s, command_rpm (or _V, _A, _counts), and angle_rad or velocity_rad_s; any command
@@ -58,20 +58,18 @@ def actuator(
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
     from nrs_design.identification.write_spec import check_actuator, merge_actuator
 
-    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date)
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
-    items = read_all(data, read_actuator, columns or [], quiet=quiet)
+    items = read_all(data, read_actuator, columns or [])
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
     items_of_all = [item for group in series for item in group]
     if outputs.spec is not None:
         for item in items_of_all:
             check_actuator(outputs.spec, item.unit)
-    with progress("fitting", quiet=quiet) as step:
+    with progress("fitting") as step:
         found = identify_actuator(items_of_all, motor, covers.value, step)
-    outputs.deliver(
-        "identify-actuator",
-        summary=lambda: _summary(found),
-        show=lambda: _print(found),
+    return outputs.deliver(
+        Answer(lambda: _summary(found), lambda: _print(found)),
         page=lambda: _page(found),
         merge=lambda spec: merge_actuator(spec, found),
         caveats=found.caveats,
@@ -103,8 +101,10 @@ def _print(found: ActuatorIdentification) -> None:
     print_table("", [*columns, "dead time s"], rows)
     say(f"chosen: {found.chosen.method}. {found.reason}")
     if found.chosen.dead_time and found.step:
+        from nrs_design.identification.actuator.model import FROM_THE_ROW
+
         samples = found.chosen.dead_time.scaled(1 / found.step)
-        say(f"dead time = {samples} samples of {found.step:.4g} s")
+        say(f"dead time = {samples} samples of {found.step:.4g} s, {FROM_THE_ROW}")
     motor = found.chosen.motor
     if motor is not None and motor.damping is not None:
         say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
+from nrs_design.cli.printing import is_quiet
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:
@@ -46,8 +47,6 @@ def read_all(
     paths: Sequence[Path],
     read: Callable[[Path, dict[str, str], Callable[[float], None]], T],
     entries: Sequence[str],
-    *,
-    quiet: bool,
 ) -> list[T]:
     """Read every file; large ones show how far they are.
 
@@ -59,19 +58,17 @@ def read_all(
         Reads one of them; it takes the columns by name, and a function to tell progress to.
     entries : sequence of str
         ``name=column`` each, as the user gave them.
-    quiet : bool
-        Show no progress.
     """
     from nrs_design.tables.columns import parse_mapping
 
     mapping = parse_mapping(entries)
-    with _bar(quiet=quiet) as begin:
+    with _bar() as begin:
         return [read(path, mapping, begin(path.name)) for path in paths]
 
 
 @contextmanager
-def _bar(*, quiet: bool) -> Iterator[Callable[[str], Callable[[float], None]]]:
-    if quiet or not sys.stderr.isatty():
+def _bar() -> Iterator[Callable[[str], Callable[[float], None]]]:
+    if is_quiet() or not sys.stderr.isatty():
         yield lambda name: lambda fraction: None
         return
     from rich.console import Console

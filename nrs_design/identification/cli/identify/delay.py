@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 INPUT, OUTPUT = "input_any", "output_any"
 
 
+@command("identify-delay")
 def delay(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="Record of a running loop.")],
     command: Annotated[
@@ -40,9 +42,7 @@ def delay(
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Find how late a measured signal follows a command, in seconds and in samples.
 
     Cross-correlation first, then a fit of the delay beside what it must not be mistaken for: a
@@ -66,19 +66,17 @@ def delay(
             "name the force as measured by --command, and as the law used it by --measured",
             param_hint="--write",
         )
-    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date)
     if outputs.spec is not None:
         check_delay_place(outputs.spec)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
-    (record,) = read_all([log], read_signals, entries, quiet=quiet)
-    with progress("fitting", quiet=quiet):
+    (record,) = read_all([log], read_signals, entries)
+    with progress("fitting"):
         found = identify_delay(record)
-    outputs.deliver(
-        "identify-delay",
-        summary=lambda: _summary(found),
-        show=lambda: _print(found),
+    return outputs.deliver(
+        Answer(lambda: _summary(found), lambda: _print(found)),
         page=lambda: _page(found),
         merge=lambda spec: merge_delay(spec, found),
         caveats=found.caveats,

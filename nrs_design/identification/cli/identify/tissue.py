@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from nrs_design.reporting import Report
 
 
+@command("identify-tissue")
 def tissue(
     data: DataFiles,
     model: Model = ModelOption.AUTO,
@@ -67,9 +69,7 @@ def tissue(
     environment: EnvironmentName = None,
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Fit five tissue laws to one or several records, compare them and choose one.
 
     Columns: time_s, deflection_m, force_N, or time_s, angle_rad, torque_Nm (mm, mN, deg, ms and
@@ -87,8 +87,8 @@ def tissue(
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
-    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
-    records = read_all(data, read_tissue, columns or [], quiet=quiet)
+    outputs = Destinations.checked(write, report, date)
+    records = read_all(data, read_tissue, columns or [])
     rotational = any(record.rotational for record in records)
     arm = parse_arm(lever_arm, rotational=rotational)
     preparation = Preparation(
@@ -114,7 +114,7 @@ def tissue(
         )
     elif environment is not None:
         raise typer.BadParameter("name a spec by --write, too", param_hint="--environment")
-    with progress("fitting", quiet=quiet) as step:
+    with progress("fitting") as step:
         found = identify_tissue(
             records,
             law,
@@ -125,10 +125,8 @@ def tissue(
             declared=asked is None,
         )
         series = _series(found) if prony else None
-    outputs.deliver(
-        "identify-tissue",
-        summary=lambda: _summary(found, arm, series),
-        show=lambda: _print(found, arm, series or []),
+    return outputs.deliver(
+        Answer(lambda: _summary(found, arm, series), lambda: _print(found, arm, series or [])),
         page=lambda: _page(found, arm, series or []),
         merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
         caveats=found.caveats,
@@ -155,7 +153,7 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
             "\n".join(_parameters(model, parameter_units(model.law, found.rotational))),
             ", ".join(f"{value:.4g}" for value in model.rmse),
             f"{model.bic - least:.4g}",
-            "; ".join(model.doubts[:2]) + (" ..." if len(model.doubts) > 2 else ""),
+            doubts_of(model, chosen=model is found.chosen),
         ]
         for model in found.models
     ]
@@ -180,6 +178,12 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
         say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
     for item in series:
         say(item.text(rotational=found.rotational))
+
+
+def doubts_of(model: ModelFit, *, chosen: bool) -> str:
+    """Join the doubts about a law: all of the chosen one, the first two of others."""
+    shown = model.doubts if chosen else model.doubts[:2]
+    return "; ".join(shown) + (" ..." if len(model.doubts) > len(shown) else "")
 
 
 def _series(found: TissueIdentification) -> list[Series]:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
-from nrs_design.cli.options import Date, Json, Quiet, ReportTo
+from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from nrs_design.reporting import Report
 
 
+@command("identify-tool")
 def tool(
     data: DataFiles,
     columns: ColumnMap = None,
@@ -32,9 +34,7 @@ def tool(
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
-    as_json: Json = False,
-    quiet: Quiet = False,
-) -> None:
+) -> Answer:
     """Find mass and center of mass of a tool, and the bias of its force sensor, from poses.
 
     A row is a pose: the orientation of the sensor, qw, qx, qy, qz or roll_deg, pitch_deg, and the
@@ -48,16 +48,14 @@ def tool(
     from nrs_design.identification.tool import identify_tool
     from nrs_design.identification.write_spec import check_tool, merge_tool
 
-    outputs = Destinations.checked(write, report, date, as_json=as_json, quiet=quiet)
+    outputs = Destinations.checked(write, report, date)
     if outputs.spec is not None:
         check_tool(outputs.spec)
-    records = read_all(data, read_poses, columns or [], quiet=quiet)
-    with progress("fitting", quiet=quiet):
+    records = read_all(data, read_poses, columns or [])
+    with progress("fitting"):
         found = identify_tool(records, gravity)
-    outputs.deliver(
-        "identify-tool",
-        summary=lambda: _summary(found),
-        show=lambda: _print(found),
+    return outputs.deliver(
+        Answer(lambda: _summary(found), lambda: _print(found)),
         page=lambda: _page(found),
         merge=lambda spec: merge_tool(spec, found),
         caveats=found.doubts,

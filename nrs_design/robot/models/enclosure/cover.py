@@ -78,21 +78,11 @@ Bound = Callable[[Boxes], tuple[Floats, Floats]]
 
 @dataclass(frozen=True)
 class Cover:
-    """Boxes that make up the whole, each with what is not exceeded in it.
+    """Boxes that make up the whole, each with what is not exceeded in it."""
 
-    Parameters
-    ----------
-    boxes : Boxes
-        Without gaps.
-    bounds : array, shape (n,)
-        One number for each; not finite where nothing is known.
-    goal : float
-        What was to be shown of all.
-    """
-
-    boxes: Boxes
-    bounds: Floats
-    goal: float
+    boxes: Boxes  # Without gaps
+    bounds: Floats  # Shape (n,). One number for each; not finite where nothing is known.
+    goal: float  # What was to be shown of all
 
     @property
     def bound(self) -> float:

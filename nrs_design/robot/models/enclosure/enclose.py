@@ -31,24 +31,12 @@ Goal = Callable[[float], float]
 
 @dataclass(frozen=True)
 class Enclosed:
-    """The largest value of a quantity over a workspace, from both sides.
+    """The largest value of a quantity over a workspace, from both sides."""
 
-    Parameters
-    ----------
-    quantity : AbstractQuantity
-        Of what.
-    found : float
-        At a pose, in floating point; not above the largest value but for rounding.
-    pose : tuple of float
-        That pose, (phi, psi, d) in rad and m.
-    cover : Cover
-        The boxes that show the bound.
-    """
-
-    quantity: AbstractQuantity
-    found: float
-    pose: tuple[float, float, float]
-    cover: Cover
+    quantity: AbstractQuantity  # Of what
+    found: float  # At a pose, in floating point; not above the largest value but for rounding
+    pose: tuple[float, float, float]  # That pose, (phi, psi, d) in rad and m
+    cover: Cover  # The boxes that show the bound
 
     @property
     def bound(self) -> float:

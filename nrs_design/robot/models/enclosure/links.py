@@ -39,22 +39,13 @@ def ball(number: float, scale: float = 0.0) -> Balls:
 
 @dataclass(frozen=True)
 class Links:
-    """Closed forms of one robot, at a box or a point.
+    """Closed forms of one robot, at a box or a point."""
 
-    Parameters
-    ----------
-    robot : Robot
-        The robot.
-    middle, half : sequence of array
-        Of the boxes, in the coordinates x, y and d.
-    order : int
-        Of the derivatives of what is asked for: 0 or 1.
-    """
-
-    robot: Robot
+    robot: Robot  # The robot
+    # middle, half: of the boxes, in the coordinates x, y and d.
     middle: Sequence[Floats]
     half: Sequence[Floats]
-    order: int
+    order: int  # Of the derivatives of what is asked for: 0 or 1
 
     def _frame(self, order: int) -> _Frame:
         return _Frame(self.robot, coordinate_jets(self.middle, self.half, order))

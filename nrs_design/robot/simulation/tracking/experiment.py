@@ -22,27 +22,13 @@ COORDINATE = {"phi": 0, "psi": 1, "d": 2}
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
-    """A pose that is held, then one full period of a sine of one of its coordinates.
+    """A pose that is held, then one full period of a sine of one of its coordinates."""
 
-    Parameters
-    ----------
-    moved : str
-        ``d``, ``phi`` or ``psi``.
-    center : tuple of float
-        (phi, psi, d) in rad and m.
-    amplitude : float
-        Of the coordinate that moves, in rad or m.
-    rate : float
-        Angular frequency of the sine in rad/s.
-    hold : float
-        Time at the center before the sine, in s.
-    """
-
-    moved: str
-    center: tuple[float, float, float]
-    amplitude: float
-    rate: float
-    hold: float = HOLD
+    moved: str  # ``d``, ``phi`` or ``psi``
+    center: tuple[float, float, float]  # (phi, psi, d) in rad and m
+    amplitude: float  # Of the coordinate that moves, in rad or m
+    rate: float  # Angular frequency of the sine in rad/s
+    hold: float = HOLD  # Time at the center before the sine, in s
 
     @property
     def duration(self) -> float:

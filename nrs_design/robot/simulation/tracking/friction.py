@@ -26,20 +26,11 @@ class DryFriction:
     exactly one solution, the minimum of ``v' inertia v/2 - v' impulse + sum limit_i |v_i|``. It
     is found by proximal steps in a diagonal metric that dominates the inertia, so that every step
     comes nearer; where the rotors outweigh what couples the joints, a few steps are enough.
-
-    Parameters
-    ----------
-    inertia : ndarray
-        Symmetric and positive definite, shape (n, 3, 3), in kg m^2.
-    metric : ndarray
-        Diagonal of the metric, shape (n, 3).
-    slack : ndarray
-        The metric less the inertia, shape (n, 3, 3).
     """
 
-    inertia: Array
-    metric: Array
-    slack: Array
+    inertia: Array  # Symmetric and positive definite, shape (n, 3, 3), in kg m^2
+    metric: Array  # Diagonal of the metric, shape (n, 3)
+    slack: Array  # The metric less the inertia, shape (n, 3, 3)
 
     @staticmethod
     def of(inertia: Array) -> DryFriction:

@@ -42,18 +42,10 @@ class JointState:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """What the drives move: all links and the platform, and perhaps a balance.
+    """What the drives move: all links and the platform, and perhaps a balance."""
 
-    Parameters
-    ----------
-    robot : Robot
-        On its base, with its counter-masses if it has any.
-    balance : Balance or None
-        The balance whose springs act on it.
-    """
-
-    robot: Robot
-    balance: Balance | None = None
+    robot: Robot  # On its base, with its counter-masses if it has any
+    balance: Balance | None = None  # The balance whose springs act on it
 
     @staticmethod
     def balanced(robot: Robot, balance: Balance) -> Mechanism:
@@ -113,29 +105,14 @@ class Stepper:
     Velocity and damping are those of the middle of the step (the implicit midpoint rule), so that
     kinetic energy, work and losses balance exactly while the matrices hold. The friction follows
     from the velocity at the end of the step.
-
-    Parameters
-    ----------
-    drives : DriveArrays
-        Drives of the batch.
-    h : float
-        Length of a step in s.
-    mass : ndarray
-        M and the rotors, shape (n, 3, 3).
-    bias : ndarray
-        Shape (n, 3), in N m.
-    contact : DryFriction
-        What the velocity at the end of the step follows from.
-    inverse : ndarray
-        Inverse of its inertia, shape (n, 3, 3).
     """
 
-    drives: DriveArrays
-    h: float
-    mass: Array
-    bias: Array
-    contact: DryFriction
-    inverse: Array
+    drives: DriveArrays  # Drives of the batch
+    h: float  # Length of a step in s
+    mass: Array  # M and the rotors, shape (n, 3, 3)
+    bias: Array  # Shape (n, 3), in N m
+    contact: DryFriction  # What the velocity at the end of the step follows from
+    inverse: Array  # Inverse of its inertia, shape (n, 3, 3)
 
     @staticmethod
     def at(drives: DriveArrays, h: float, mass: Array, bias: Array) -> Stepper:

@@ -17,29 +17,17 @@ DISPLAY = np.array([180 / pi, 180 / pi, 1e3])
 
 @dataclass(frozen=True, slots=True)
 class TrackingRecord:
-    """What one experiment gave.
+    """What one experiment gave."""
 
-    Parameters
-    ----------
-    controller : str
-        Which one.
-    experiment : Experiment
-        What was asked for.
-    time : ndarray
-        Ticks in s, shape (n,).
-    wanted, measured, actual : ndarray
-        Poses (phi, psi, d), shape (n, 3), in rad and m; measured through the encoders.
-    command : ndarray
-        Shape (n, 3), in rpm.
-    """
-
-    controller: str
-    experiment: Experiment
-    time: Array
+    controller: str  # Which one
+    experiment: Experiment  # What was asked for
+    time: Array  # Ticks in s, shape (n,)
+    # wanted, measured, actual: poses (phi, psi, d), shape (n, 3), in rad and m; measured through
+    # the encoders.
     wanted: Array
     measured: Array
     actual: Array
-    command: Array
+    command: Array  # Shape (n, 3), in rpm
 
     @property
     def rmse(self) -> Array:

@@ -25,18 +25,10 @@ CONTROLLERS = ("computed-torque", "independent-joint", "balanced")
 
 @dataclass(frozen=True, slots=True)
 class Encoder:
-    """Absolute encoder at the output of the gearhead (MagAlpha MA707, thesis 4.1).
+    """Absolute encoder at the output of the gearhead (MagAlpha MA707, thesis 4.1)."""
 
-    Parameters
-    ----------
-    ratio : float
-        Turns of the encoder per turn of the joint.
-    counts : int or None
-        Per turn of the encoder; None does not round.
-    """
-
-    ratio: float
-    counts: int | None
+    ratio: float  # Turns of the encoder per turn of the joint
+    counts: int | None  # Per turn of the encoder; None does not round
 
     def read(self, joints: Array) -> Array:
         """Return what encoders say of joint angles: their own angles in rad, to the count."""
@@ -49,30 +41,14 @@ class Encoder:
 
 @dataclass(frozen=True)
 class Track:
-    """A controller on a robot, and the experiments that it does.
+    """A controller on a robot, and the experiments that it does."""
 
-    Parameters
-    ----------
-    controller : str
-        Name for people.
-    law : MotionLaw
-        The controller.
-    mechanism : Mechanism
-        What it moves.
-    drive : JointDrive
-        Behind each joint.
-    encoder : Encoder
-        On each drive.
-    experiments : tuple of Experiment
-        What is asked for.
-    """
-
-    controller: str
-    law: MotionLaw
-    mechanism: Mechanism
-    drive: JointDrive
-    encoder: Encoder
-    experiments: tuple[Experiment, ...]
+    controller: str  # Name for people
+    law: MotionLaw  # The controller
+    mechanism: Mechanism  # What it moves
+    drive: JointDrive  # Behind each joint
+    encoder: Encoder  # On each drive
+    experiments: tuple[Experiment, ...]  # What is asked for
 
     def only(self, moved: str | None) -> Track:
         """Return the track with the experiment that moves one coordinate; None keeps all."""

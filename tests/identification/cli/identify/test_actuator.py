@@ -14,9 +14,7 @@ def test_sinusoids_and_a_ready_response(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
     arguments = ("identify", "actuator", *SINUSOIDS, "--json", "--write", spec)
-    result = run(*arguments, cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = json.loads(run(*arguments, cwd=tmp_path, code=0).stdout)
     fit = document["fits"][-1]
     for key, value in (
         ("gain_rad_s_rpm", 4.8417e-4),

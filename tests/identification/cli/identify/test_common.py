@@ -30,7 +30,6 @@ def test_columns_are_renamed_for_every_file():
         [Path("a"), Path("b")],
         lambda path, names, tell: (path.name, names),
         ["force_N=Fz"],
-        quiet=True,
     )
     assert read == [("a", NAMES), ("b", NAMES)]
 
@@ -38,11 +37,11 @@ def test_columns_are_renamed_for_every_file():
 @pytest.mark.parametrize("entry", ["force", "=Fz", "force_N="])
 def test_a_column_without_a_name(entry):
     with pytest.raises(NrsDesignError):
-        read_all([], lambda path, names, tell: None, [entry], quiet=True)
+        read_all([], lambda path, names, tell: None, [entry])
 
 
 def checked(write=None, report=None):
-    return Destinations.checked(write, report, None, as_json=False, quiet=True)
+    return Destinations.checked(write, report, None)
 
 
 def test_outputs_are_refused_before_the_work(tmp_path):

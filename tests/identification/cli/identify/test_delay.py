@@ -1,13 +1,12 @@
 """`nrs-design identify delay`, as a user types it."""
 
-import json
 import shutil
 
 import numpy as np
 import pytest
 
 from tests.identification import signals
-from tests.support import ROBOT, run
+from tests.support import ROBOT, document_of, run
 
 
 @pytest.mark.slow
@@ -16,9 +15,7 @@ def test_delay(tmp_path):
     rows = np.column_stack([record.time, record.sent, record.seen])
     np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
     arguments = ("identify", "delay", "loop.csv", "--command", "raw", "--measured", "used")
-    done = run(*arguments, "--json", "--report", "delay.html", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    document = json.loads(done.stdout)
+    document = document_of(*arguments, "--report", "delay.html", cwd=tmp_path, code=0)
     samples = document["delay_samples"]
     assert samples["low"] < signals.DELAY < samples["high"]
     assert document["sampling_step_s"] == pytest.approx(0.002)
@@ -37,11 +34,9 @@ def test_delay_into_a_spec(tmp_path):
     rows = np.column_stack([record.time, record.sent, record.seen])
     np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
     arguments = ("identify", "delay", "loop.csv", "--write", spec)
-    unnamed = run(*arguments, cwd=tmp_path)
-    assert unnamed.returncode == 2
+    unnamed = run(*arguments, cwd=tmp_path, code=2)
     assert "as the law used it" in " ".join(unnamed.stderr.replace("│", " ").split())
-    done = run(*arguments, "--command", "raw", "--measured", "used", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    run(*arguments, "--command", "raw", "--measured", "used", cwd=tmp_path, code=0)
     assert "delay: [1, 4]" in spec.read_text()
 
 
@@ -58,8 +53,7 @@ def test_delay_into_a_spec(tmp_path):
 )
 def test_wrong_delays(tmp_path, arguments, message):
     (tmp_path / "loop.csv").write_text("time_s,raw,used\n" + "0,1,2\n" * 60)
-    done = run("identify", "delay", *arguments, cwd=tmp_path)
-    assert done.returncode == 2
+    done = run("identify", "delay", *arguments, cwd=tmp_path, code=2)
     assert message in done.stderr
     assert "_any" not in done.stderr
 

@@ -10,8 +10,7 @@ from tests.support import COMMUTING, run
 @pytest.mark.parametrize("ending", ["html", "pdf"])
 def test_report(tmp_path, ending):
     page = tmp_path / f"page.{ending}"
-    result = run("identify", "tissue", *SOFT[:1], "--report", page, "-q", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    run("identify", "tissue", *SOFT[:1], "--report", page, "-q", cwd=tmp_path, code=0)
     assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
 
 
@@ -22,8 +21,7 @@ def test_report(tmp_path, ending):
 def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, command, data):
     pages = []
     for dates in ([], ["--date", "2026-03-01"]):
-        result = run("identify", command, data, "--report", "p.html", *dates, "-q", cwd=tmp_path)
-        assert result.returncode == 0, result.stderr
+        run("identify", command, data, "--report", "p.html", *dates, "-q", cwd=tmp_path, code=0)
         pages.append((tmp_path / "p.html").read_text())
     dated = '<time datetime="2026-03-01">2026-03-01</time>'
     assert [page.count("<time") for page in pages] == [0, 1]
@@ -48,8 +46,7 @@ def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, command, dat
     ],
 )
 def test_bad_input_is_one_message(tmp_path, arguments, message):
-    result = run("identify", *arguments, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("identify", *arguments, cwd=tmp_path, code=2)
     assert message in result.stderr
     assert result.stderr.count("error[") == 1
     assert list(tmp_path.iterdir()) == []

@@ -1,27 +1,26 @@
 """`nrs-design identify tissue`, as a user types it."""
 
 import contextlib
-import json
 import shutil
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import pytest
 
+from nrs_design.identification.cli.identify.tissue import doubts_of
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import read_spec
 from tests.identification.cli.identify.records import NOSE, SOFT
 from tests.identification.support import quick, record
 from tests.identification.unilateral import robot_record
-from tests.support import ROOT, SOFT_TISSUE, run
+from tests.support import ROOT, SOFT_TISSUE, document_of, run
 
 
 def test_end_to_end(tmp_path):
     """Shipped records into a copy of the soft-tissue spec; the gate proves the whole interval."""
     spec = tmp_path / "soft-tissue.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
-    result = run("identify", "tissue", *SOFT, "--write", spec, "--json", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = document_of("identify", "tissue", *SOFT, "--write", spec, cwd=tmp_path, code=0)
     assert document["schema"] == "nrs-design/identify-tissue/1"
     assert document["synthetic"] is True
     assert document["chosen"] == "elastic"
@@ -30,16 +29,14 @@ def test_end_to_end(tmp_path):
     assert all(k["low"] < fit < k["high"] for fit in (768.17, 720.56, 752.69))
     assert k["value"] == pytest.approx(747.14, rel=5e-3)
     assert "data: synthetic" in spec.read_text()
-    gate = run("gate", spec, "--json", "--no-reports", cwd=tmp_path)
-    assert gate.returncode == 0, gate.stdout + gate.stderr
+    run("gate", spec, "--json", "--no-reports", cwd=tmp_path, code=0)
     check = run("check", spec, cwd=tmp_path).stdout
     assert "silicone-soft-1.csv" in check
     assert "synthetic" in check
 
 
 def test_tissue_table(tmp_path):
-    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    result = run("identify", "tissue", *SOFT, "--lever-arm", "0.24 m", cwd=tmp_path, code=0)
     assert result.stdout.startswith("SYNTHETIC data")
     for law in ("elastic", "kelvin-voigt", "maxwell", "kelvin-boltzmann", "hunt-crossley"):
         assert law in result.stdout
@@ -49,7 +46,7 @@ def test_tissue_table(tmp_path):
 
 def test_nose_of_the_thesis(tmp_path):
     """Thesis table 2.4: k1 0.233, k2 0.972, b 23.631; RMSE 0.0216, 0.0165, 0.0062, 0.0111."""
-    document = json.loads(run("identify", "tissue", *NOSE, "--json", cwd=tmp_path).stdout)
+    document = document_of("identify", "tissue", *NOSE, cwd=tmp_path)
     assert document["chosen"] == "kelvin-boltzmann"
     model = next(m for m in document["models"] if m["law"] == "kelvin-boltzmann")
     for name, value in (("k1", 0.233), ("k2", 0.972), ("b", 23.631)):
@@ -62,21 +59,18 @@ def test_nose_of_the_thesis(tmp_path):
 def test_foreign_columns(tmp_path):
     text = SOFT[0].read_text().replace("deflection_m", "x").replace("force_N", "Fz")
     (tmp_path / "foreign.csv").write_text(text)
-    missing = run("identify", "tissue", "foreign.csv", cwd=tmp_path)
-    assert missing.returncode == 2
+    missing = run("identify", "tissue", "foreign.csv", cwd=tmp_path, code=2)
     assert "the columns deflection_m, force_N are missing" in missing.stderr
     assert " --> foreign.csv:2\n" in missing.stderr
     arguments = ("--map", "deflection_m=x", "--map", "force_N=Fz")
-    assert run("identify", "tissue", "foreign.csv", *arguments, cwd=tmp_path).returncode == 0
+    run("identify", "tissue", "foreign.csv", *arguments, cwd=tmp_path, code=0)
 
 
 def test_a_failed_merge_leaves_the_spec(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
     arguments = ("identify", "tissue", NOSE[0], "--model", "hunt-crossley", "--write", spec)
-    result = run(*arguments, cwd=tmp_path)
-    assert result.returncode == 2
-    assert "--model elastic" in result.stderr
+    assert "--model elastic" in run(*arguments, cwd=tmp_path, code=2).stderr
     assert spec.read_text() == SOFT_TISSUE.read_text()
 
 
@@ -84,27 +78,20 @@ def test_a_failed_merge_leaves_the_spec(tmp_path):
 def test_what_is_chosen_for_the_nose_can_be_proved(tmp_path):
     spec = tmp_path / "nose.nrs.yaml"
     shutil.copy(ROOT / "specs/neuroboscope/nose.nrs.yaml", spec)
-    result = run("identify", "tissue", *NOSE, "--write", spec, cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
+    run("identify", "tissue", *NOSE, "--write", spec, cwd=tmp_path, code=0)
     assert "model: kelvin-boltzmann" in spec.read_text()
     assert "nose-4.csv" in spec.read_text()
-    proved = run("certify-switching", spec, cwd=tmp_path)
-    assert proved.returncode == 0
-    assert proved.stdout.startswith("nose: PROVED")
+    assert run("certify-switching", spec, cwd=tmp_path, code=0).stdout.startswith("nose: PROVED")
 
 
 def test_writing_a_law_that_fits_worse_warns(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
     arguments = ("identify", "tissue", NOSE[0], "--model", "elastic", "--write", spec, "-q")
-    result = run(*arguments, cwd=tmp_path)
-    assert result.returncode == 0
-    first, *doubts = result.stderr.splitlines()
+    first, *doubts = run(*arguments, cwd=tmp_path, code=0).stderr.splitlines()
     assert first.startswith("warning: kelvin-boltzmann describes the records better than elastic")
     assert any("the residual is" in doubt for doubt in doubts)
-    gate = run("gate", spec, "--no-reports", cwd=tmp_path)
-    assert gate.returncode == 1
-    assert "NRS107 missed" in gate.stdout
+    assert "NRS107 missed" in run("gate", spec, "--no-reports", cwd=tmp_path, code=1).stdout
 
 
 def robot_csv(folder, sign=1):
@@ -120,7 +107,7 @@ def robot_csv(folder, sign=1):
 @pytest.mark.slow
 def test_offsets_and_cuts_are_said(tmp_path):
     path = robot_csv(tmp_path)
-    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    document = document_of("identify", "tissue", path, cwd=tmp_path)
     assert document["chosen"] == "kelvin-voigt"
     assert document["ranges"]["k"]["low"] < 400 < document["ranges"]["k"]["high"]
     assert document["caveats"] == []
@@ -141,8 +128,7 @@ def test_opposite_signs_stop_the_writing(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
     arguments = ("identify", "tissue", robot_csv(tmp_path, -1), "--write", spec)
-    result = run(*arguments, cwd=tmp_path)
-    assert "force and deflection have opposite signs" in result.stderr
+    assert "force and deflection have opposite signs" in run(*arguments, cwd=tmp_path).stderr
     told = (*arguments, "--negate-force", "--model", "kelvin-voigt", "-q")
     assert run(*told, cwd=tmp_path).stderr == ""
     assert "doubts" not in spec.read_text()
@@ -165,16 +151,14 @@ def test_the_law_of_the_spec_is_kept_unless_another_is_asked_for(tmp_path):
     spec = tmp_path / "copy.nrs.yaml"
     spec.write_text(SOFT_TISSUE.read_text().replace(*VOIGT))
     arguments = ("identify", "tissue", damped_csv(tmp_path), "--write", spec)
-    kept = run(*arguments, cwd=tmp_path)
-    assert kept.returncode == 0, kept.stderr
+    kept = run(*arguments, cwd=tmp_path, code=0)
     assert "kelvin-voigt is the law of the spec, which is kept" in kept.stdout
     assert "changed: environments.soft.damping: 30 N*s/m -> 29." in kept.stderr
     assert "no longer there" not in kept.stderr
     soft = read_spec(spec).spec.environments["soft"]
     assert soft.model == "kelvin-voigt"
     assert soft.damping.range[0].si < 30 < soft.damping.range[1].si
-    told = run(*arguments, "--model", "elastic", "-q", cwd=tmp_path)
-    assert told.returncode == 0, told.stderr
+    told = run(*arguments, "--model", "elastic", "-q", cwd=tmp_path, code=0)
     assert "warning: no longer there: environments.soft.damping: 29." in told.stderr
     assert "warning: kelvin-voigt describes the records better than elastic" in told.stderr
 
@@ -185,12 +169,11 @@ def test_a_law_that_is_not_refused_before_the_fit_does_not_lose_it(tmp_path):
     spec.write_text(text)
     record_, options = damped_csv(tmp_path, b=0.0), ("--contact", "given", "--zero", "0 m")
     arguments = ("identify", "tissue", record_, *options, "--write", spec)
-    result = run(*arguments, cwd=tmp_path)
-    assert result.returncode == 2
+    result = run(*arguments, cwd=tmp_path, code=2)
     assert "BIC - least" in result.stdout
     assert "choose a simpler law with --model" in result.stderr
     assert spec.read_text() == text
-    document = json.loads(run(*arguments, "--json", cwd=tmp_path).stdout)
+    document = document_of(*arguments, cwd=tmp_path)
     assert document["chosen"] == "kelvin-voigt"
     assert "unlimited" in str(document["not_written"])
 
@@ -228,9 +211,7 @@ def test_what_cannot_be_written_is_refused_before_the_fit(tmp_path):
             ((*delay, "--write", rpm), "the spec has no sampling"),
             (("tool", poses, "--write", other), "has no place for identified values"),
         ):
-            result = run("identify", *arguments, cwd=tmp_path)
-            assert result.returncode == 2, (arguments, result.stderr)
-            assert message in result.stderr, arguments
+            assert message in run("identify", *arguments, cwd=tmp_path, code=2).stderr, arguments
 
 
 @pytest.mark.parametrize(
@@ -261,10 +242,8 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
     path, spec = tmp_path / "press.csv", tmp_path / "copy.nrs.yaml"
     path.write_text("time_s,deflection_m,force_N\n" + "\n".join(f"{t},{x},{f}" for t, x, f in rows))
     shutil.copy(SOFT_TISSUE, spec)
-    result = run("identify", "tissue", path, cwd=tmp_path)
-    assert result.returncode == 3
-    assert f"warning: press: {said}" in result.stderr
-    document = json.loads(run("identify", "tissue", path, "--json", cwd=tmp_path).stdout)
+    assert f"warning: press: {said}" in run("identify", "tissue", path, cwd=tmp_path, code=3).stderr
+    document = document_of("identify", "tissue", path, cwd=tmp_path)
     assert any(said in slip for slip in document["slips"])
     options = ("--write", spec, "--model", "elastic", "-q")
     written = run("identify", "tissue", path, *options, cwd=tmp_path)
@@ -292,6 +271,11 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
     ],
 )
 def test_wrong_options_of_tissue(tmp_path, option, message):
-    result = run("identify", "tissue", SOFT[0], *option, cwd=tmp_path)
-    assert result.returncode == 2
-    assert message in result.stderr
+    assert message in run("identify", "tissue", SOFT[0], *option, cwd=tmp_path, code=2).stderr
+
+
+def test_every_doubt_of_the_chosen_law_is_printed():
+    """The third and later ones were behind "..."."""
+    doubted = SimpleNamespace(doubts=("one", "two", "three"))
+    assert doubts_of(doubted, chosen=True) == "one; two; three"
+    assert doubts_of(doubted, chosen=False) == "one; two ..."

@@ -1,10 +1,9 @@
 """`nrs-design identify tool`, as a user types it."""
 
-import json
 import shutil
 
 from tests.identification.cli.identify.records import DATA, SOFT
-from tests.support import SOFT_TISSUE, run
+from tests.support import SOFT_TISSUE, document_of, run
 
 POSES = DATA / "tool-poses.csv"
 
@@ -13,11 +12,9 @@ def test_tool_into_a_spec_that_the_gate_proves(tmp_path):
     spec = tmp_path / "soft-tissue.nrs.yaml"
     shutil.copy(SOFT_TISSUE, spec)
     page = tmp_path / "tool.html"
-    result = run(
-        "identify", "tool", POSES, "--write", spec, "--report", page, "--json", cwd=tmp_path
+    document = document_of(
+        "identify", "tool", POSES, "--write", spec, "--report", page, cwd=tmp_path, code=0
     )
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
     assert document["schema"] == "nrs-design/identify-tool/1"
     assert document["synthetic"] is True
     assert document["mass_kg"]["low"] < 0.797 < document["mass_kg"]["high"]
@@ -28,16 +25,13 @@ def test_tool_into_a_spec_that_the_gate_proves(tmp_path):
     assert "Errors in each pose" in page.read_text(encoding="utf-8")
     again = run("identify", "tool", POSES, "--write", spec, cwd=tmp_path)
     assert "center of mass m" in again.stdout
-    optimized = json.loads(run("optimize", spec, "--json", cwd=tmp_path).stdout)
+    optimized = document_of("optimize", spec, cwd=tmp_path)
     assert set(optimized["sensor"]["parts"]) == {"bias", "mass and center of mass of the tool"}
     assert optimized["controllers"][0]["creep"]["velocity_rad_s"] > 0
 
 
 def test_wrong_poses(tmp_path):
-    result = run("identify", "tool", SOFT[0], cwd=tmp_path)
-    assert result.returncode == 2
-    assert "missing" in result.stderr
+    assert "missing" in run("identify", "tool", SOFT[0], cwd=tmp_path, code=2).stderr
     (tmp_path / "two.csv").write_text("\n".join(POSES.read_text().splitlines()[:4]))
-    result = run("identify", "tool", tmp_path / "two.csv", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("identify", "tool", tmp_path / "two.csv", cwd=tmp_path, code=2)
     assert "2 poses do not determine a tool" in result.stderr

@@ -1,0 +1,85 @@
+"""A command returns an answer; one printer shows it as text or JSON, and ends with its code."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from nrs_design.cli import exit_codes
+from nrs_design.cli.printing import output, print_json, wants_json, wants_text
+
+if TYPE_CHECKING:
+    from nrs_design.spec import LoadedSpec
+
+QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help=QUIET)]
+
+
+def _nothing() -> None:
+    """Show no text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a command has found."""
+
+    facts: Callable[[], dict[str, Any]] = dict  # Content of the JSON document
+    show: Callable[[], object] = _nothing  # Prints the same for people
+    code: int = exit_codes.PROVED
+    loud: bool = False  # Whether it is an error, which --quiet does not silence
+    name: str | None = None  # Of the JSON document, where it is not that of the command
+
+    def deliver(self, name: str) -> None:
+        """Print what is wanted, and end with the exit code."""
+        if wants_json():
+            print_json(self.name or name, self.facts())
+        elif self.loud:
+            with output(as_json=False, quiet=False):
+                self.show()
+        elif wants_text():
+            self.show()
+        raise typer.Exit(self.code)
+
+
+def command(
+    name: str, *, has_json: bool = True
+) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
+    """Make a command of a function: with --json and --quiet, and an end that prints its answer.
+
+    Parameters
+    ----------
+    name : str
+        As the JSON document names it.
+    has_json : bool
+        Whether there is such a document.
+    """
+    options = {"as_json": Json, "quiet": Quiet} if has_json else {"quiet": Quiet}
+
+    def decorate(function: Callable[..., Answer]) -> Callable[..., None]:
+        @wraps(function)
+        def run(*, as_json: bool = False, quiet: bool = False, **arguments: Any) -> None:
+            with output(as_json=as_json, quiet=quiet):
+                function(**arguments).deliver(name)
+
+        signature = inspect.signature(function, eval_str=True)
+        keyword = inspect.Parameter.KEYWORD_ONLY
+        added = [
+            inspect.Parameter(n, keyword, default=False, annotation=options[n]) for n in options
+        ]
+        parameters = (*signature.parameters.values(), *added)
+        vars(run)["__signature__"] = signature.replace(parameters=parameters)
+        run.__annotations__ = {p.name: p.annotation for p in parameters}
+        return run
+
+    return decorate
+
+
+def spec_facts(loaded: LoadedSpec) -> dict[str, Any]:
+    """Return which spec a result is about, as every document begins."""
+    return {"spec": loaded.spec.name, "spec_sha256": loaded.sha256}

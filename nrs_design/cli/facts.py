@@ -1,0 +1,149 @@
+"""What ``--json`` prints about a proof and its margins; each double is on the side that is safe."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.cli.command import spec_facts
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from nrs_design.pipeline import Result
+    from nrs_design.pipeline.margins import ProofMargins
+    from nrs_design.search.certification import Certification
+    from nrs_design.search.loop_margin import Bracket, MarginBrackets
+
+
+def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
+    """Return the facts of a decision on stability under switching."""
+    from nrs_design.certificates.bounds import bounds_summary
+    from nrs_design.certificates.goals import certified_goals
+
+    found, certificate = result.certification, result.certificate
+    system, evidence = found.system, found.evidence
+    return {
+        **spec_facts(result.loaded),
+        "verdict": str(found.verdict),
+        "refuted_in": found.refuted_in,
+        "common_quadratic": str(found.common_quadratic),
+        "claim": evidence.claim(system) if evidence else None,
+        "statements": [{"kind": s.kind, "claim": s.claim(system)} for s in found.statements],
+        "bounds": bounds_summary(system, found.statements),
+        "goals": [
+            {"goal": g.key, "wanted": g.wanted, "shown": g.said, "proved": g.met}
+            for g in certified_goals(result.loaded.spec, certificate)
+        ],
+        "method": found.method,
+        **rate_facts(found),
+        "time": str(system.time),
+        "coordinates": result.coordinates,
+        "states": list(system.states),
+        "modes": [mode.name for mode in system.modes],
+        "gains": dict(certificate.gains) if certificate else None,
+        "attempts": [
+            {
+                "step": a.step,
+                "outcome": a.outcome,
+                "work": round(a.work, 6),
+                "seconds": round(a.seconds, 6),
+            }
+            for a in found.attempts
+        ],
+        "assumptions": list(found.granted),
+        "certificate": None if path is None else str(path),
+        "certificate_id": certificate.id if certificate else None,
+    }
+
+
+def rate_facts(certification: Certification) -> dict[str, Any]:
+    """Return the facts of the proved rate and its limit."""
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    evidence, system = certification.evidence, certification.system
+    rate = None if evidence is None else evidence.proved_rate(system)
+    continuous = system.time == "continuous"
+    return {
+        **_number("decay_rate", rate, lower_float if continuous else upper_float),
+        "decay_rate_limit": certification.rate_limit,
+        "decay_rate_unit": "1/s" if continuous else "1 per step",
+    }
+
+
+def margins_facts(margins: ProofMargins) -> dict[str, Any]:
+    """Return the facts of the margins that were asked for."""
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    content: dict[str, Any] = {}
+    if (box := margins.box) is not None:
+        content["margin"] = {
+            **_number("proved_scale", box.proved, lower_float),
+            **_number("refuted_scale", box.refuted, upper_float),
+            "refuted_in": box.refuted_in or None,
+            "why_not_refuted": box.end or None,
+            "method": box.proof.method if box.proof else None,
+        }
+    if (dwell := margins.dwell) is not None:
+        content["shortest_dwell"] = {
+            **_number("proved", dwell.proved, upper_float),
+            **_number("refuted", dwell.refuted, lower_float),
+            "refuted_in": dwell.refuted_in or None,
+            "longest_tried": lower_float(dwell.longest),
+            "unit": "s",
+            "method": dwell.proof.method if dwell.proof else None,
+        }
+    if margins.loop is not None:
+        content["loop_margins"] = loop_facts(margins.loop)
+    return content
+
+
+def loop_facts(margins: MarginBrackets) -> dict[str, Any]:
+    """Return the facts of the margins of delay, period and disturbances."""
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    content: dict[str, Any] = {
+        name: {**_ends(bracket), "unit": unit}
+        for name, bracket, unit in (
+            ("delay", margins.delay, "samples"),
+            ("period", margins.period, "s"),
+        )
+        if bracket is not None
+    }
+    if margins.command is not None:
+        content["force_limit"] = {
+            "limit": float(margins.command.limit),
+            "unit": "N*m",
+            "disturbances": [
+                {
+                    "name": name,
+                    "unit": unit,
+                    "kept_up_to": lower_float(kept),
+                    "broken_in_simulation_at": upper_float(broken),
+                }
+                for name, (kept, broken, unit) in margins.command.bounds.items()
+            ],
+        }
+    return content
+
+
+def _ends(bracket: Bracket) -> dict[str, float | str | None]:
+    from nrs_design.proof.bounds import lower_float, upper_float
+
+    proved, refuted = bracket.proved, bracket.refuted
+    return {
+        "proved": None if proved is None else lower_float(proved),
+        "refuted": None if refuted is None else upper_float(refuted),
+        "refuted_in": bracket.refuted_in or None,
+        "why_not_refuted": bracket.end or None,
+    }
+
+
+def _number(
+    name: str, number: Fraction | None, rounded: Callable[[Fraction], float]
+) -> dict[str, Any]:
+    """Return a number as a double on its safe side, and exactly."""
+    if number is None:
+        return {name: None, f"{name}_exact": None}
+    return {name: rounded(number), f"{name}_exact": str(number)}

@@ -1,0 +1,128 @@
+"""TRUSTED: what repeating a sequence of steps does to a state, in enclosures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from nrs_design.proof.contact import Flights
+from nrs_design.proof.enclosure import balls, eigenvector, exponential, precision
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+
+# Each mode with its time in s, or number of steps.
+Steps = tuple[tuple[str, Fraction], ...]
+
+
+def has_growing_trace(
+    system: SwitchedSystem, steps: Steps, edges: Sequence[int], doublings: int
+) -> bool:
+    """TRUSTED: decide whether ``|tr M^k| > n`` is certain, k two to the power of doublings.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    steps, edges
+        As for `monodromy`.
+    doublings : int
+        How often M is squared.
+    """
+    with precision():
+        power = monodromy(system, steps, edges)
+        for _ in range(doublings):
+            power = power * power
+        trace = sum((power[i, i] for i in range(system.order)), start=0 * power[0, 0])
+        return bool(abs(trace) > system.order)
+
+
+def monodromy(system: SwitchedSystem, steps: Steps, edges: Sequence[int] = ()) -> Any:
+    """TRUSTED: enclose the matrix of a periodic signal, at flint's current precision.
+
+    Every step is followed by the reset of the switch to the next mode, the last one by that of the
+    switch back to the first.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes, in contact and free.
+    steps : tuple of (str, Fraction)
+        Mode and time of every step of the period, in s or steps.
+    edges : sequence of int
+        Which of several resets each switch takes; by default the first.
+    """
+    modes, maps = {mode.name: mode.A for mode in system.every_mode}, system.switching.maps()
+    names = [name for name, _ in steps]
+    product: Any = None
+    for k, (name, time) in enumerate(steps):
+        A, switch = modes[name], (name, names[(k + 1) % len(names)])
+        if system.time is Time.CONTINUOUS:
+            factor = exponential(A, time, time)
+        else:
+            factor = balls(A) ** int(time)
+        product = factor if product is None else factor * product
+        if switch in maps:
+            product = balls(maps[switch][edges[k] if edges else 0]) * product
+    return product
+
+
+def growth_matrix(system: SwitchedSystem, steps: Steps) -> Any:
+    """TRUSTED: enclose the matrix of which a motion that grows in contact is an eigenvector.
+
+    In continuous time that is the one mode itself: along an eigenvector no sign ever changes.
+    """
+    if system.time is Time.DISCRETE:
+        return monodromy(system, steps)
+    return next(balls(mode.A) for mode in system.every_mode if mode.name == steps[0][0])
+
+
+def grows_in_contact(system: SwitchedSystem, steps: Steps, low: Fraction, high: Fraction) -> bool:
+    """TRUSTED: decide whether an eigenvector that grows and keeps the signs of contact is certain.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes, and how contact is lost.
+    steps : tuple of (str, Fraction)
+        The sequence, of whole numbers of steps.
+    low, high : Fraction
+        Between which its eigenvalue must be.
+    """
+    with precision():
+        modes = {mode.name: mode.A for mode in system.every_mode}
+        v = eigenvector(growth_matrix(system, steps), low, high)
+        turned = set() if v is None else {False, True}
+        for name, count in steps:
+            A = balls(modes[name])
+            for _ in range(int(count) if turned else 0):
+                turned &= _signs(system, name, v)
+                v = A * v
+        return bool(turned)
+
+
+def _signs(system: SwitchedSystem, mode: str, v: Any) -> set[bool]:
+    """TRUSTED: return for which of v (False) and -v (True) a mode may be in force."""
+    flights, contact = system.flights, system.contact
+    if contact is not None:
+        touching, flying = ([mode.name for mode in part] for part in (system.modes, system.free))
+        flights = Flights(tuple(touching), tuple(flying), contact.pulls)
+    assert flights is not None  # The loss of contact is to be covered
+    delta = v[system.order - 1, 0]
+    forces = [(balls(row) * v)[0, 0] for row in flights.pulls]
+    if mode in flights.touching:
+        felt = [delta, *forces]
+        return {turned for turned in (False, True) if all(_is_positive(f, turned) for f in felt)}
+    if mode in flights.flying:
+        return {
+            turned
+            for turned in (False, True)
+            if _is_positive(delta, not turned)
+            or (forces and all(_is_positive(force, not turned) for force in forces))
+        }
+    return {False, True}
+
+
+def _is_positive(ball: Any, turned: bool) -> bool:
+    """Tell whether a number, or its negative, is certainly positive."""
+    return bool(ball < 0) if turned else bool(ball > 0)

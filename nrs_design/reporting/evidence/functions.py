@@ -1,0 +1,188 @@
+"""Evidence of stability: forms on the state, how they decrease, and a run below their bound."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from nrs_design.proof.bounds import at_most
+from nrs_design.reporting.document import Block, Paragraph, Section, Table
+from nrs_design.reporting.evidence import words
+from nrs_design.reporting.evidence.norms import largest_norm, matrix_blocks, norm_with_free_motion
+from nrs_design.reporting.evidence.offers import Form
+from nrs_design.reporting.evidence.page import AbstractPage
+from nrs_design.reporting.evidence.rates import rate_blocks
+from nrs_design.reporting.evidence.runs import (
+    ONE_AXIS,
+    bounded_run,
+    extremes,
+    rounds_run,
+    ruled_run,
+    trials_per_step,
+)
+from nrs_design.reporting.formatting import number
+from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.sections.titles import EVIDENCE
+from nrs_design.simulation.admissible import norm_ratio
+from nrs_design.simulation.norms import Array, scaled_matrices
+from nrs_design.simulation.switched import fine_step, sampled_direction, worst_direction
+
+# A run in the norm of a polynomial, or of many functions, tries no more modes.
+_MODES = 32
+_NESTED = (1.0, 0.75, 0.5, 0.25)
+_MONOMIALS = (
+    "V = z' Q z, z being all monomials of degree {degree} in the states. For every decrease it "
+    "holds a form in z that vanishes identically; added to the decrease, it makes a positive "
+    "definite matrix. The level curves of V need not be ellipses, as those of a quadratic function "
+    "are."
+)
+
+
+class FunctionsPage(AbstractPage):
+    """The matrices, the rate of every mode in them, and a run."""
+
+    @property
+    def name(self) -> str:
+        """Degree of the functions, and what there is one for."""
+        degree = 2 * self._form.degree
+        text = "quadratic function" if degree == 2 else f"polynomial of degree {degree}"
+        if self.system.clock is not None:
+            text += " of each step of a round"
+        elif len(self._touching) > 1:
+            text += " of each mode"
+        elif not self._lost and not self.system.couplings:
+            text = f"common {text}"
+        text += " for contact and free motion" * self._lost
+        return text + " for all axes at once" * bool(self.system.couplings)
+
+    def meaning(self) -> tuple[str, ...]:
+        """Say what decreases, what the bound means and rests on, and how it was decided."""
+        system = self.system
+        said = list(words.function(system, lost=self._lost, each=len(self._touching) > 1))
+        if self._ruled:
+            said += (words.ruled_bound(system), *words.needed_rules(system, self.offer.leaving))
+        else:
+            said += (words.free_bound(system), *words.unneeded_constant(system))
+            said += words.unneeded_rules(system)
+        return (*said, words.decision(system, ruled=self._ruled))
+
+    def limits(self) -> tuple[str, ...]:
+        """Name signals that break the rules, and what would move the point of rest."""
+        outside = words.outside_the_rules(self.system, self.offer.leaving) if self._ruled else ()
+        return (*outside, *words.function_limits(self.system, lost=self._lost))
+
+    def sections(self, *, first: bool = True) -> tuple[Section, ...]:
+        """Show the forms of the certificate, and how every mode decreases a common one."""
+        system, numbers = self.system, self.offer.numbers
+        blocks: list[Block] = [Paragraph(self._text())]
+        if self._form.degree > 1:
+            blocks.append(_size(self.offer.forms, system.order))
+        else:
+            blocks += matrix_blocks(self._touching, system.states)
+        if numbers:
+            names = (item.name for item in system.couplings)
+            rows = tuple((name, number(float(n))) for name, n in zip(names, numbers, strict=True))
+            blocks.append(Table("Multipliers", ("How axes act on each other", "tau"), rows))
+        if len(self.offer.forms) == 1 and not system.couplings:
+            blocks += rate_blocks(system, self._form, self._rate, lost=self._lost)
+        return (Section(EVIDENCE, tuple(blocks)),)
+
+    def quadratic(self) -> tuple[Array, float] | None:
+        """Return the matrix of a single quadratic function of one axis, scaled, and its rate."""
+        if len(self.offer.forms) > 1 or self._form.degree > 1 or self.system.couplings:
+            return None
+        return scaled_matrices(self._form.Q)[0], float(self._rate)
+
+    def run(self) -> Section:
+        """Draw a run below the bound."""
+        system, forms, rate = self.system, self.offer.forms, float(self._rate)
+        if self._ruled:
+            return ruled_run(system, forms, rate, leaving=bool(self.offer.leaving))
+        if system.clock is not None:
+            return rounds_run(system, forms, rate)
+        if system.couplings:
+            system = extremes(system)
+        note = ONE_AXIS if self.system.couplings else ""
+        quadratic, single = self._form.degree == 1, len(forms) == 1
+        label = "in the norm of Q" if quadratic else f"in V^(1/{2 * self._form.degree})"
+        norm = largest_norm(forms, system.order)
+        if quadratic and single:
+            (Q,) = scaled_matrices(self._form.Q)
+            hardest = hardest_modes(system, Q, trials_per_step(system))
+            initial = worst_direction(hardest, Q)
+        else:
+            hardest = hardest_modes(system, None, min(trials_per_step(system), _MODES))
+            initial = sampled_direction(hardest, norm, fine_step(hardest))
+        if self._lost:
+            norm = norm_with_free_motion(forms, system.order)
+        return bounded_run(
+            system,
+            hardest,
+            norm,
+            initial,
+            rate,
+            label if single else "(largest norm)",
+            note,
+            levels=(1.0,) if quadratic else _NESTED,
+            lost=self._lost,
+        )
+
+    @property
+    def _form(self) -> Form:
+        return self.offer.forms[0]
+
+    @property
+    def _touching(self) -> tuple[Form, ...]:
+        return tuple(form for form in self.offer.forms if not form.free)
+
+    @property
+    def _lost(self) -> bool:
+        return self.system.contact is not None and self.evidence.covers_lost_contact
+
+    @property
+    def _ruled(self) -> bool:
+        return not self.evidence.bounds_at_once and not self.evidence.covers_mixtures
+
+    @property
+    def _rate(self) -> Fraction:
+        rate = self.evidence.proved_rate(self.system)
+        assert rate is not None  # it shows stability
+        return rate
+
+    def _text(self) -> str:
+        """Say what the certificate holds, and how large the constant in another norm is."""
+        forms, touching = self.offer.forms, self._touching
+        each = "step of a round" if self.system.clock is not None else "mode"
+        text = "The certificate holds one function for all modes"
+        if len(touching) > 1:
+            text = f"The certificate holds {len(touching)} functions, one for each {each}"
+        if len(forms) > len(touching):
+            text += f" in contact, and {len(forms) - len(touching)} for free motion"
+        if self._form.degree > 1:
+            return f"{text}: {_MONOMIALS.format(degree=self._form.degree)}"
+        text += (
+            f": x' Q x. Numbers are written with denominator 2^{self.offer.denominator_log2}; here "
+            "matrices are divided by the largest entry of any."
+        )
+        if self._lost or self.system.clock is not None or self.offer.leaving:
+            return text
+        matrices = scaled_matrices(*(form.Q for form in forms))
+        c = norm_ratio({str(k): Q for k, Q in enumerate(matrices)})
+        size = f"{at_most(Fraction(c))} (floating point)" if np.isfinite(c) else "beyond floats"
+        return (
+            f"{text} In the Euclidean norm of the states, in their units, the bound holds with a "
+            f"constant c in front: c {size}."
+        )
+
+
+def _size(forms: tuple[Form, ...], order: int) -> Table:
+    degree, largest = forms[0].degree, max(len(form.Q) for form in forms)
+    bits = max(abs(entry).bit_length() for form in forms for row in form.Q for entry in row)
+    rows = (
+        ("Degree of V", str(2 * degree)),
+        ("Functions", number(len(forms), 9)),
+        (f"Monomials of degree {degree} in {order} states", number(largest, 9)),
+        ("Longest entry of Q [bit]", str(bits)),
+    )
+    return Table("The polynomial" if len(forms) == 1 else "The polynomials", ("", "Value"), rows)

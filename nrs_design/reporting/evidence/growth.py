@@ -1,0 +1,302 @@
+"""Evidence of instability: a motion that the system allows and that does not decay."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+
+from nrs_design.proof.bounds import lower, nearly
+from nrs_design.proof.constant import system_at
+from nrs_design.proof.switching import ARBITRARY
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
+from nrs_design.reporting.evidence import words
+from nrs_design.reporting.evidence.offers import Growth, offer_of
+from nrs_design.reporting.evidence.page import AbstractPage
+from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, plane
+from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
+from nrs_design.reporting.figures.run import draw_run
+from nrs_design.reporting.formatting import number, plural, roots
+from nrs_design.simulation.norms import Array
+from nrs_design.simulation.periodic import (
+    PeriodicRun,
+    mixture_matrix,
+    one_period,
+    periodic_run,
+    steps_of_mixture,
+)
+from nrs_design.simulation.switched import alone, mode_eigenvalues, unstable_run
+
+_LISTED = 24
+_IN_A_MODE = (
+    "The mode has an eigenvalue outside the open {region}. Staying in this mode forever is one of "
+    "the switching signals that the spec allows, so exponential stability under {signals} is "
+    "impossible. The decision is exact; the eigenvalue is printed for the reader."
+)
+_ON_AVERAGE = (
+    "If the modes were exponentially stable under arbitrary switching, uniformly over all signals, "
+    "then so would be every average of them, which fast switching comes near to. This average is "
+    "not stable, so no such guarantee is possible. The decision is exact; the eigenvalue is "
+    "printed for the reader."
+)
+_PERIODIC = (
+    "The signal keeps every rule that the spec declares. Repeated forever, it multiplies some "
+    "state by a factor above one in every period, so no stability of any kind can be guaranteed "
+    "under {signals}. The matrix of one period is enclosed rigorously; a power of it has a trace "
+    "that only an eigenvalue outside the unit circle can explain."
+)
+_BY_ITSELF = (
+    "The motion makes its sequence of contact and flight by itself: the environment acts only "
+    "where the deflection is positive, and never pulls. Larger each time, it goes on for ever, so "
+    "no stability of any kind can be guaranteed under {signals} with contact that may be lost. Its "
+    "factor and its direction are enclosed rigorously, and every sign is decided for the enclosure."
+)
+_AT_A_VALUE = (
+    "The parameter is unknown and constant, so it may have this one value all the time. The "
+    "matrices at this value are computed exactly."
+)
+_OTHERS = (
+    "Nothing is said about slower switching, other signals and other motions: a longer dwell time, "
+    "fewer transitions or narrower ranges, or modes that are left soon enough, may make the system "
+    "stable."
+)
+_LINEAR = "Nothing is said about what saturation or friction would make of the growth."
+_ON_THE_BORDER = (
+    "An eigenvalue exactly on the border means that states need not decay; they need not grow "
+    "either."
+)
+
+
+class GrowthPage(AbstractPage):
+    """The sequence of modes, and the run that repeats it."""
+
+    @property
+    def name(self) -> str:
+        """What it shows."""
+        if self._growth.share is not None:
+            return "a value of the parameter that is not stable"
+        if self.offer.weights:
+            return "an average that is not stable"
+        if self._growth.factor is not None:
+            return "a motion that grows while contact is lost and made"
+        return "a mode that is not stable" if self._stays else "a period that grows"
+
+    def meaning(self) -> tuple[str, ...]:
+        """Say why one motion is enough."""
+        if self._growth.share is not None:
+            return (_AT_A_VALUE, *self._part.meaning())
+        signals = words.allowed_signals(self.system)
+        region = "unit disk" if self.is_discrete else "left half plane"
+        text = _IN_A_MODE if self._stays else _PERIODIC
+        if self.offer.weights:
+            text = _ON_AVERAGE
+        elif self._growth.factor is not None:
+            text = _BY_ITSELF
+        return (text.format(signals=signals, region=region),)
+
+    def between_corners(self) -> tuple[str, ...]:
+        """Say nothing: no proof, no question."""
+        return ()
+
+    def limits(self) -> tuple[str, ...]:
+        """Say that nothing follows for other motions."""
+        if self._growth.share is not None:
+            other = "Nothing is said about other values of the parameter: a narrower range may be "
+            return (*self._part.limits(), f"{other}stable.")
+        at_border = bool(self.offer.weights) or self._stays
+        return (words.NO_FORECAST, _OTHERS, _ON_THE_BORDER if at_border else _LINEAR)
+
+    def run(self) -> Section:
+        """Simulate the motion."""
+        return Section("Simulated witness", tuple(self._blocks()))
+
+    @property
+    def _growth(self) -> Growth:
+        assert self.offer.growth is not None  # it shows instability
+        return self.offer.growth
+
+    @property
+    def _stays(self) -> bool:
+        """Whether one mode is never left."""
+        return [time for _, time in self._growth.steps] == [0]
+
+    @property
+    def _part(self) -> GrowthPage:
+        """The page of what happens at one value of the constant parameter."""
+        share, (_, part) = self._growth.share, self.offer.parts[0]
+        assert share is not None  # asked before
+        return GrowthPage(system_at(self.system, share), part, offer_of(part))
+
+    def _blocks(self) -> Iterator[Block]:
+        if self._growth.share is not None:
+            yield Paragraph(
+                "What follows is simulated at the value of the parameter that the claim names, "
+                "between the modes that are listed."
+            )
+            yield from self._part.run().blocks
+        elif self.offer.weights:
+            yield from self._average()
+        elif self._stays:
+            yield from self._in_a_mode()
+        elif self._growth.factor is not None:
+            yield from self._through_contact(float(self._growth.factor))
+        else:
+            yield from self._periodic()
+
+    def _in_a_mode(self) -> Iterator[Block]:
+        """Stay in the mode, from the eigenvector of its worst eigenvalue."""
+        ((name, _),) = self._growth.steps
+        modes = (*self.system.modes, *self.system.free_motions())
+        index = next(i for i, mode in enumerate(modes) if mode.name == name)
+        single = alone(replace(self.system, modes=modes), index)
+        response, (values,) = unstable_run(single, 0), mode_eigenvalues(single)
+        rate, factor = float(values.real.max()), float(np.abs(values).max())
+        line = (f"the eigenvalue alone, exp({rate:.4g} t)", np.exp(rate * response.time))
+        if self.is_discrete:
+            line = (f"the eigenvalue alone, {factor:.4g}^t", factor**response.time)
+        yield Illustration(
+            "run",
+            f"Staying in mode {name}",
+            "Simulated from the eigenvector of the eigenvalue: the state does not decay. No other "
+            "mode is used, which the switching allows.",
+            draw_run(response, euclidean_norms(response), line, single, EUCLIDEAN),
+        )
+        yield from plane(single, response)
+
+    def _average(self) -> Iterator[Block]:
+        """Switch fast, with the shares of the average."""
+        system, weights = self.system, self.offer.weights
+        average = np.linalg.eigvals(mixture_matrix(system, weights)).astype(complex)
+        run = periodic_run(system, steps_of_mixture(system, weights))
+        rate = float(average.real.max())
+        line = (f"the average alone, exp({rate:.4g} t)", np.exp(rate * run.response.time))
+        shares = tuple((name, str(w), number(float(w), 4)) for name, w in weights)
+        yield Paragraph(f"Eigenvalues of the average: {roots(average.tolist(), 6)} 1/s.")
+        yield Table("The average", ("Mode", "Share (exact)", "Share [1]"), shares)
+        chosen = dict(weights)
+        mixed = replace(system, modes=tuple(m for m in system.modes if m.name in chosen))
+        names = [*(mode.name for mode in mixed.modes), "average"]
+        yield Illustration(
+            "mixture",
+            "Eigenvalues of the average",
+            "The modes that have a share in it, and their average, which is not stable.",
+            draw_eigenvalues(names, [*mode_eigenvalues(mixed), average], mixed.time, None),
+        )
+        grown = (
+            f"At this period the state grows by the factor {number(run.radius, 5)} each time."
+            if run.radius > 1 and rate > 0
+            else "The average is on the border of stability, so the run need not grow; but no rate "
+            "of decay holds for all signals."
+        )
+        yield Illustration(
+            "run",
+            "Fast switching with these shares",
+            f"Every mode has its share of each period of {run.period:.4g} s. The faster the "
+            f"switching, the nearer it comes to the average, the dashed line. {grown}",
+            draw_run(run.response, euclidean_norms(run.response), line, system, EUCLIDEAN),
+        )
+        yield from plane(system, run.response)
+
+    def _through_contact(self, low: float) -> Iterator[Block]:
+        """Repeat the sequence, along the motion that grows."""
+        modes = self.system.every_mode
+        system = self.system.with_modes(modes, self.system.states, ARBITRARY)
+        # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
+        time, factor = (1.0, low) if self.is_discrete else (1 / max(low, 1e-9), math.e)
+        steps = [(name, time * float(count)) for name, count in self._growth.steps]
+        run = periodic_run(system, _indexed(system, steps), eigenvalue=factor)
+        rows = tuple((str(k), m, str(n)) for k, (m, n) in enumerate(self._growth.steps, 1))
+        title = "The sequence" + (f", its first {_LISTED} parts" if len(rows) > _LISTED else "")
+        yield Table(title, ("Part", "Mode", "Steps"), rows[:_LISTED])
+        unit = "each time" if self.is_discrete else "1/s"
+        yield self._witness(
+            system,
+            run,
+            "Simulated from the enclosed direction, through contact and flight as the signs of the "
+            f"motion say; it grows by {lower(self._growth.factor or Fraction(0))} {unit} at least.",
+            _line(run, factor, "each time"),
+        )
+
+    def _periodic(self) -> Iterator[Block]:
+        """Repeat the signal, from the direction that grows the most."""
+        system, growth = self.system, self._growth
+        steps = [(name, float(time)) for name, time in growth.steps]
+        run = periodic_run(system, _indexed(system, steps), growth.edges)
+        rate = number(math.log(run.radius) / run.period, 4)
+        mean = "" if self.is_discrete else f", a mean growth rate of {rate} 1/s"
+        yield Paragraph(
+            f"One period lasts {run.period:.6g} {self._unit} and has "
+            f"{plural(len(growth.steps), 'step')}. Over one period some state grows by the factor "
+            f"{number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures that "
+            "the factor is above one; these digits are floating point."
+        )
+        yield self._steps()
+        resets = " and the reset of each switch" if system.switching.resets else ""
+        yield self._witness(
+            system,
+            run,
+            f"Simulated from the direction that grows the most, with every mode for its time"
+            f"{resets}. The dashed line is the growth per period, carried on.",
+            _line(run, run.radius, "per period"),
+        )
+        first = one_period(run)
+        yield Illustration(
+            "one-period",
+            "One period of the witness",
+            "The first period of the same run: which mode is active when, and what it does to the "
+            "norm.",
+            draw_run(first, euclidean_norms(first), None, system, EUCLIDEAN),
+        )
+        yield from plane(system, run.response)
+
+    def _witness(
+        self, system: SwitchedSystem, run: PeriodicRun, caption: str, line: tuple[str, Array]
+    ) -> Illustration:
+        response = run.response
+        periods = plural(round(response.time[-1] / run.period), "period")
+        figure = draw_run(response, euclidean_norms(response), line, system, EUCLIDEAN)
+        return Illustration("run", f"The witness over {periods}", caption, figure)
+
+    @property
+    def _unit(self) -> str:
+        return "steps" if self.is_discrete else "s"
+
+    def _steps(self) -> Table:
+        """List the modes of one period, their times, and the resets between them."""
+        steps = self._growth.steps
+        names = [name for name, _ in steps]
+        resets = self._resets(list(zip(names, (*names[1:], *names[:1]), strict=True)))
+        columns = ("Step", "Mode", f"Time in it [{self._unit}]")
+        rows: list[tuple[str, ...]] = [
+            (str(k), name, nearly(time)) for k, (name, time) in enumerate(steps[:_LISTED], 1)
+        ]
+        title = "One period" + (f", its first {_LISTED} steps" if len(steps) > len(rows) else "")
+        if not any(resets):
+            return Table(title, columns, tuple(rows))
+        then = tuple((*row, reset) for row, reset in zip(rows, resets, strict=False))
+        return Table(title, (*columns, "Then"), then)
+
+    def _resets(self, switches: Sequence[tuple[str, str]]) -> list[str]:
+        """Say what each switch does to the state; nothing where it leaves it as it is."""
+        maps, edges = self.system.switching.maps(), self._growth.edges or (0,) * len(switches)
+        texts = []
+        for switch, edge in zip(switches, edges, strict=True):
+            count = len(maps.get(switch, ()))
+            which = f"reset {edge + 1} of {count}" if count > 1 else "reset"
+            texts.append(f"{which} to {switch[1]}" if count else "")
+        return texts
+
+
+def _indexed(system: SwitchedSystem, steps: Sequence[tuple[str, float]]) -> list[tuple[int, float]]:
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    return [(index[name], time) for name, time in steps]
+
+
+def _line(run: PeriodicRun, factor: float, each: str) -> tuple[str, Array]:
+    """Return the growth per period, carried on along a run, with its label."""
+    label = f"factor {number(factor, 4)} {each}"
+    return label, np.exp(math.log(factor) * run.response.time / run.period)

@@ -1,0 +1,112 @@
+"""Forms of a certificate in floating point: matrices for tables, and norms for runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Block, Illustration, Table
+from nrs_design.reporting.evidence.offers import Form
+from nrs_design.reporting.figures.lyapunov import draw_quadratic, draw_quadratics
+from nrs_design.reporting.formatting import number
+from nrs_design.simulation.norms import (
+    Array,
+    Norm,
+    clipped,
+    polynomial_norm,
+    quadratic_norm,
+    scaled_matrices,
+)
+
+SCALED = (
+    "Q(i,j) / sqrt(Q(i,i) Q(j,j)): the diagonal becomes one and the states lose their units. An "
+    "entry near 1 or -1 says that two states act together in V."
+)
+# Larger matrices, and more of them, do not fit on a page.
+_WRITTEN, _TABLES, _DRAWN = 8, 2, 6
+
+
+def norms_of(forms: Sequence[Form], order: int) -> list[Norm]:
+    """Return the root of each form; quadratic ones are all divided by the same number.
+
+    Parameters
+    ----------
+    forms : sequence of Form
+        At least one.
+    order : int
+        Number of states.
+    """
+    if forms[0].degree == 1:
+        return [quadratic_norm(Q) for Q in scaled_matrices(*(form.Q for form in forms))]
+    return [polynomial_norm(form.Q, form.degree, order) for form in forms]
+
+
+def largest_norm(forms: Sequence[Form], order: int) -> Norm:
+    """Return the largest root of the forms in contact, and in free motion of those for it.
+
+    Without forms for free motion, those in contact hold there with the deflection at zero.
+    """
+    norms = norms_of(forms, order)
+    touching = [norm for norm, form in zip(norms, forms, strict=True) if not form.free]
+    free = [norm for norm, form in zip(norms, forms, strict=True) if form.free]
+
+    def in_contact(states: Array) -> Array:
+        return np.asarray(np.max([norm(states) for norm in touching], axis=0))
+
+    def everywhere(states: Array) -> Array:
+        flying = np.max([norm(states[..., :-1]) for norm in free], axis=0)
+        return np.asarray(np.where(states[..., -1] > 0, in_contact(states), flying))
+
+    return everywhere if free else in_contact
+
+
+def norm_with_free_motion(forms: Sequence[Form], order: int) -> Norm:
+    """Return `largest_norm` for states in contact and free."""
+    norm = largest_norm(forms, order)
+    return norm if any(form.free for form in forms) else clipped(norm)
+
+
+def step_norms(forms: Sequence[Form], system: SwitchedSystem) -> list[Norm]:
+    """Return the norm of every step of a round; in free motion without the deflection."""
+    norms = norms_of(forms, system.order)
+    return norms if system.contact is None else [clipped(norm) for norm in norms]
+
+
+def matrix_blocks(
+    forms: Sequence[Form], states: tuple[str, ...], name: str = "quadratic"
+) -> list[Block]:
+    """Return the matrices of quadratic forms as tables and heat maps, as far as a page holds them.
+
+    Parameters
+    ----------
+    forms : sequence of Form
+        All in contact.
+    states : tuple of str
+        Names of rows and columns.
+    name : str
+        Of the figure.
+    """
+    matrices = scaled_matrices(*(form.Q for form in forms))
+    names = [form.name for form in forms]
+    blocks: list[Block] = []
+    for of, Q in list(zip(names, matrices, strict=True))[:_TABLES]:
+        blocks += _table(f"Q{of and f' of {of}'}, divided by the largest entry", Q, states)
+    if len(forms) == 1:
+        figure = draw_quadratic(matrices[0], states)
+        return [*blocks, Illustration(name, "Matrix of the function", SCALED, figure)]
+    last, most = len(forms) - 1, min(len(forms), _DRAWN)
+    shown = [round(k * last / (most - 1)) for k in range(most)]
+    some = f" {most} of {len(forms)} are drawn." if most < len(forms) else ""
+    figure = draw_quadratics({names[k]: matrices[k] for k in shown}, states)
+    title = "Matrices of the functions"
+    return [*blocks, Illustration(f"{name}s", title, f"{SCALED}{some}", figure)]
+
+
+def _table(title: str, Q: Array, states: tuple[str, ...]) -> list[Block]:
+    if len(Q) > _WRITTEN:
+        return []
+    names = states[: len(Q)]
+    rows = tuple((name, *(number(v, 5) for v in row)) for name, row in zip(names, Q, strict=True))
+    return [Table(title, ("", *names), rows)]

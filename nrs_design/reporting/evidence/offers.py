@@ -1,0 +1,128 @@
+"""What each kind of evidence offers a page: forms on states, a closed sequence, weights, parts.
+
+This table is the only place in the reports that knows a kind by its name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.evidence.fields import Matrix
+
+
+@dataclass(frozen=True)
+class Form:
+    """A positive definite form ``z' Q z``, with z all monomials of one degree in the states."""
+
+    Q: Matrix  # numerators
+    name: str = ""  # of the mode, step or end where it holds; empty: everywhere
+    degree: int = 1  # of the monomials; 1 for a quadratic function
+    free: bool = False  # in free motion, without the last state (the deflection)
+    place: Fraction | None = None  # of a constant parameter: 0 low end, 1 high end
+
+
+@dataclass(frozen=True)
+class Growth:
+    """A closed sequence along which some state does not decay."""
+
+    steps: tuple[tuple[str, Fraction], ...] = ()  # mode, and time in it in s (or steps)
+    edges: tuple[int, ...] = ()  # which reset each switch takes; empty: no choice
+    factor: Fraction | None = None  # lower bound of the growth per sequence, signs of contact kept
+    share: Fraction | None = None  # value of the constant parameter, 0 low end, 1 high end
+
+
+@dataclass(frozen=True)
+class Offer:
+    """What a page can show of some evidence, whatever its kind."""
+
+    forms: tuple[Form, ...] = ()
+    denominator_log2: int = 0  # of all forms
+    leaving: tuple[str, ...] = ()  # modes that must be left, in which a form may grow
+    numbers: tuple[Fraction, ...] = ()  # others of the certificate, such as multipliers
+    weights: tuple[tuple[str, Fraction], ...] = ()  # of modes, with sum one
+    growth: Growth | None = None
+    blocks: tuple[tuple[int, ...], ...] = ()  # states of each diagonal block
+    parts: tuple[tuple[int, AbstractEvidence], ...] = ()  # evidence of a block, or of a value
+
+
+def offer_of(evidence: AbstractEvidence) -> Offer:
+    """Return what some evidence offers; nothing for a kind that is not in the table."""
+    read = _OFFERS.get(evidence.kind)
+    return Offer() if read is None else read(evidence)
+
+
+def _one(e: Any) -> Offer:
+    return Offer((Form(e.Q),), e.denominator_log2)
+
+
+def _named(functions: Iterable[tuple[str, Matrix]], degree: int = 1, *, free: bool = False) -> Any:
+    return tuple(Form(Q, name, degree, free) for name, Q in functions)
+
+
+def _constant_force(e: Any) -> Offer:
+    return Offer((Form(e.Q),), e.denominator_log2, numbers=(e.slope,))
+
+
+def _coupled_axes(e: Any) -> Offer:
+    taus = tuple(Fraction(tau, 2**e.denominator_log2) for tau in e.taus)
+    return Offer((Form(e.Q),), e.denominator_log2, numbers=taus)
+
+
+def _ends(e: Any) -> Offer:
+    ends = ((e.low, "low end", Fraction(0)), (e.high, "high end", Fraction(1)))
+    return Offer(tuple(Form(Q, name, place=p) for Q, name, p in ends), e.denominator_log2)
+
+
+def _rounds(e: Any) -> Offer:
+    forms = tuple(Form(Q, f"step {k}") for k, Q in enumerate(e.functions, 1))
+    return Offer(forms, e.denominator_log2)
+
+
+def _traces(e: Any) -> Offer:
+    """Return the share of each mode in the trace of X, the heaviest first."""
+    traces = {name: sum(v * v for row in L for v in row) for name, L in e.factors}
+    total = sum(traces.values())
+    heaviest = sorted(traces, key=lambda name: -traces[name])
+    return Offer(weights=tuple((name, Fraction(traces[name], total)) for name in heaviest))
+
+
+def _sequence(e: Any) -> Offer:
+    if e.share is not None:
+        return Offer(growth=Growth(share=e.share), parts=((0, replace(e, share=None)),))
+    if e.names_unstable_mode:
+        return Offer(growth=Growth(((e.steps[0][0], Fraction(0)),)))
+    if e.is_average:
+        return Offer(weights=e.steps, growth=Growth())
+    return Offer(growth=Growth(e.steps, e.edges, None if e.factor is None else e.factor[0]))
+
+
+_OFFERS: Mapping[str, Callable[[Any], Offer]] = {
+    "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
+    "common-polynomial": lambda e: Offer((Form(e.Q, degree=e.degree),), e.denominator_log2),
+    "common-quadratic": _one,
+    "conewise-mode-quadratic": lambda e: Offer(
+        _named(e.touching) + _named(e.flying, free=True), e.denominator_log2
+    ),
+    "conewise-polynomial": lambda e: Offer(
+        (Form(e.in_contact.Q, degree=e.in_contact.degree),), e.in_contact.denominator_log2
+    ),
+    "conewise-quadratic": _one,
+    "constant-force": _constant_force,
+    "coupled-axes": _coupled_axes,
+    "growing-sequence": _sequence,
+    "invariant-ellipsoid": _one,
+    "mode-polynomial": lambda e: Offer(
+        _named(e.quadratic.functions, e.degree),
+        e.quadratic.denominator_log2,
+        leaving=e.quadratic.leaving,
+    ),
+    "mode-quadratic": lambda e: Offer(_named(e.functions), e.denominator_log2, leaving=e.leaving),
+    "no-common-quadratic": _traces,
+    "parameter-quadratic": _ends,
+    "periodic-quadratic": _rounds,
+    "saturated-ellipsoid": _one,
+}

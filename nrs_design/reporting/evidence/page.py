@@ -1,0 +1,67 @@
+"""What the page of one statement says and draws."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Section
+from nrs_design.reporting.evidence import words
+from nrs_design.reporting.evidence.offers import Offer
+from nrs_design.simulation.norms import Array
+
+
+@dataclass(frozen=True)
+class AbstractPage(ABC):
+    """One statement for the reader: in a few words, in sentences, in numbers and as a run.
+
+    The claim is that of the evidence, and no page repeats it.
+    """
+
+    system: SwitchedSystem
+    evidence: AbstractEvidence
+    offer: Offer
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What it is, in a few words, for a table."""
+
+    @abstractmethod
+    def meaning(self) -> tuple[str, ...]:
+        """Say what the claim means, what it rests on, and how it was decided."""
+
+    def between_corners(self) -> tuple[str, ...]:
+        """Say that values between the corners of declared ranges are covered."""
+        return (words.all_corners(self.system, self.evidence),)
+
+    @abstractmethod
+    def limits(self) -> tuple[str, ...]:
+        """Say what does not follow."""
+
+    def sections(self, *, first: bool = True) -> tuple[Section, ...]:
+        """Show the numbers in tables and figures; by default none beside the run.
+
+        Parameters
+        ----------
+        first : bool
+            No earlier statement of the report is of this kind; other pages leave out what would be
+            drawn again.
+        """
+        return ()
+
+    def quadratic(self) -> tuple[Array, float] | None:
+        """Return Q and the rate at which its norm decays from the first moment, if there is one."""
+        return None
+
+    @abstractmethod
+    def run(self) -> Section:
+        """Simulate a run: below the proved bound, or a witness of instability."""
+
+    @property
+    def is_discrete(self) -> bool:
+        """Whether the system moves in steps."""
+        return self.system.time is Time.DISCRETE

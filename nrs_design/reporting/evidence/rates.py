@@ -1,0 +1,106 @@
+"""How fast each mode decreases a Lyapunov function: a table and a figure."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Block, Illustration, Table
+from nrs_design.reporting.evidence.offers import Form
+from nrs_design.reporting.figures.lyapunov import draw_mode_rates
+from nrs_design.reporting.formatting import number
+from nrs_design.simulation.norms import Array, polynomial_norm, scaled_matrices
+from nrs_design.simulation.rates import mode_rates
+from nrs_design.simulation.switched import fine_step, transition_matrices
+
+# A page holds no more; those with the least slack are shown.
+_LISTED = 24
+_DIRECTIONS = 500
+_EIGENVALUES = {
+    Time.CONTINUOUS: "Half the smallest eigenvalue of -(A'Q + QA) relative to Q",
+    Time.DISCRETE: "Root of the largest eigenvalue of A'QA relative to Q",
+}
+_SAMPLED = f"The slowest of {_DIRECTIONS} directions, in floating point"
+_MEANS = {
+    Time.CONTINUOUS: "the rate at which {norm} decays at least in this mode.",
+    Time.DISCRETE: "the factor by which {norm} shrinks at least in a step of this mode.",
+}
+_SAMPLED_MEANS = {
+    Time.CONTINUOUS: "the rate at which {norm} decays in this mode.",
+    Time.DISCRETE: "the factor by which {norm} shrinks in a step of this mode.",
+}
+_IN_CONTACT = " Free motion has conditions of its own, on the other states."
+
+
+def rate_blocks(
+    system: SwitchedSystem, form: Form, claimed: Fraction, *, lost: bool
+) -> tuple[Block, ...]:
+    """Return the modes with the least slack as a table and as a figure.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes.
+    form : Form
+        The function for all of them.
+    claimed : Fraction
+        Rate of the certificate.
+    lost : bool
+        The certificate covers the loss of contact, on which these rates say nothing.
+    """
+    quadratic, time = form.degree == 1, system.time
+    norm = "the norm of Q" if quadratic else f"V^(1/{2 * form.degree})"
+    if quadratic:
+        rates = mode_rates(system, scaled_matrices(form.Q)[0])
+        how, means = _EIGENVALUES[time], _MEANS
+    else:
+        rates, how, means = sampled_rates(system, form), _SAMPLED, _SAMPLED_MEANS
+    explained = f"{how}: {means[time].format(norm=norm)}{_IN_CONTACT * lost}"
+    continuous = time is Time.CONTINUOUS
+    order = np.argsort(rates if continuous else -rates, kind="stable")[:_LISTED]
+    names = [system.modes[i].name for i in order]
+    some = "" if len(names) == len(rates) else f" The {len(names)} modes with the least slack."
+    border = "right of the claimed rate" if continuous else "left of the claimed contraction"
+    return (
+        _table(system, rates[order], names, claimed, norm),
+        Illustration(
+            "mode-rates",
+            "Decrease in every mode",
+            f"{explained} All lie {border}.{some}",
+            draw_mode_rates(names, rates[order], claimed, time, norm),
+        ),
+    )
+
+
+def sampled_rates(system: SwitchedSystem, form: Form) -> Array:
+    """Return the slowest decay of a polynomial's root in every mode, over sampled directions.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        In 1/s, or contraction per step; no slower than what holds for all directions.
+    """
+    norm, n = polynomial_norm(form.Q, form.degree, system.order), system.order
+    directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, n)) / norm(np.eye(n))
+    directions /= norm(directions)[:, None]
+    step = fine_step(system)
+    kept = np.array([norm(directions @ M.T).max() for M in transition_matrices(system, step)])
+    return kept if system.time is Time.DISCRETE else -np.log(kept) / step
+
+
+def _table(
+    system: SwitchedSystem, rates: Array, names: list[str], claimed: Fraction, norm: str
+) -> Table:
+    continuous = system.time is Time.CONTINUOUS
+    rows = []
+    for name, rate in zip(names, rates.tolist(), strict=True):
+        slack = rate - float(claimed) if continuous else float(claimed) - rate
+        rows.append((name, number(rate, 6), number(slack, 3)))
+    unit, quantity = (" [1/s]", "Decay rate") if continuous else (" [1]", "Contraction")
+    some = "" if len(rows) == len(system.modes) else f" ({len(rows)} with the least slack)"
+    title = f"Rate of every mode alone{some}; claimed for all: {rate_words(claimed, system.time)}"
+    return Table(title, ("Mode", f"{quantity} in {norm}{unit}", f"Slack{unit}"), tuple(rows))

@@ -1,0 +1,502 @@
+"""Runs that look bad: below a proved bound, beside a proved rate, or without either."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from sys import float_info
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.document import Block, Illustration, Section
+from nrs_design.reporting.evidence.norms import step_norms
+from nrs_design.reporting.evidence.offers import Form
+from nrs_design.reporting.figures.contact import draw_deflection
+from nrs_design.reporting.figures.run import (
+    MOTION_STATES,
+    draw_mode_levels,
+    draw_phase_plane,
+    draw_run,
+)
+from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.simulation.admissible import active_norms, admissible_run
+from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
+from nrs_design.simulation.norms import quadratic_norm, scaled_matrices
+from nrs_design.simulation.switched import SwitchedRun, fine_step, worst_direction
+
+if TYPE_CHECKING:
+    from nrs_design.simulation.norms import Array, Norm
+
+    Bound = tuple[str, Array]
+
+# The bound falls by e^7, three decades, where that takes no more steps than are drawn.
+_DECAY = 7.0
+_STEPS = 4000
+_FEWEST = 500
+# Below this fraction of the start the run is cut: the rest would squeeze the bound flat.
+_SMALL = 1e-6
+# Modes times squared states that a run of so many steps can try in about a second.
+_EFFORT = 200_000
+_UNKNOWN_STEPS = 600
+# A run that keeps rules tries every allowed switch at every step.
+_RULED_MODES = 24
+_RULED_STEPS = 1500
+# States in contact that a run of rounds may begin at.
+_DIRECTIONS = 200
+# Of more couplings, not every combination of ends is a mode of the run.
+_MOST_COMBINED = 3
+
+_NOT_WORST = "It is a bad run, not the worst one."
+GREEDY = (
+    "Simulated run from the slowest direction: at every step the adversary takes the mode after "
+    f"which the norm is largest. {_NOT_WORST}"
+)
+RULED = (
+    "Simulated run that keeps the declared rules: the adversary stays, or switches when it may, "
+    f"whichever loses the least of the norm per time. {_NOT_WORST}"
+)
+_BOUNCING = (
+    "Simulated run from the slowest direction in contact: at every step the adversary takes the "
+    f"possible mode after which the norm is largest. {_NOT_WORST}"
+)
+_ROUNDS = (
+    "Simulated run: at every step the adversary takes the mode, of those whose turn it is and that "
+    f"contact allows, after which the norm of that step is largest. {_NOT_WORST}"
+)
+_HOLDS = "The dashed line is the bound of the certificate, which holds for every switching signal"
+ONE_AXIS = (
+    "The run is that of a single axis, with the inertia of its links (and what else acts within "
+    "the bounds) jumping between the ends at will, which is one of the cases that are covered."
+)
+_SLOPE = (
+    "The dashed line has the proved rate. The certificate says that every run that keeps the rules "
+    "stays below such a line, up to one constant factor; so this run may lie above the line for a "
+    "while."
+)
+_ACTIVE = (
+    "Drawn is the root of V of the active mode, over its start. Where the next mode takes over, it "
+    "may jump, but it stays below the dashed bound of the certificate, which holds for every "
+    "signal that keeps the rules. In a norm that is the same in all modes, the bound holds with "
+    "the factor c."
+)
+_RISES = " In a mode that must be left it may rise above the bound; at the next switch it is below."
+EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
+AGAINST = "Switching against the proved bound"
+BESIDE = "Switching beside the proved rate"
+_PATH = "Path of the state, one color for each active mode."
+_PLANE = "The same run in the plane of the two states"
+
+
+def simulated(*blocks: Block) -> Section:
+    """Return the section of a run that no evidence of instability asks for."""
+    return Section("Simulated switching", blocks)
+
+
+def bounded_run(
+    system: SwitchedSystem,
+    hardest: SwitchedSystem,
+    norm: Norm,
+    initial: Array,
+    rate: float,
+    label: str,
+    note: str = "",
+    levels: tuple[float, ...] = (1.0,),
+    *,
+    lost: bool = False,
+) -> Section:
+    """Let the greedy adversary run under arbitrary switching, and draw it below its bound.
+
+    Parameters
+    ----------
+    system, hardest : SwitchedSystem
+        All modes, and those that take part.
+    norm : callable
+        Root of the Lyapunov function; of states in contact and free, if contact may be lost.
+    initial : ndarray, shape (n,)
+        Where the run begins; in contact, that or its opposite.
+    rate : float
+        The proved one.
+    label : str
+        Which norm it is, such as ``in the norm of Q``.
+    note : str
+        A sentence of the caption about the run.
+    levels : tuple of float
+        Level curves to draw in the plane, relative to the start.
+    lost : bool
+        Contact is lost and made as the run says.
+    """
+    if lost:
+        played, drawn = hardest, all_modes(hardest)
+        initial = initial if initial[-1] > 0 else -initial
+        how, holds, letter = _BOUNCING, f"{_HOLDS} and any loss of contact.", "w"
+    else:
+        played = drawn = replace(hardest, contact=None)
+        how, holds, letter = GREEDY, f"{_HOLDS}.", "x"
+    step, steps = horizon(drawn, rate)
+    response = greedy_run(played, norm, initial, step, steps)
+    response = until_small(response, relative_norms(response, norm))
+    said = " ".join(text for text in (how, note, holds) if text)
+    run = Illustration(
+        "run",
+        AGAINST,
+        f"{said}{freely(system)}{some_modes(system, hardest)}",
+        draw_run(
+            response,
+            relative_norms(response, norm),
+            bound_line(response, rate, system.time, "proved bound, "),
+            drawn,
+            f"|{letter}(t)| / |{letter}(0)| {label} [1]",
+        ),
+    )
+    if lost:
+        return simulated(run, contact_figure(system, response))
+    return simulated(run, *phase_plane(hardest, response, norm, levels))
+
+
+def contact_figure(
+    system: SwitchedSystem, response: SwitchedRun, name: str = "deflection"
+) -> Illustration:
+    """Draw when contact is lost during a run.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the deflection as its last state.
+    response : SwitchedRun
+        The run.
+    name : str
+        Of the figure.
+    """
+    depth = response.state[:, -1]
+    unit = "steps" if system.time is Time.DISCRETE else "s"
+    return Illustration(
+        name,
+        "Contact during this run",
+        "Deflection of the same run; shaded where the environment is not touched.",
+        draw_deflection(response.time, depth / np.abs(depth).max(), system.states[-1], unit),
+    )
+
+
+def rounds_run(system: SwitchedSystem, forms: Sequence[Form], rate: float) -> Section:
+    """Draw a run in the norms of the steps of a round, below its bound, and when contact is lost.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the clock.
+    forms : sequence of Form
+        One for each step of a round.
+    rate : float
+        The proved one, per step.
+    """
+    each = step_norms(forms, system)
+    _, steps = horizon(system, rate)
+    response = greedy_run(system, each, _slowest(system, each), 1.0, steps)
+    response = until_small(response, relative_norms(response, each))
+    run = Illustration(
+        "run",
+        AGAINST,
+        f"{_ROUNDS} {_HOLDS}.",
+        draw_run(
+            response,
+            relative_norms(response, each),
+            bound_line(response, rate, Time.DISCRETE, "proved bound, "),
+            all_modes(system),
+            "|w(t)| / |w(0)| in the norm of its step [1]",
+        ),
+    )
+    return simulated(run, *(() if system.contact is None else (contact_figure(system, response),)))
+
+
+def _slowest(system: SwitchedSystem, each: list[Norm]) -> Array:
+    """Return the state in contact, among some, that keeps the most over a round."""
+    rng, size = np.random.default_rng(0), len(each)
+    directions = rng.standard_normal((_DIRECTIONS, system.order)) / each[0](np.eye(system.order))
+    directions[:, -1] = np.abs(directions[:, -1])
+
+    def kept(x: Array) -> float:
+        return float(relative_norms(greedy_run(system, each, x, 1.0, size), each)[-1])
+
+    return max(directions, key=kept)
+
+
+def ruled_run(
+    system: SwitchedSystem, forms: Sequence[Form], rate: float, *, leaving: bool
+) -> Section:
+    """Draw a run that keeps the declared rules, below its bound or beside its slope.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes and rules.
+    forms : sequence of Form
+        Of each mode; the run is drawn in their norms if they are quadratic, else in the Euclidean.
+    rate : float
+        The proved one.
+    leaving : bool
+        Some modes must be left, in which a form may grow.
+    """
+    quadratic = forms[0].degree == 1
+    hardest = hardest_modes(system, None, _RULED_MODES)
+    functions = euclidean(system)
+    if quadratic:
+        matrices = scaled_matrices(*(form.Q for form in forms))
+        functions = {form.name: Q for form, Q in zip(forms, matrices, strict=True)}
+    step, steps = horizon(hardest, rate)
+    response = admissible_run(hardest, functions, step, min(steps, _RULED_STEPS))
+    response = until_small(response, active_norms(hardest, response, functions))
+    values = active_norms(hardest, response, functions)
+    said, label = (_ACTIVE + _RISES * leaving, "proved bound, ")
+    if not quadratic:
+        said, label = _SLOPE, "slope of the proved bound, "
+    run = Illustration(
+        "run",
+        AGAINST if quadratic else BESIDE,
+        f"{RULED} {said}{some_modes(system, hardest)}",
+        draw_run(
+            response,
+            values,
+            bound_line(response, rate, system.time, label),
+            hardest,
+            "Root of V of the active mode [1]" if quadratic else EUCLIDEAN,
+        ),
+    )
+    if not quadratic:
+        return simulated(run, *phase_plane(hardest, response, None))
+    return simulated(run, *_mode_levels(hardest, response, functions, leaving=leaving))
+
+
+def _mode_levels(
+    system: SwitchedSystem, response: SwitchedRun, functions: Mapping[str, Array], *, leaving: bool
+) -> tuple[Illustration, ...]:
+    """Draw a run among level curves of the modes' functions, if there are two states."""
+    if system.order != 2 or not system.is_uniform:
+        return ()
+    but = ", except in a mode that must be left." if leaving else "."
+    caption = (
+        f"{_PATH} {plane_axes(system)} Dashed is a level curve of each mode's own function, all at "
+        f"one value. While a mode is active, its own function decreases{but}{jumps(system)}"
+    )
+    roots = {name: quadratic_norm(Q) for name, Q in functions.items()}
+    return (
+        Illustration("phase-plane", _PLANE, caption, draw_mode_levels(response, system, roots)),
+    )
+
+
+def unbounded_run(system: SwitchedSystem) -> Section:
+    """Draw a bad run of a system of which nothing is proved."""
+    if system.clock is not None:
+        return _unbounded_rounds(system)
+    arbitrary = system.switching.is_arbitrary
+    hardest = hardest_modes(system, None, trials_per_step(system) if arbitrary else _RULED_MODES)
+    step = fine_step(hardest)
+    functions = euclidean(hardest)
+    if arbitrary:
+        norm, identity = quadratic_norm(np.eye(system.order)), np.eye(system.order)
+        initial = worst_direction(hardest, identity)
+        kept = replace(hardest, contact=None)
+        response = greedy_run(kept, norm, initial, step, _UNKNOWN_STEPS)
+    else:
+        response = admissible_run(hardest, functions, step, _UNKNOWN_STEPS)
+    run = Illustration(
+        "run",
+        "One bad run",
+        f"{GREEDY if arbitrary else RULED} There is no bound: nothing is proved. Decay in this "
+        "run is no sign of stability, and growth over a short time is no proof of instability."
+        f"{some_modes(system, hardest)}",
+        draw_run(response, active_norms(hardest, response, functions), None, hardest, EUCLIDEAN),
+    )
+    return simulated(run, *phase_plane(hardest, response, None))
+
+
+def _unbounded_rounds(system: SwitchedSystem) -> Section:
+    """Draw a bad run in kept contact of modes that take turns."""
+    kept, norm = replace(system, contact=None), quadratic_norm(np.eye(system.order))
+    norms = [norm] * (1 if system.clock is None else system.clock.length)
+    response = greedy_run(kept, norms, np.eye(system.order)[-1], 1.0, _UNKNOWN_STEPS)
+    run = Illustration(
+        "run",
+        "One bad run",
+        "Simulated run in kept contact from a deflection: at every step the adversary takes the "
+        "mode, of those whose turn it is, after which the Euclidean norm is largest. There is no "
+        "bound: nothing is proved.",
+        draw_run(response, relative_norms(response, norms), None, kept, EUCLIDEAN),
+    )
+    return simulated(run)
+
+
+def extremes(system: SwitchedSystem) -> SwitchedSystem:
+    """Return one axis by itself, with all that acts on it at one end or the other.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With couplings; of many, all are at the same end.
+    """
+    modes, free = list[Mode](), list[Mode]()
+    count, contact = len(system.couplings), system.contact
+    every = (*system.modes, *(() if contact is None else contact.free))
+    combined = product((-1, 1), repeat=count)
+    ends = list(combined) if count <= _MOST_COMBINED else [(-1,) * count, (1,) * count]
+    for k, mode in enumerate(every):
+        for signs in ends:
+            A = mode.A.fractions()
+            for sign, item in zip(signs, system.couplings, strict=True):
+                q = item.rows[k].fractions()[0][: system.order]
+                for row, (entry,) in zip(A, item.columns[k].fractions(), strict=True):
+                    row[:] = [a + sign * entry * b for a, b in zip(row, q, strict=True)]
+            label = "/".join((mode.name, *("high" if sign > 0 else "low" for sign in signs)))
+            part = modes if k < len(system.modes) else free
+            part.append(Mode(label, RationalMatrix.from_rows(A)))
+    lost = None if contact is None else replace(contact, free=tuple(free))
+    return replace(system, modes=tuple(modes), contact=lost, couplings=())
+
+
+def euclidean(system: SwitchedSystem) -> dict[str, Array]:
+    """Return the identity as the function of every mode."""
+    return {mode.name: np.eye(mode.A.shape[0]) for mode in system.modes}
+
+
+def euclidean_norms(response: SwitchedRun) -> Array:
+    """Return the norm of the states along a run, relative to the start."""
+    values = np.linalg.norm(response.state, axis=1)
+    return np.asarray(values / values[0])
+
+
+def bound_line(response: SwitchedRun, rate: float, time: Time, label: str) -> Bound:
+    """Return how a rate decays along the times of a run, with its label.
+
+    Parameters
+    ----------
+    response : SwitchedRun
+        With the times.
+    rate : float
+        The alpha in 1/s, or rho per step.
+    time : Time
+        Which of the two.
+    label : str
+        What stands before the formula.
+    """
+    if time is Time.CONTINUOUS:
+        return f"{label}exp(-alpha t)", np.exp(-rate * response.time)
+    return f"{label}rho^t", rate**response.time
+
+
+def trials_per_step(system: SwitchedSystem) -> int:
+    """Return how many modes a greedy run can try at every step."""
+    return max(8, min(256, _EFFORT // system.order**2))
+
+
+def until_small(response: SwitchedRun, values: Array) -> SwitchedRun:
+    """Cut a run where it has come to rest for all that can be seen."""
+    small = np.flatnonzero(values < _SMALL)
+    if not len(small):
+        return response
+    end = max(int(small[0]), 2)
+    return SwitchedRun(response.time[: end + 1], response.state[: end + 1], response.mode[:end])
+
+
+def horizon(system: SwitchedSystem, claimed: float) -> tuple[float, int]:
+    """Return step and number of steps in which the bound falls by three decades, if few enough."""
+    rate = claimed if system.time is Time.CONTINUOUS else -math.log(claimed)
+    # A contraction of 1 - 1e-21 is 1 in floating point.
+    rate = max(rate, float_info.min)
+    step = fine_step(system)
+    steps = math.ceil(min(_DECAY / (rate * step), float(_STEPS)))
+    if system.time is Time.CONTINUOUS and steps < _FEWEST:
+        steps = _FEWEST
+        step = _DECAY / rate / steps
+    return step, max(steps, 10)
+
+
+def phase_plane(
+    system: SwitchedSystem,
+    response: SwitchedRun,
+    norm: Norm | None,
+    levels: tuple[float, ...] = (),
+) -> tuple[Illustration, ...]:
+    """Draw a run of two states, with the level curves that it cannot leave, if there are any.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        The modes.
+    response : SwitchedRun
+        The run.
+    norm : Norm or None
+        Whose level curve bounds it.
+    levels : tuple of float
+        Of the curves that are drawn.
+    """
+    inside = " It cannot leave the dashed level curve of V." if norm is not None else ""
+    if len(levels) > 1:
+        inside += " The dotted ones are level curves further in: no run crosses one outward."
+    return plane(system, response, f"{inside}{jumps(system)}", norm, levels)
+
+
+def plane(
+    system: SwitchedSystem,
+    response: SwitchedRun,
+    more: str = "",
+    norm: Norm | None = None,
+    levels: tuple[float, ...] = (),
+) -> tuple[Illustration, ...]:
+    """Draw a run of two states with more words in its caption; nothing for other numbers.
+
+    Parameters
+    ----------
+    system, response, norm, levels
+        As for `phase_plane`.
+    more : str
+        Words for the end of the caption.
+    """
+    if system.order != 2 or not system.is_uniform:
+        return ()
+    return (
+        Illustration(
+            "phase-plane",
+            _PLANE,
+            f"{_PATH} {plane_axes(system)}{more}",
+            draw_phase_plane(response, system, norm, levels),
+        ),
+    )
+
+
+def plane_axes(system: SwitchedSystem) -> str:
+    """Say what the axes of a plane of two states are."""
+    first, second = system.states
+    if system.states == MOTION_STATES:
+        return (
+            f"The axes are the two states themselves, no projection: {first} and {second} of the "
+            f"motion loop G in controllable canonical form, {first}' = {second}, which have no "
+            "unit of their own."
+        )
+    return (
+        f"The axes are the two states themselves, no projection: {first} and {second} in the "
+        "coordinates of the matrices that the spec gives."
+    )
+
+
+def jumps(system: SwitchedSystem) -> str:
+    """Say how resets are drawn, if there are any."""
+    return " A reset is drawn with the step before it." if system.switching.resets else ""
+
+
+def freely(system: SwitchedSystem) -> str:
+    """Say that the run needs no rules, if any are declared."""
+    if system.switching.is_arbitrary:
+        return ""
+    return " The run switches freely, which is more than the spec allows."
+
+
+def some_modes(system: SwitchedSystem, hardest: SwitchedSystem) -> str:
+    """Say how many modes take part, if not all."""
+    if len(hardest.modes) == len(system.modes):
+        return ""
+    return f" Only the {len(hardest.modes)} slowest modes take part."

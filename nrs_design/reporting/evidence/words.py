@@ -1,0 +1,243 @@
+"""Sentences about proofs: what a bound means, on what it rests, how it was decided."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nrs_design.proof.bounds import rounded_up
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.reporting.formatting import shortened
+from nrs_design.spec.robot_bounds import ON_TRUST
+
+# Modes that a sentence names.
+NAMED = 8
+
+_DECIDED = (
+    "The decision is exact: the modes are rational matrices, the numbers of the certificate are "
+    "integers over a power of two, and integer arithmetic decides that every form is positive "
+    "definite and every inequality of the claim holds. The solver only proposed the numbers"
+)
+_ROUNDS = (
+    "A round is what both loops take to meet again, and each step of it has a function of its own, "
+    "which decreases to that of the next step. The claim is about every sample of the faster loop."
+)
+_ALL_AXES = (
+    "The function is the sum of w' Q w over all axes, with the same Q for each. Every axis may be "
+    "under a controller of its own, in contact or not, at any time: for each way in which axes act "
+    "on each other there is one multiplier for all modes. How the inertia depends on the pose, and "
+    "how fast it changes, does not matter."
+)
+_IN_THE_AIR = (
+    "In free motion the deflection is left out of the function. So it measures motion, force and "
+    "penetration, and not how far the axis has moved away from the surface: once it has come to "
+    "rest in the air, it stays there."
+)
+_MOVED_REST = (
+    "A force reference or a velocity command that pushes into the environment: they move the point "
+    "of rest, and the bound is about the point of rest without them."
+)
+_BEYOND = "Poses and speeds in which the links act more on each other than the bounds say."
+_DECLARED = "The bounds are declared by the spec, and nothing here shows them."
+_OF_ROBOT = (
+    "The bounds are taken on trust from the file of bounds of the robot, over all poses of a "
+    "workspace; `nrs-design gate` and `nrs-design verify --bounds` compute them again from its "
+    "spec. That the robot stays in there, and below the speed, is taken for granted."
+)
+
+
+def decay_factor(system: SwitchedSystem) -> str:
+    """Say by which factor the proved rate shrinks the distance from rest."""
+    continuous = system.time is Time.CONTINUOUS
+    return "exp(-alpha T) in every time T" if continuous else "rho in every step"
+
+
+def free_bound(system: SwitchedSystem) -> str:
+    """Say what a bound means that holds whatever switches happen."""
+    return (
+        "The bound means: measured by |x|, the distance from rest shrinks at least by the factor "
+        f"{decay_factor(system)}, from the first moment on and whatever switches happen. In "
+        "another norm the same rate holds with a constant factor in front."
+    )
+
+
+def ruled_bound(system: SwitchedSystem) -> str:
+    """Say what a bound means that rests on the declared rules of switching."""
+    return (
+        "The bound means: for every signal that keeps the rules, the distance from rest "
+        f"shrinks by the factor {decay_factor(system)}, up to one constant c in front. So it may "
+        "grow for a while, at first or after a switch, but never above c times the bound."
+    )
+
+
+def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
+    """Say which rules of switching are part of a claim that rests on them.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules.
+    leaving : tuple of str
+        Modes that must be left for the proof to hold.
+    """
+    switching = system.switching
+    if switching.dwell_time > 0:
+        yield (
+            f"The dwell time of {_dwell(system)} is part of the claim: the machine itself must "
+            "refuse to switch earlier."
+        )
+    if any(stay.shortest > 0 for _, stay in switching.stays):
+        yield (
+            "The dwell times of single modes are part of the claim: the machine must refuse to "
+            "leave them earlier."
+        )
+    if leaving:
+        yield (
+            f"The longest dwell time of {shortened(leaving, NAMED)} is part of the "
+            "claim: the machine itself must leave in time. The function may grow there meanwhile."
+        )
+    if switching.transitions is not None:
+        yield "The list of allowed switches is part of the claim as well."
+    if switching.resets:
+        yield "The resets are part of the claim: they must act at every switch."
+
+
+def unneeded_constant(system: SwitchedSystem) -> Iterator[str]:
+    """Say that a proof does not need the constant parameter to be constant."""
+    if system.switching.fixed_ends:
+        yield "The proof does not need the parameter to be constant: it may change freely."
+
+
+def unneeded_rules(system: SwitchedSystem) -> Iterator[str]:
+    """Say that a proof holds without the rules that are declared, if any are."""
+    switching = system.switching
+    # With a constant parameter, the list of transitions only keeps its two ends apart.
+    listed = switching.transitions is not None and not switching.fixed_ends
+    if switching.dwell_time > 0 or switching.stays or listed:
+        yield (
+            "The proof does not need the declared rules of switching: it holds for arbitrary "
+            "switching."
+        )
+
+
+def outside_the_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[str]:
+    """Say which signals a proof that rests on rules does not cover."""
+    switching = system.switching
+    if switching.dwell_time > 0:
+        yield f"Switching earlier than {_dwell(system)} after the last switch."
+    if any(stay.shortest > 0 for _, stay in switching.stays):
+        yield "Leaving a mode before its own dwell time is over."
+    if leaving:
+        yield f"Staying longer than declared in {shortened(leaving, NAMED)}."
+    if switching.transitions is not None:
+        yield "Switches that the spec does not list."
+
+
+def decision(system: SwitchedSystem, *, ruled: bool = False) -> str:
+    """Say how a proof was decided, and on what.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What it is about.
+    ruled : bool
+        It rests on the rules of switching, so that exponentials over dwell times may be part of it.
+    """
+    switching, text = system.switching, _DECIDED
+    if ruled and system.time is Time.CONTINUOUS and (switching.dwell_time > 0 or switching.stays):
+        text += "; exponentials over the dwell time are enclosed rigorously, in balls"
+    return f"{text}; a second library agreed."
+
+
+def all_corners(
+    system: SwitchedSystem, evidence: AbstractEvidence, how: str = "however fast they change"
+) -> str:
+    """Say that values between the corners of declared ranges are covered.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    evidence : AbstractEvidence
+        What proves it.
+    how : str
+        How values may move.
+    """
+    text = (
+        "Every corner of the declared parameter ranges is a mode. The matrices are affine in each "
+        "parameter alone, or in its inverse, so all values between the corners are covered as "
+        f"well, {how}."
+    )
+    if system.roundings:
+        # Of a sampled loop, which has exponentials of the motor's numbers.
+        text = (
+            "The modes are the corners of what encloses the declared parameter ranges. The "
+            "matrices are affine in each parameter, in exponentials of the motor's together, so "
+            f"all values in between are covered as well, {how}."
+        )
+    if system.time is Time.DISCRETE and not evidence.keeps_bound_in_mixtures:
+        text += " Between the corners, the bound holds up to a constant factor."
+    return text
+
+
+def allowed_signals(system: SwitchedSystem) -> str:
+    """Say under which switching a refuted claim would have been made."""
+    return "arbitrary switching" if system.switching.is_arbitrary else "the declared switching"
+
+
+def function(system: SwitchedSystem, *, lost: bool, each: bool) -> Iterator[str]:
+    """Say what the functions measure, where they are not simply a norm of all states.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    lost : bool
+        The functions cover the loss of contact.
+    each : bool
+        There is one for each mode, or for each step of a round.
+    """
+    if system.clock is not None:
+        yield _ROUNDS
+    elif lost and each:
+        yield "Each mode has a function; the largest of them decreases in every step."
+    if system.couplings:
+        yield _ALL_AXES
+    if lost:
+        yield _IN_THE_AIR
+
+
+def function_limits(system: SwitchedSystem, *, lost: bool) -> Iterator[str]:
+    """Say what a proof with functions leaves open.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        What is proved about.
+    lost : bool
+        The functions cover the loss of contact.
+    """
+    if lost or system.clock is not None or system.couplings:
+        yield _MOVED_REST
+    if system.clock is not None:
+        yield "Two loops whose periods drift against each other: they meet at every round."
+    if system.couplings:
+        on_trust = any(ON_TRUST in text for text in system.assumptions)
+        yield f"{_BEYOND} {_OF_ROBOT if on_trust else _DECLARED}"
+
+
+NO_FORECAST = (
+    "It is not said that the robot will do this: that depends on whether such a signal ever "
+    "occurs. It is said that no guarantee is possible for all the signals that the spec "
+    "allows."
+)
+ON_THE_BORDER = (
+    "An eigenvalue exactly on the border means that states need not decay; they need not grow "
+    "either."
+)
+
+
+def _dwell(system: SwitchedSystem) -> str:
+    unit = "s" if system.time is Time.CONTINUOUS else "steps"
+    return rounded_up(system.switching.dwell_time, unit)

@@ -1,1 +1,0 @@
-"""What the pages of several kinds of evidence say and draw alike."""

@@ -1,0 +1,105 @@
+"""A bad run: at every step the adversary takes the possible mode that makes a norm largest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.simulation.norms import Array, Indices, Norm
+from nrs_design.simulation.saturation import saturated_step
+from nrs_design.simulation.switched import SwitchedRun, sampling_instants, transition_matrices
+
+
+def all_modes(system: SwitchedSystem) -> SwitchedSystem:
+    """Return the modes in contact and those of free motion, if any, as one family."""
+    if system.contact is None:
+        return system
+    return replace(system, modes=(*system.modes, *system.contact.free), contact=None)
+
+
+def greedy_run(
+    system: SwitchedSystem,
+    norms: Norm | Sequence[Norm],
+    initial: Array,
+    step: float,
+    steps: int,
+) -> SwitchedRun:
+    """Simulate the greedy adversary: always the possible mode after which the norm is largest.
+
+    Modes in contact are possible while the deflection, the last state, is positive, and free modes
+    while it is not; in continuous time contact changes at the end of a step only, so steps must be
+    short. A mode of a clock is possible in its turn. It is a bad run, not the worst one: nothing is
+    proved by it.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Modes of one size, without resets.
+    norms : callable, or sequence of callable
+        What to make large, of states of shape (..., n); with a clock, one for each of its steps.
+    initial : ndarray, shape (n,)
+        State at time zero, where a round of the clock begins.
+    step : float
+        Time between decisions, in s; one in discrete time.
+    steps : int
+        Number of decisions N.
+
+    Returns
+    -------
+    SwitchedRun
+        Its modes are those of `all_modes`.
+    """
+    each = [norms] if callable(norms) else list(norms)
+    possible, advance = _possible(system), _advance(system, step)
+    states, chosen = [initial], []
+    for t in range(steps):
+        kept = possible(t, states[-1])
+        candidates = advance(states[-1], kept)
+        best = int(each[(t + 1) % len(each)](candidates).argmax())
+        chosen.append(int(kept[best]))
+        states.append(candidates[best])
+    unit = 1.0 if system.time is Time.DISCRETE else step
+    return SwitchedRun(sampling_instants(unit, steps), np.array(states), np.array(chosen))
+
+
+def relative_norms(run: SwitchedRun, norms: Norm | Sequence[Norm]) -> Array:
+    """Return the norm along a run over its first value; shape (N + 1,).
+
+    Parameters
+    ----------
+    run : SwitchedRun
+        With a clock, one that begins with a round.
+    norms : callable, or sequence of callable
+        As `greedy_run` takes them.
+    """
+    if callable(norms):
+        values = norms(run.state)
+    else:
+        values = np.array([norms[t % len(norms)](x) for t, x in enumerate(run.state)])
+    return np.asarray(values / values[0])
+
+
+def _possible(system: SwitchedSystem) -> Callable[[int, Array], Indices]:
+    """Return the function from a step and a state to the modes that may be taken."""
+    modes, clock = all_modes(system).modes, system.clock
+    free = np.arange(len(modes)) >= len(system.modes)
+    begins = np.array([clock is None or mode.name in clock.first for mode in modes])
+
+    def possible(t: int, x: Array) -> Indices:
+        turn = clock is None or t % clock.length == 0
+        lost = bool(free.any()) and x[-1] <= 0
+        return np.flatnonzero((begins == turn) & (free == lost))
+
+    return possible
+
+
+def _advance(system: SwitchedSystem, step: float) -> Callable[[Array, Indices], Array]:
+    """Return the function from a state and modes to the states after a step in each of them."""
+    if system.saturation is not None:
+        return saturated_step(system, step)
+    maps = transition_matrices(all_modes(system), step)
+    return lambda x, modes: maps[modes] @ x

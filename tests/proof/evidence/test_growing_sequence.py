@@ -1,0 +1,1163 @@
+"""A closed sequence that grows: published limits, what is admissible, known answers, attacks."""
+
+from dataclasses import replace
+from fractions import Fraction
+from math import log
+
+import numpy as np
+import pytest
+from flint import arb, ctx, fmpq
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.certificates.certificate import (
+    CommonQuadraticStatus,
+    common_quadratic_of,
+    granted,
+    refuted_in,
+    refutes_in_contact,
+    verdict_of,
+)
+from nrs_design.proof.contact import Contact, Flights
+from nrs_design.proof.enclosure import precision
+from nrs_design.proof.evidence import GrowingSequence, Shows, read_evidence
+from nrs_design.proof.evidence.growing_sequence import (
+    MAX_FACTOR_DENOMINATOR,
+    MAX_STEPS,
+    decides,
+    staying,
+)
+from nrs_design.proof.evidence.growth import monodromy
+from nrs_design.proof.exact import TooLargeError
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.second_opinion import agrees
+from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.switching import Clock, FixedParameter, Reset, Stay, Switching
+from nrs_design.search.certification import Limits
+from nrs_design.search.certify import Verdict, certify
+from nrs_design.search.gradient_settings import Gradient
+from nrs_design.search.method import Method
+from tests.proof.systems import (
+    PAIR,
+    PAIRS,
+    bouncing_in_steps,
+    branicky,
+    dayawansa_martin,
+    drifting,
+    family,
+    genuine,
+    geromel_colaneri,
+    golden,
+    hidden_shears,
+    hidden_value,
+    juggling,
+    juggling_among_modes,
+    juggling_in_turns,
+    matrix,
+    must_leave,
+    oscillator,
+    resets_between,
+    robot,
+    shears,
+    sucking_in,
+    sucking_in_steps,
+    two_ways,
+)
+from tests.proof.truth import exponential, holds
+from tests.support import ends_soon, is_stable_by_lyapunov
+
+HALF = Fraction(1, 2)
+
+
+def at(share, part):
+    return replace(part, share=share)
+
+
+def in_contact(steps, factor):
+    return GrowingSequence(tuple((name, Fraction(k)) for name, k in steps), factor=factor)
+
+
+# One mode
+
+
+@pytest.mark.parametrize(
+    ("A", "time", "stable"),
+    [
+        ([["-0.36", "-0.48"], ["-0.48", "-0.64"]], Time.CONTINUOUS, False),
+        ([[0, 1], [-1, 0]], Time.CONTINUOUS, False),
+        ([[-1, 0], [0, -1]], Time.CONTINUOUS, True),
+        ([[-1, 0], [0, -1]], Time.DISCRETE, False),
+        ([["-1/2", 0], [0, "1/2"]], Time.DISCRETE, True),
+        ([["-1/2", 0], [0, "1/2"]], Time.CONTINUOUS, False),
+        ([["0.6", "0.8"], ["-0.8", "0.6"]], Time.DISCRETE, False),
+    ],
+)
+def test_unstable_mode(A, time, stable):
+    system = family([[0, 0], [0, 0]], A, time=time)
+    assert is_stable(system.modes[1].A, time) is stable
+    found = staying("m1").find_fault(system)
+    assert (found is None) is not stable
+
+
+def test_unknown_and_ambiguous_modes_refute_nothing():
+    system = family([[1, 0], [0, 1]])
+    assert staying("m0").find_fault(system) is None
+    assert "do not exist" in staying("m1").find_fault(system)
+    twice = replace(system, modes=system.modes * 2)
+    assert "same name" in staying("m0").find_fault(twice)
+
+
+@settings(deadline=None)
+@given(st.lists(st.integers(-6, 6), min_size=9, max_size=9), st.sampled_from(list(Time)))
+def test_against_the_lyapunov_equation(entries, time):
+    """Another algorithm, without a characteristic polynomial."""
+    rows = [[Fraction(e, 5) for e in entries[i : i + 3]] for i in (0, 3, 6)]
+    system = family(rows, time=time)
+    stable = is_stable_by_lyapunov(rows, discrete=time is Time.DISCRETE)
+    assert is_stable(system.modes[0].A, time) is stable
+    evidence = staying("m0")
+    assert (evidence.find_fault(system) is None) is not stable
+    assert holds(system, evidence) is not stable
+
+
+def test_stable_modes_give_no_evidence():
+    found = certify(dayawansa_martin(5))
+    assert not any(statement.names_unstable_mode for statement in found.statements)
+
+
+@pytest.mark.parametrize(
+    "switching",
+    [
+        Switching(dwell_time=Fraction(10**6)),
+        Switching(transitions=()),
+        Switching(resets=(Reset("m0", "m1", matrix([[0, 0], [0, 0]])),)),
+        Switching(fixed_ends=(("m0", "m1"),)),
+    ],
+)
+def test_no_rule_of_switching_forces_a_signal_to_leave_its_mode(switching):
+    system = family([[1, 0], [0, 1]], [[-1, 0], [0, -1]])
+    assert staying("m0").find_fault(replace(system, switching=switching)) is None
+    assert "stable" in staying("m1").find_fault(replace(system, switching=switching))
+
+
+def test_words_and_fields():
+    evidence, system = staying("m0"), family([[2]])
+    assert evidence.shows is Shows.INSTABILITY
+    assert evidence.proved_rate(system) is None
+    assert evidence.claim(system) == (
+        "Mode m0 is not Hurwitz (eigenvalue about 2): staying in it is an admissible switching "
+        "signal, so x' = A x is not uniformly exponentially stable."
+    )
+    assert evidence.to_fields() == {"steps": [["m0", "1"]]}
+    assert GrowingSequence.from_fields(evidence.to_fields(), system) == evidence
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {},
+        {"steps": None},
+        {"steps": []},
+        {"steps": [["m0"]]},
+        {"steps": [["m0", 1]]},
+        {"steps": [[0, "1"]]},
+        {"steps": [["m0", "1e3"]]},
+        {"steps": [["m0", "1"]], "doublings": True},
+        {"steps": [["m0", "1"]], "doublings": None},
+        {"steps": [["m0", "1"]], "edges": [0, 0]},
+        {"steps": [["m0", "1"]], "factor": ["2"]},
+        {"steps": [["m0", "1"]], "factor": "23"[:1]},
+        {"steps": [["m0", "1"]], "share": "1/2"},
+    ],
+)
+def test_malformed_fields(fields):
+    with pytest.raises((KeyError, TypeError, ValueError)):
+        GrowingSequence.from_fields(fields, family([[2]]))
+
+
+def test_a_mode_that_must_be_left_refutes_nothing():
+    stays = (("m0", Stay(Fraction(1), Fraction(3))),)
+    system = family([[2]], [["1/8"]], time=Time.DISCRETE)
+    system = replace(system, switching=Switching(stays=stays))
+    evidence = staying("m0")
+    assert evidence.find_fault(replace(system, switching=Switching(Fraction(3)))) is None
+    assert "does not cover this kind of switching" in evidence.find_fault(system)
+    assert not holds(system, evidence)
+
+
+# An average
+
+
+def mixed(*weights):
+    return GrowingSequence(tuple((f"m{i}", Fraction(w)) for i, w in enumerate(weights)))
+
+
+def test_two_shears_by_hand():
+    # [[-1, 5], [5, -1]] has the eigenvalues 4 and -6.
+    assert mixed(HALF, HALF).find_fault(shears()) is None
+    assert certify(shears(), Method.MIXTURE).verdict is Verdict.REFUTED
+
+
+def test_an_average_on_the_border_counts():
+    # [[-1, s], [s, -1]] with s = 1 has the eigenvalue 0: not Hurwitz, so not uniformly stable.
+    border = family([[-1, 2], [0, -1]], [[-1, 0], [2, -1]])
+    assert mixed(HALF, HALF).find_fault(border) is None
+    inside = family([[-1, "1.999999"], [0, -1]], [[-1, 0], ["1.999999", -1]])
+    assert mixed(HALF, HALF).find_fault(inside) is not None
+
+
+@pytest.mark.parametrize(
+    "weights", [(HALF,), (1, 1), (0, 1), (Fraction(3, 2), -HALF), (), (HALF, HALF, 0)]
+)
+def test_weights_are_positive_with_sum_one(weights):
+    rows = [mode.A.fractions() for mode in shears().modes]
+    assert mixed(*weights).find_fault(family(*rows, rows[0])) is not None
+
+
+def test_names_are_those_of_modes_and_occur_once():
+    for names in (("m0", "m0"), ("m0", "m7")):
+        evidence = GrowingSequence(tuple((name, HALF) for name in names))
+        assert evidence.find_fault(shears()) is not None
+    # Even where the mode that is named twice is not stable.
+    unstable = family([[1]], [[-1]])
+    twice = GrowingSequence((("m0", HALF), ("m0", HALF)))
+    assert twice.find_fault(unstable) == "a mode is named twice in an average"
+    thrice = GrowingSequence((("m0", Fraction(1, 3)),) * 3)
+    with pytest.raises(TooLargeError):
+        thrice.claim(unstable)
+
+
+@pytest.mark.parametrize(
+    ("denominator", "fault"), [(2**64, None), (2**64 + 1, "the weights have too many digits")]
+)
+def test_digits_of_weights_are_limited(denominator, fault):
+    share = Fraction(2**63 + 1, denominator)
+    assert mixed(share, 1 - share).find_fault(shears()) == fault
+
+
+@pytest.mark.parametrize(
+    "switching",
+    [
+        Switching(Fraction(1, 10**9)),
+        Switching(transitions=(("m0", "m1"), ("m1", "m0"))),
+        Switching(resets=resets_between(("m0", "m1", [[1, 0], [0, 1]]))),
+        Switching(fixed_ends=(("m0", "m1"),)),
+    ],
+)
+def test_it_needs_arbitrarily_fast_switching(switching):
+    evidence = mixed(HALF, HALF)
+    assert "switching" in str(evidence.find_fault(shears(switching)))
+
+
+def test_discrete_time_has_no_mixtures():
+    # The average of these two is not Schur, yet every product of two of them is zero or small.
+    system = family([["1/2", 8], [0, "1/2"]], [["1/2", 0], [8, "1/2"]], time=Time.DISCRETE)
+    assert "continuous" in str(mixed(HALF, HALF).find_fault(system))
+
+
+def test_weights_that_are_too_long_are_rejected_at_once():
+    n = 32
+    A = [[(i * 7 + j * 3) % 5 - 2 - 9 * (i == j) for j in range(n)] for i in range(n)]
+    system = family(A, [list(row) for row in zip(*A, strict=True)])
+    odd = 10**1000 + 1
+    weights = (("m0", Fraction(odd // 2, odd)), ("m1", 1 - Fraction(odd // 2, odd)))
+    with ends_soon():
+        assert "digits" in str(GrowingSequence(weights).find_fault(system))
+        # What is read is said in words before it is checked.
+        with pytest.raises(TooLargeError):
+            GrowingSequence(weights).claim(system)
+
+
+def test_an_unknown_mode_in_a_file_is_no_crash():
+    unknown = GrowingSequence((("m9", Fraction(1)),))
+    with pytest.raises(KeyError):
+        unknown.claim(shears())
+    assert unknown.find_fault(shears()) is not None
+
+
+def test_numbers_that_would_take_minutes_are_refused():
+    half = (("m0", Fraction(1, 2)), ("m1", Fraction(1, 2)))
+    evidence = GrowingSequence(half)
+    ones = ((1, 0), (0, 1))
+    coprime = RationalMatrix(ones, 2**60_000), RationalMatrix(ones, 3**40_000)
+    long = RationalMatrix(((2**400_000, 1), (0, 1))), RationalMatrix(ones)
+    for matrices in (coprime, long):
+        modes = tuple(Mode(f"m{i}", A) for i, A in enumerate(matrices))
+        system = replace(shears(), modes=modes)
+        fault = evidence.find_fault(system)
+        assert fault == "the numbers of the average of the modes are too large to check"
+        with pytest.raises((ValueError, TooLargeError), match="too large"):
+            evidence.claim(system)
+
+
+# A period
+
+
+WIDE = [("1", "2.15"), ("200", "2.15")]
+
+
+def signal(*steps, doublings=20):
+    named = tuple((f"m{mode}", Fraction(dwell)) for mode, dwell in steps)
+    return GrowingSequence(named, doublings)
+
+
+def by_period(system):
+    return certify(system, Method.PERIOD)
+
+
+@pytest.mark.parametrize("a", ["11.262", "11.27", "12", "30"])
+def test_pair_of_dayawansa_and_martin_is_refuted_beyond_its_limit(a):
+    found = by_period(dayawansa_martin(a))
+    assert found.verdict is Verdict.REFUTED
+    assert holds(found.system, found.evidence)
+
+
+@pytest.mark.parametrize("a", ["11.2", "11.26", "6"])
+def test_and_never_below_it(a):
+    # The limit is 11.2608....
+    assert by_period(dayawansa_martin(a)).verdict is not Verdict.REFUTED
+
+
+@pytest.mark.parametrize(("kbar", "refuted"), [("6.98", False), ("6.99", True), ("7", True)])
+def test_oscillator_on_both_sides_of_its_limit(kbar, refuted):
+    # 6.98513.
+    assert (by_period(oscillator(kbar)).verdict is Verdict.REFUTED) is refuted
+
+
+@pytest.mark.parametrize(
+    ("dwell", "refuted"),
+    [("2.70", True), ("2.707", True), ("2.7078", False), ("2.76", False), ("3", False)],
+)
+def test_pair_of_geromel_and_colaneri_by_dwell_time(dwell, refuted):
+    # Unstable up to 2.70775 s.
+    found = by_period(geromel_colaneri(dwell))
+    assert (found.verdict is Verdict.REFUTED) is refuted
+    if refuted:
+        assert all(time >= Fraction(dwell) for _, time in found.evidence.steps)
+
+
+@pytest.mark.parametrize(("c", "refuted"), [("0.618", False), ("0.6181", True)])
+def test_golden_ratio(c, refuted):
+    # 1/0.61803... is the joint spectral radius of the pair, reached by alternating.
+    found = by_period(golden(c))
+    assert (found.verdict is Verdict.REFUTED) is refuted
+    if refuted:
+        assert {name for name, _ in found.evidence.steps} == {"m0", "m1"}
+
+
+def test_wide_range_of_stiffness_without_virtual_mass():
+    # Both modes are Hurwitz; 0.04597 s and 0.03276 s in turn grow by about 1 1/s.
+    system = robot("0", WIDE)
+    steps = ((1, "0.04597"), (0, "0.03276"))
+    evidence = [signal(*order) for order in (steps, [(1 - m, t) for m, t in steps])]
+    growing = [item for item in evidence if item.find_fault(system) is None]
+    assert growing
+    flows = [
+        exponential(np.array(system.modes[int(name[1])].A.floats()) * float(dwell))
+        for name, dwell in growing[0].steps
+    ]
+    radius = np.abs(np.linalg.eigvals(flows[1] @ flows[0])).max()
+    assert log(radius) / (0.04597 + 0.03276) == pytest.approx(1.0, abs=0.1)
+    assert by_period(system).verdict is Verdict.REFUTED
+
+
+def test_a_spectral_radius_of_exactly_one_is_no_growth():
+    rotation = family([[0, 1], [-1, 0]])
+    quarter = family([[0, 1], [-1, 0]], time=Time.DISCRETE)
+    for doublings in range(0, 61, 6):
+        assert signal((0, "1.5"), doublings=doublings).find_fault(rotation) is not None
+        assert signal((0, 1), doublings=doublings).find_fault(quarter) is not None
+    jordan = family([[1, 1], [0, 1]], time=Time.DISCRETE)
+    assert signal((0, 1), doublings=60).find_fault(jordan) is not None
+
+
+def test_a_radius_barely_above_one_needs_many_doublings():
+    barely = family([["1.0000001", 0], [0, "1/2"]], time=Time.DISCRETE)
+    assert signal((0, 1), doublings=2).find_fault(barely) is not None
+    assert signal((0, 1), doublings=30).find_fault(barely) is None
+    below = family([["0.9999999", 0], [0, "1/2"]], time=Time.DISCRETE)
+    assert all(signal((0, 1), doublings=k).find_fault(below) for k in range(61))
+
+
+def test_a_large_transient_is_no_growth():
+    shear = family([["1/2", 10**12], [0, "1/2"]], time=Time.DISCRETE)
+    assert all(signal((0, 1), doublings=k).find_fault(shear) for k in range(0, 61, 3))
+
+
+def test_the_order_of_time_is_that_of_the_steps():
+    # From m0 to m1 the state is swapped, back it is left: only the order tells which is first.
+    resets = resets_between(("m0", "m1", [[0, 1], [0, 0]]))
+    system = family(
+        [[2, 0], [0, "1/2"]],
+        [["1/2", 0], [0, 4]],
+        time=Time.DISCRETE,
+        switching=Switching(resets=resets),
+    )
+    before, ctx.prec = ctx.prec, 100
+    try:
+        product = monodromy(system, signal((0, 1), (1, 1)).steps)
+    finally:
+        ctx.prec = before
+    expected = np.diag([0.5, 4]) @ np.array([[0, 1], [0, 0]]) @ np.diag([2, 0.5])
+    found = [[float(product[i, j]) for j in range(2)] for i in range(2)]
+    assert np.array_equal(np.array(found), expected)
+
+
+def test_resets_at_the_switch_back_to_the_first_mode_count():
+    pair = [[-1, 0], [0, -1]], [[-1, 0], [0, -1]]
+    grow = resets_between(("m1", "m0", [[9, 0], [0, 9]]))
+    evidence = signal((0, "0.5"), (1, "0.5"))
+    assert evidence.find_fault(family(*pair, switching=Switching(resets=grow))) is None
+    assert evidence.find_fault(family(*pair)) is not None
+    elsewhere = resets_between(("m0", "m0", [[9, 0], [0, 9]]))
+    staying = family(*pair, switching=Switching(resets=elsewhere))
+    assert evidence.find_fault(staying) is not None
+    # Two steps of one mode are a longer stay, and no switch.
+    assert signal((0, "0.5"), (0, "0.5")).find_fault(staying) is not None
+
+
+def test_dwell_times_transitions_and_constant_parameters_are_obeyed():
+    system, evidence = genuine("growing-sequence, period")
+    longest = max(dwell for _, dwell in evidence.steps)
+    for switching in (
+        Switching(longest),
+        Switching(transitions=(("m0", "m1"),)),
+        Switching(transitions=(("m1", "m0"),)),
+        Switching(transitions=()),
+        Switching(fixed_ends=(("m0", "m1"),)),
+    ):
+        assert evidence.find_fault(replace(system, switching=switching)) is not None
+    shortest = min(dwell for _, dwell in evidence.steps)
+    for switching in (
+        Switching(shortest),
+        Switching(transitions=(("m0", "m1"), ("m1", "m0"))),
+    ):
+        assert evidence.find_fault(replace(system, switching=switching)) is None
+
+
+def test_one_value_of_a_constant_parameter_refutes():
+    rows = [mode.A.fractions() for mode in branicky().modes]
+    system = family(
+        rows[0], rows[1], rows[0], rows[1], switching=Switching(
+            fixed_ends=(("m0", "m2"), ("m1", "m3"))
+        )
+    )  # fmt: skip
+    _, evidence = genuine("growing-sequence, period")
+    assert evidence.find_fault(system) is None
+    crossed = replace(evidence, steps=tuple(
+        ({"m1": "m3"}.get(name, name), dwell) for name, dwell in evidence.steps
+    ))  # fmt: skip
+    assert crossed.find_fault(system) is not None
+
+
+def test_steps_are_whole_in_discrete_time():
+    assert signal((0, "1.5"), (1, 1)).find_fault(golden("0.7")) is not None
+    assert signal((0, 1), (1, 1)).find_fault(golden("0.7")) is None
+
+
+@pytest.mark.parametrize(
+    "evidence",
+    [
+        signal(),
+        signal((0, 0), (1, 1)),
+        signal((0, -1), (1, 1)),
+        signal((0, 4097)),
+        signal((7, 1)),
+        signal((0, 1), (1, 1), doublings=-1),
+        signal((0, 1), (1, 1), doublings=61),
+        signal((0, 1), (1, 1), doublings=10**30),
+        GrowingSequence((("m0", Fraction(1)),) * 10**6, 3),
+    ],
+)
+@pytest.mark.parametrize("time", list(Time))
+def test_signals_out_of_range_are_rejected_at_once(evidence, time):
+    system = replace(family([[5, 1], [0, 5]], [[5, 0], [1, 5]]), time=time)
+    with ends_soon():
+        assert evidence.find_fault(system) is not None
+
+
+@pytest.mark.parametrize("time", list(Time))
+def test_long_signals_of_many_states_do_not_hang(time):
+    n = 64
+    A = [[(i * 7 + j * 3) % 5 - 2 - 9 * (i == j) for j in range(n)] for i in range(n)]
+    system = family(A, time=time)
+    with ends_soon():
+        assert signal(*[(0, 4000 - k) for k in range(500)]).find_fault(system) is not None
+
+
+def test_enormous_modes_do_not_hang_or_overflow():
+    for time in Time:
+        system = family([[-(10**200), 10**200], [-(10**200), -1]], time=time)
+        with ends_soon():
+            signal((0, 4096), doublings=60).find_fault(system)
+
+
+def test_the_precision_of_flint_is_left_as_it_was():
+    before = ctx.prec
+    genuine("growing-sequence, period")
+    system, evidence = genuine("growing-sequence, period")
+    evidence.find_fault(system)
+    assert ctx.prec == before
+    with pytest.raises((ValueError, ZeroDivisionError)):
+        GrowingSequence((("m0", Fraction(1)),), 3).find_fault(family([[1]])) or read_evidence(
+            {"kind": "growing-sequence", "steps": [["m0", "1/0"]]}, system
+        )
+    assert ctx.prec == before
+
+
+def test_exponentials_enclose_those_of_numpy():
+    A = matrix([["-0.3", 7], [-5, "-0.1"]])
+    system = family(A.fractions())
+    before, ctx.prec = ctx.prec, 300
+    try:
+        enclosed = monodromy(system, (("m0", Fraction(5, 4)),))
+    finally:
+        ctx.prec = before
+    found = np.array([[float(enclosed[i, j].mid()) for j in range(2)] for i in range(2)])
+    assert found == pytest.approx(exponential(np.array(A.floats()) * 1.25), rel=1e-9)
+
+
+def test_a_stay_longer_than_the_longest_refutes_nothing():
+    # Four steps in m0 and one in m1 double the state; three leave it as it is.
+    grows = signal((0, 4), (1, 1))
+    assert grows.find_fault(must_leave(4)) is None
+    assert holds(must_leave(4), grows)
+    assert "does not cover" in grows.find_fault(must_leave(3))
+    assert not holds(must_leave(3), grows)
+
+
+@pytest.mark.parametrize(
+    "steps", [[(0, 2), (0, 2), (1, 1)], [(0, 2), (1, 1), (0, 2)], [(0, 1)], [(0, 2), (0, 2)]]
+)
+def test_a_stay_cannot_be_split(steps):
+    # Round the period, two steps of one mode in turn are one stay, and one alone never ends.
+    evidence = signal(*steps)
+    for longest in (3, 4):
+        assert "does not cover" in evidence.find_fault(must_leave(longest))
+        assert not holds(must_leave(longest), evidence)
+
+
+def test_dwell_times_by_mode():
+    stays = (("m1", Stay(Fraction(2))),)
+    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
+    system = family(*pair, time=Time.DISCRETE, switching=Switching(stays=stays))
+    assert signal((0, 1), (1, 2)).find_fault(system) is None
+    assert "does not cover" in signal((0, 1), (1, 1)).find_fault(system)
+    assert signal((0, 1), (1, 1)).find_fault(family(*pair, time=Time.DISCRETE)) is None
+
+
+def test_which_reset_is_taken_must_be_said():
+    steps = signal((0, 1), (1, 1)).steps
+    system = two_ways(5)
+    assert GrowingSequence(steps, 6, (1, 0)).find_fault(system) is None
+    # The other reset, none of them, one too many, one that does not exist.
+    wrong = [(0, 0), (), (1,), (1, 0, 0), (2, 0), (-1, 0), (1, 1)]
+    for edges in wrong:
+        evidence = GrowingSequence(steps, 6, edges)
+        assert evidence.find_fault(system) is not None
+        assert len(edges) != 2 or not holds(system, evidence)
+    assert GrowingSequence(steps, 6, (1, 0)).find_fault(two_ways("3.9")) is not None
+
+
+def test_the_reset_that_is_taken_is_in_the_file():
+    system, evidence = genuine("growing-sequence, two ways")
+    fields = {"kind": evidence.kind, **evidence.to_fields()}
+    assert fields["edges"] == [1, 0]
+    assert "then reset 2 to m1, m1 for 1 steps)" in evidence.claim(system)
+    assert read_evidence(fields, system) == evidence
+    with pytest.raises(ValueError, match="one edge for each"):
+        read_evidence({**fields, "edges": [1]}, system)
+    assert "edges" not in genuine("growing-sequence, period")[1].to_fields()
+
+
+def test_an_edge_against_the_transitions_refutes_nothing():
+    one_way = must_leave(4, transitions=(("m1", "m0"),))
+    assert "does not cover" in signal((0, 4), (1, 1)).find_fault(one_way)
+
+
+def test_a_signal_that_is_too_long_is_not_looked_at():
+    steps = (("m0", Fraction(1)), ("m1", Fraction(1))) * 513
+    assert "does not cover" in GrowingSequence(steps, 3).find_fault(branicky())
+
+
+GROWING = [[1, 1], [0, 1]], [[1, 0], [1, 1]]
+STEPS, SECONDS = Time.DISCRETE, Time.CONTINUOUS
+
+
+def test_the_longest_signal():
+    system = family(*GROWING, time=STEPS)
+    longest = signal(*[(0, 1), (1, 1)] * 512, doublings=0)
+    assert longest.find_fault(system) is None
+    longer = replace(longest, steps=(*longest.steps, ("m0", Fraction(1))))
+    assert longer.find_misfit(system) == "the sequence is empty or too long"
+    assert "does not cover" in longer.find_fault(system)
+    assert signal().find_misfit(system) == "the sequence is empty or too long"
+
+
+@pytest.mark.parametrize(("doublings", "fits"), [(-1, False), (0, True), (60, True), (61, False)])
+def test_doublings(doublings, fits):
+    evidence = signal((0, 1), (1, 1), doublings=doublings)
+    fault = None if fits else "the trace is not that of a power up to 60 doublings"
+    assert evidence.find_fault(family(*GROWING, time=STEPS)) == fault
+
+
+def test_the_most_work(monkeypatch):
+    limit = "nrs_design.proof.evidence.growing_sequence.MAX_WORK"
+    evidence, system = signal((0, 1), (1, 1), doublings=2), family(*GROWING, time=STEPS)
+    monkeypatch.setattr(limit, 2 * 2**3)
+    assert evidence.find_fault(system) is None
+    monkeypatch.setattr(limit, 2 * 2**3 - 1)
+    assert evidence.find_fault(system) == "the sequence is too long for so many states"
+
+
+@pytest.mark.parametrize(
+    ("count", "fault"),
+    [
+        (5, "the enclosure of the monodromy matrix does not show growth"),
+        (6, "the sequence is too long for so many states"),
+    ],
+)
+def test_the_most_steps_of_a_hundred_states(count, fault):
+    system = family([[int(i == j) for j in range(100)] for i in range(100)], time=STEPS)
+    assert signal(*[(0, 1)] * count, doublings=0).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(
+    ("dwell", "time", "fault"),
+    [
+        ("4096", SECONDS, None),
+        ("4096", STEPS, None),
+        ("4097", STEPS, "a time is not between 0 and 4096"),
+        ("8193/2", SECONDS, "a time is not between 0 and 4096"),
+        ("0", SECONDS, "a time is not between 0 and 4096"),
+        ("1/2", SECONDS, None),
+        ("1/2", STEPS, "a number of steps is not whole"),
+        ("3/2", STEPS, "a number of steps is not whole"),
+        ("1", STEPS, None),
+    ],
+)
+def test_dwell_times_between_the_limits(dwell, time, fault):
+    system = family([[2]], time=time)
+    assert signal((0, dwell), doublings=4).find_misfit(system) == fault
+    if time is SECONDS:
+        assert signal((0, 1), (0, dwell), doublings=4).find_misfit(system) == fault
+
+
+@pytest.mark.parametrize(
+    ("dwell", "shortest", "longest", "fits"),
+    [
+        (2, 2, None, True),
+        (1, 2, None, False),
+        (2, 2, 2, True),
+        (2, 1, 3, True),
+        (1, 2, 3, False),
+        (4, 2, 3, False),
+    ],
+)
+def test_how_long_a_mode_may_stay(dwell, shortest, longest, fits):
+    stay = Stay(Fraction(shortest), longest and Fraction(longest))
+    evidence = signal((0, dwell), (1, 1))
+    assert evidence.fits(Switching(stays=(("m0", stay),))) is fits
+
+
+@pytest.mark.parametrize(
+    ("steps", "transitions", "fits"),
+    [
+        ([(0, 1), (1, 1)], (("m0", "m1"), ("m1", "m0")), True),
+        ([(0, 1), (1, 1)], (("m0", "m1"),), False),
+        ([(0, 1), (1, 1), (2, 1)], (("m0", "m1"), ("m1", "m2"), ("m2", "m0")), True),
+        ([(0, 1), (1, 1), (2, 1)], (("m0", "m1"), ("m1", "m2"), ("m0", "m2")), False),
+        ([(0, 1), (0, 1), (1, 1)], (("m0", "m1"), ("m1", "m0")), True),
+        ([(0, 1)], (), True),
+        ([], (), False),
+    ],
+)
+def test_switches_that_are_allowed(steps, transitions, fits):
+    assert signal(*steps).fits(Switching(transitions=transitions)) is fits
+
+
+def test_a_mode_of_no_end_is_at_no_value():
+    ends = Switching(fixed_ends=(("m0", "m1"), ("m2", "m3")))
+    for modes, fits in (((0, 2), True), ((1, 3), True), ((0, 3), False), ((0, 4), False)):
+        assert signal(*((mode, 1) for mode in modes)).fits(ends) is fits
+
+
+def test_every_step_takes_its_own_reset():
+    """Of two resets one doubles and one triples; the way back has none."""
+    resets = resets_between(("m0", "m1", [[2]]), ("m0", "m1", [[3]]))
+    system = family([[1]], [["1/5"]], time=STEPS, switching=Switching(resets=resets))
+    steps = signal((0, 1), (1, 1), (0, 1), (1, 1)).steps
+    for edges, factor in (((0, 0, 0, 0), 4), ((1, 0, 0, 0), 6), ((1, 0, 1, 0), 9)):
+        with precision():
+            assert monodromy(system, steps, edges)[0, 0].contains(arb(fmpq(factor, 25)))
+    for edges, fits in (
+        ((1, 0, 0, 0), True),
+        ((1, 0, 1, 0), True),
+        ((2, 0, 0, 0), False),
+        ((0, 0, 2, 0), False),
+        ((0, 1, 0, 0), False),
+        ((0, -1, 0, 0), False),
+        ((0, 0, 0), False),
+        ((0, 0, 0, 0, 0), False),
+        ((), False),
+    ):
+        assert GrowingSequence(steps, 3, edges).fits(system.switching) is fits
+    one = Switching(resets=resets[:1])
+    assert GrowingSequence(steps, 3).fits(one)
+    assert GrowingSequence(steps, 3).fits(Switching())
+
+
+@pytest.mark.parametrize(
+    ("growth", "doublings", "expands"),
+    [("3", 0, True), ("2", 0, False), ("-3", 0, True), ("7/4", 0, False), ("7/4", 1, True)],
+)
+def test_a_trace_beyond_the_number_of_states(growth, doublings, expands):
+    """Of diag(g, 0): g to the power 2^k is compared to two."""
+    system = family([[growth, 0], [0, 0]], time=STEPS)
+    fault = None if expands else "the enclosure of the monodromy matrix does not show growth"
+    assert signal((0, 1), doublings=doublings).find_fault(system) == fault
+
+
+def test_claims():
+    ways = two_ways(5)
+    resets = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(2))), 6, (1, 0)).claim(ways)
+    assert resets == (
+        "Repeating the signal (m0 for 1 steps, then reset 2 to m1, m1 for 2 steps) makes some "
+        "solution grow without bound: the spectral radius over one period is above 1, so "
+        "x+ = A x is unstable under this switching."
+    )
+    first = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(2))), 6).claim(ways)
+    assert "(m0 for 1 steps, then reset 1 to m1, m1 for 2 steps)" in first
+    one = replace(ways, switching=Switching(resets=ways.switching.resets[:1]))
+    assert "(m0 for 1 steps, m1 for 2 steps)" in signal((0, 1), (1, 2)).claim(one)
+    short = signal((0, "1/2"), (1, "1/4")).claim(branicky())
+    assert "signal (m0 for 0.5 s, m1 for 0.25 s) makes" in short
+    assert "so x' = A x is unstable" in short
+    for times in (("1/3", "1/4"), ("1/4", "1/3")):
+        long = signal(*enumerate(times)).claim(branicky())
+        assert "about 0.333" in long
+        assert "; the certificate holds the exact times) makes" in long
+
+
+def test_edges_in_a_file():
+    system, evidence = genuine("growing-sequence, period")
+    fields = {"kind": evidence.kind, **evidence.to_fields()}
+    assert read_evidence(fields, system).edges == ()
+    edges = [0] * len(evidence.steps)
+    assert read_evidence({**fields, "edges": edges}, system).edges == tuple(edges)
+    for wrong in ([0], [*edges, 0]):
+        with pytest.raises(ValueError, match="one edge for each"):
+            read_evidence({**fields, "edges": wrong}, system)
+
+
+# Contact and flight
+
+
+ONCE = (("m0", 1), ("free", 1))
+FACTOR = (Fraction(19, 10), Fraction(2))
+NARROW = (Fraction(19416, 10000), Fraction(19417, 10000))
+BOUNCE = in_contact(ONCE, NARROW)
+NO_SIGNS = "the enclosure does not show a growing motion that keeps the signs of contact"
+
+
+def test_one_step_of_contact_and_one_of_flight():
+    system = juggling()
+    assert BOUNCE.find_fault(system) is None
+    assert BOUNCE.shown(system) is BOUNCE.shows is Shows.INSTABILITY
+    assert verdict_of(system, (BOUNCE,)) is Verdict.REFUTED
+    # Its modes in contact may share a function: nothing is said of that.
+    assert common_quadratic_of(system, (BOUNCE,)) is CommonQuadraticStatus.UNKNOWN
+    twice = in_contact(ONCE * 2, tuple(number**2 for number in NARROW))
+    assert twice.find_fault(system) is None
+    assert in_contact(ONCE[::-1], NARROW).find_fault(system) is None
+
+
+@pytest.mark.parametrize(
+    ("steps", "factor", "fault"),
+    [
+        # An eigenvalue that is not there, and others along which a sign is wrong.
+        (ONCE, (Fraction(21, 10), Fraction(22, 10)), NO_SIGNS),
+        ((("free", 1), ("free", 1)), NARROW, NO_SIGNS),
+        ((("m0", 1), ("m0", 1)), NARROW, NO_SIGNS),
+        ((("m0", 2), ("free", 1)), NARROW, NO_SIGNS),
+        (ONCE, (Fraction(1), Fraction(2)), NO_SIGNS),
+        # The same with an end that is no witness.
+        (ONCE, (Fraction(99, 100), Fraction(2)), "not beyond the limit"),
+        (ONCE, (NARROW[1], NARROW[0]), "not beyond the limit"),
+        (ONCE, (NARROW[0], NARROW[0]), "not beyond the limit"),
+        (
+            ONCE,
+            (NARROW[0], 2 - Fraction(1, MAX_FACTOR_DENOMINATOR + 1)),
+            "too many digits",
+        ),
+        ((), NARROW, "does not cover this kind of switching"),
+        ((("m0", 0), ("free", 1)), NARROW, "a time is not between"),
+        ((("m0", MAX_STEPS), ("free", 1)), NARROW, "too long for so many states"),
+        ((("m0", 1), ("fre", 1)), NARROW, "modes that do not exist"),
+    ],
+)
+def test_what_is_no_witness(steps, factor, fault):
+    assert fault in in_contact(steps, factor).find_fault(juggling())
+
+
+def test_the_signs_of_the_other_eigenvalue_count_for_themselves():
+    """The sequence has a second eigenvalue beyond one, with an eigenvector of its own."""
+    system = juggling()
+    A, F = (np.array(m.A.floats()) for m in (*system.modes, *system.contact.free))
+    values, vectors = np.linalg.eig(F @ A)
+    for value, v in zip(values, vectors.T, strict=True):
+        if not (abs(value.imag) < 1e-12 and value.real > 1):
+            continue
+        factor = (Fraction(value.real) - Fraction(1, 10**9), Fraction(value.real) + 1 / 10**9)
+        factor = (factor[0], Fraction(factor[1]))
+        keeps = v.real[-1] * (A @ v.real)[-1] < 0
+        assert (in_contact(ONCE, factor).find_fault(system) is None) == keeps
+
+
+def test_where_the_signs_are_against_it_there_is_no_witness():
+    """With contact where the deflection is negative, the same growth pulls."""
+    system = juggling()
+    turned = [[-1 if (i == 2) != (j == 2) else 1 for j in range(3)] for i in range(3)]
+
+    def other(mode):
+        rows = mode.A.fractions()
+        signed = [[s * e for s, e in zip(*r, strict=True)] for r in zip(turned, rows, strict=True)]
+        return Mode(mode.name, matrix(signed))
+
+    contact = replace(system.contact, free=tuple(map(other, system.contact.free)))
+    mirrored = replace(system, modes=tuple(map(other, system.modes)), contact=contact)
+    # The mirror of a linear motion is one, with the opposite sign: v and -v both count.
+    assert BOUNCE.find_fault(mirrored) is None
+    swapped = replace(
+        system,
+        modes=(Mode("m0", system.contact.free[0].A),),
+        contact=replace(
+            system.contact, free=(Mode("free", matrix([[0, 0, 0]] * 2 + [[1, 0, 1]])),)
+        ),
+    )
+    assert NO_SIGNS in BOUNCE.find_fault(swapped)
+
+
+def test_it_is_asked_for_only_where_the_loss_of_contact_must_be_covered():
+    system = juggling()
+    kept = replace(system, contact=replace(system.contact, required=False))
+    assert "does not ask for the loss" in BOUNCE.find_fault(kept)
+    assert "do not exist" in BOUNCE.find_fault(replace(system, contact=None))
+
+
+def test_a_mode_that_draws_in():
+    steps = in_contact((("m0", 1),), (Fraction(13, 10), Fraction(4, 3)))
+    narrow = replace(steps, factor=(Fraction(13090, 10**4), Fraction(13091, 10**4)))
+    assert narrow.find_fault(sucking_in_steps()) is None
+    continuous = in_contact((("m0", 1),), (Fraction(999, 1000), Fraction(1001, 1000)))
+    system = sucking_in()
+    assert continuous.find_fault(system) is None
+    assert "eigenvalue = 0.999 1/s" in continuous.claim(system)
+    assert common_quadratic_of(system, (continuous,)) is CommonQuadraticStatus.IMPOSSIBLE
+    longer = replace(continuous, steps=(("m0", 1), ("free", 1)))
+    assert "one mode" in longer.find_fault(system)
+    # A deflection along which it is the environment that would have to pull.
+    pulling = Contact(system.contact.free, (matrix([[1, -2]]),), required=True)
+    assert NO_SIGNS in continuous.find_fault(replace(system, contact=pulling))
+
+
+def test_in_the_air_forces_may_all_pull_or_the_deflection_be_negative():
+    system, evidence = genuine("growing-sequence, pulling")
+    pulls = tuple(matrix([[-1, 0]]) for _ in range(2))
+    assert NO_SIGNS in evidence.find_fault(
+        replace(system, contact=replace(system.contact, pulls=pulls))
+    )
+    # A flight with a positive deflection, where the force of the moment would pull.
+    free = Mode("free", matrix([["3/2", 0], [1, 1]]))
+    lagging = replace(sucking_in_steps(), contact=Contact((free,), (matrix([[-2, 1]]),), True))
+    flight = in_contact((("free", 1),), (Fraction(149, 100), Fraction(151, 100)))
+    assert flight.find_fault(lagging) is None
+    for pull in ([[-1, 1]], [[0, 1]]):
+        other = replace(lagging, contact=replace(lagging.contact, pulls=(matrix(pull),)))
+        # Downwards the deflection is negative: that is a flight, too.
+        assert flight.find_fault(other) is None
+
+
+def test_rules_of_switching_are_kept():
+    system, evidence = genuine("growing-sequence, among modes")
+    assert evidence.find_fault(system) is None
+    for rules in (
+        Switching(transitions=(("m0", "free"),)),
+        Switching(dwell_time=Fraction(2)),
+        Switching(stays=(("m0", Stay(Fraction(2))),)),
+        Switching(resets=(Reset("m0", "free", matrix([[1, 0, 0], [0, 1, 0], [0, 0, 1]])),)),
+    ):
+        assert "does not cover" in evidence.find_fault(replace(system, switching=rules))
+    forever = in_contact((("m0", 1),), NARROW)
+    assert forever.fits(Switching(resets=(Reset("m0", "free", matrix([[1]])),)))
+    assert not forever.fits(Switching(stays=(("m0", Stay(Fraction(1), Fraction(2))),)))
+    both = Switching(transitions=(("m0", "free"), ("free", "m0")))
+    assert evidence.find_fault(replace(system, switching=both)) is None
+
+
+def test_modes_take_their_turns():
+    system = juggling_in_turns()
+    assert in_contact((("m0", 1), ("free again", 1)), NARROW).find_fault(system) is None
+    assert "not its turn" in BOUNCE.find_fault(system)
+    third = replace(system, clock=Clock(3, ("m0", "free")))
+    late = in_contact((("m0", 1), ("free again", 1)), NARROW)
+    assert "not its turn" in late.find_fault(third)
+
+
+def test_long_sequences_of_many_states_are_not_followed():
+    n = 30
+    rows = [[int(i == j) for j in range(n)] for i in range(n)]
+    system = family(rows, time=Time.DISCRETE)
+    system = replace(system, contact=Contact((Mode("free", matrix(rows)),), required=True))
+    long = in_contact((("m0", 1000),), NARROW)
+    assert "too long for so many states" in long.find_fault(system)
+
+
+def test_words_and_fields_of_contact():
+    system = juggling()
+    assert BOUNCE.claim(system) == (
+        "Repeating the sequence (m0 for 1 steps, free for 1 steps) makes some motion larger by a "
+        "factor = 1.9416 each time. Wherever the environment acts, the deflection is positive "
+        "along it and nothing pulls, and elsewhere it is not, so contact is lost and made as that "
+        "motion says, and x+ = A x is unstable with contact that may be lost."
+    )
+    fields = BOUNCE.to_fields()
+    assert fields == {"steps": [["m0", "1"], ["free", "1"]], "factor": ["2427/1250", "19417/10000"]}
+    assert GrowingSequence.from_fields(fields, system) == BOUNCE
+    with pytest.raises(ValueError, match="unpack"):
+        GrowingSequence.from_fields({**fields, "factor": ["2"]}, system)
+
+
+def test_growth_in_kept_contact_alone_is_a_statement_of_its_own():
+    system = juggling()
+    system = replace(system, assumptions=("a",), contact=replace(system.contact, loss="lost so"))
+    kept = staying("m0")
+    period = GrowingSequence((("m0", Fraction(1)),), 4)
+    for evidence in (kept, period):
+        assert evidence.shown(system) is Shows.INSTABILITY_IN_CONTACT
+        assert verdict_of(system, (evidence,)) is Verdict.INCONCLUSIVE
+        assert refuted_in(system, (evidence,)) == "in kept contact"
+        assert refutes_in_contact(system, (evidence,)) is evidence
+        # What it does not cover, it does not take for granted.
+        assert granted(system, (evidence,)) == ("a",)
+        assert evidence.claim(system).endswith("the environment pulling as it pushes.")
+        assert common_quadratic_of(system, (evidence,)) is CommonQuadraticStatus.IMPOSSIBLE
+    assert refuted_in(system, (kept, BOUNCE)) is refuted_in(system, ()) is None
+    assert verdict_of(system, (kept, BOUNCE)) is Verdict.REFUTED
+    assert granted(system, (BOUNCE,)) == granted(system, ()) == ("a", "lost so")
+    may = replace(system, contact=replace(system.contact, required=False))
+    assert verdict_of(may, (kept,)) is Verdict.REFUTED
+    assert granted(replace(system, contact=None), (kept,)) == ("a",)
+
+
+def test_where_free_motion_is_among_the_modes_signs_count_too():
+    system = juggling_among_modes()
+    kept = staying("m0")
+    assert kept.shown(system) is Shows.INSTABILITY_IN_CONTACT
+    assert refuted_in(system, (kept,)) == "where contact is lost and made at any deflection"
+    assert "at any deflection" in kept.claim(system)
+    assert BOUNCE.find_fault(system) is None
+    assert "at any deflection" not in BOUNCE.claim(system)
+    # A mode that is the same in contact and free needs no sign.
+    same = replace(system, flights=Flights((), ("free",)))
+    assert kept.shown(same) is Shows.INSTABILITY
+    assert kept.claim(same) == kept.claim_in_scope(same)
+    assert in_contact((("m0", 1),), NARROW).find_fault(same) is not None
+    assert replace(BOUNCE, steps=ONCE[::-1]).find_fault(same) is None
+
+
+def test_free_motion_that_is_not_stable_refutes():
+    system = drifting()
+    evidence = staying("free")
+    assert evidence.find_fault(system) is None
+    assert evidence.shown(system) is Shows.INSTABILITY
+    assert "the deflection aside" in evidence.claim(system)
+    assert GrowingSequence.from_fields(evidence.to_fields(), system) == evidence
+    assert common_quadratic_of(system, (evidence,)) is CommonQuadraticStatus.UNKNOWN
+    kept = replace(system, contact=replace(system.contact, required=False))
+    assert "do not exist" in evidence.find_fault(kept)
+    assert juggling_in_turns().free_motions() == kept.free_motions() == ()
+    # At rest in the air, a deflection stays what it is: that is no instability.
+    assert "is stable" in staying("free").find_fault(
+        replace(bouncing_in_steps(), contact=replace(bouncing_in_steps().contact, required=True))
+    )
+
+
+def test_a_mode_decides_where_contact_is_kept_and_in_the_air():
+    for system, mode, expected in (
+        (juggling(), "m0", False),
+        (replace(juggling(), contact=None), "m0", True),
+        (drifting(), "free", True),
+    ):
+        assert decides(system, mode) is expected
+
+
+# A value of a constant parameter
+
+
+MIDDLE = at(HALF, staying("m0 to m1"))
+FAST = Limits(max_degree=4, budget=600.0, gradient=Gradient(max_updates=100), optimize_rate=False)
+
+
+@pytest.mark.parametrize("time", Time)
+@pytest.mark.parametrize(("strength", "stable"), [("1.9", True), ("2.1", False), (50, False)])
+def test_known_limit(time, strength, stable):
+    """Eigenvalues -1 +- c sqrt(s (1 - s)), in discrete time without the -1: stable iff c < 2."""
+    system = hidden_value(strength, time)
+    found = certify(system, limits=FAST)
+    if stable:
+        assert found.verdict is not Verdict.REFUTED
+        assert MIDDLE.find_fault(system) is not None
+        return
+    assert found.verdict is Verdict.REFUTED
+    assert found.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
+    assert found.evidence.share is not None
+    assert 0 < found.evidence.share < 1
+    assert holds(system, found.evidence)
+
+
+@pytest.mark.parametrize("time", Time)
+def test_exactly_on_the_border_at_one_value_only(time):
+    """With c = 2 every value but the one in the middle is stable: a matter of exactness."""
+    system = hidden_value(2, time)
+    found = certify(system, limits=FAST)
+    assert found.evidence.share == HALF
+    assert at(HALF + Fraction(1, 2**60), found.evidence).find_fault(system)
+
+
+@pytest.mark.parametrize("share", ["1/3", "0", "1", "5/11", "-1/2", "3/2"])
+def test_only_the_share_at_which_it_is_unstable(share):
+    system = hidden_value("2.005")
+    assert MIDDLE.find_fault(system) is None
+    assert replace(MIDDLE, share=Fraction(share)).find_fault(system) is not None
+
+
+def test_shares_are_short():
+    system = hidden_value(3)
+    for bits, fault in ((63, False), (64, False), (65, True)):
+        near = replace(MIDDLE, share=HALF + Fraction(1, 2**bits))
+        assert (near.find_fault(system) is not None) is fault
+
+
+@pytest.mark.parametrize(
+    ("share", "holds"), [("-1/9", False), (0, True), ("1/2", True), ("4/7", False), (1, False)]
+)
+def test_both_ends_are_values_too(share, holds):
+    """``x' = (1 - 2 s) x`` is unstable for s up to 1/2."""
+    share, part = Fraction(share), staying("m0 to m1")
+    system, other_way = (
+        family(*ends, switching=PAIR) for ends in ([[[1]], [[-1]]], [[[-1]], [[1]]])
+    )
+    assert (at(share, part).find_fault(system) is None) is holds
+    assert (at(1 - share, part).find_fault(other_way) is None) is holds
+
+
+@pytest.mark.parametrize("share", ["3/2", "18446744073709551617/36893488147419103232"])
+def test_shares_out_of_bounds_are_not_read(share):
+    fields = {**MIDDLE.to_fields(), "share": share}
+    with pytest.raises(ValueError, match="out of bounds"):
+        GrowingSequence.from_fields(fields, hidden_value(3))
+    with pytest.raises(ValueError, match="no parameter is constant"):
+        GrowingSequence.from_fields(
+            MIDDLE.to_fields(), replace(hidden_value(3), switching=Switching())
+        )
+    assert GrowingSequence.from_fields(MIDDLE.to_fields(), hidden_value(3)).share == HALF
+
+
+def test_a_parameter_that_is_not_declared_constant_has_no_such_value():
+    ends = [mode.A.fractions() for mode in hidden_value(3).modes]
+    assert "does not cover this kind of switching" in MIDDLE.find_fault(family(*ends))
+    assert MIDDLE.find_fault(family(*ends, ends[0], switching=PAIR)) is not None
+
+
+@pytest.mark.parametrize("time", Time)
+def test_a_value_at_which_switching_is_unstable(time):
+    system = hidden_shears(time)
+    found = certify(system, limits=FAST)
+    assert found.verdict is Verdict.REFUTED
+    evidence = found.evidence
+    assert evidence.share is not None
+    assert evidence.is_average is (time is Time.CONTINUOUS)
+    assert len(evidence.steps) > 1
+    assert holds(system, evidence)
+    assert agrees(system, evidence)
+    # At the ends switching is stable, and without one value for both it would be no refutation.
+    for end in (Fraction(0), Fraction(1)):
+        assert replace(evidence, share=end).find_fault(system) is not None
+
+
+def test_every_mode_has_the_same_value():
+    # At any one value, the first mode has no shear or the second has none.
+    up, down = [[-1, 10], [0, -1]], [[-1, 0], [10, -1]]
+    rest = [[-1, 0], [0, -1]]
+    system = family(rest, up, rest, rest, switching=PAIRS)
+    found = certify(system, limits=FAST)
+    assert found.verdict is Verdict.PROVED
+    apart = family(up, rest, rest, down, switching=PAIRS)
+    signal = GrowingSequence((("m0 to m1", HALF), ("m2 to m3", HALF)), 6)
+    for share in (Fraction(0), Fraction(1)):
+        assert at(share, signal).find_fault(apart) is not None
+
+
+def test_rules_of_switching_hold_at_a_value_too():
+    rows = [mode.A.fractions() for mode in hidden_shears(Time.DISCRETE).modes]
+    signal = GrowingSequence((("m0 to m1", Fraction(1)), ("m2 to m3", Fraction(1))), 3)
+    evidence = at(HALF, signal)
+    there, back = [("m0", "m2"), ("m1", "m3")], [("m2", "m0"), ("m3", "m1")]
+    for rules, fault in (
+        ({}, False),
+        ({"transitions": (*there, *back)}, False),
+        ({"transitions": tuple(there)}, True),
+        ({"transitions": (*there, back[0])}, True),
+        ({"dwell_time": Fraction(2)}, True),
+    ):
+        system = family(*rows, time=Time.DISCRETE, switching=replace(PAIRS, **rules))
+        assert (evidence.find_fault(system) is not None) is fault, rules
+
+
+def test_resets_are_not_covered_unless_nothing_switches():
+    resets = resets_between(("m0", "m2", [[0, 0], [0, 0]]))
+    rows = [mode.A.fractions() for mode in hidden_shears(Time.DISCRETE).modes]
+    system = family(*rows, time=Time.DISCRETE, switching=replace(PAIRS, resets=resets))
+    signal = GrowingSequence((("m0 to m1", Fraction(1)), ("m2 to m3", Fraction(1))), 3)
+    assert at(HALF, signal).find_fault(system) is not None
+    pair = [mode.A.fractions() for mode in hidden_value(3).modes]
+    idle = [[[-1, 0], [0, -1]]] * 2
+    alone = family(*pair, *idle, switching=replace(PAIRS, resets=resets))
+    assert MIDDLE.find_fault(alone) is None
+
+
+def test_contact_has_no_value_and_a_sequence_one_witness():
+    both = replace(MIDDLE, factor=NARROW)
+    assert "the loss of contact" in both.find_fault(hidden_value(3))
+    assert "two kinds" in replace(BOUNCE, doublings=3).find_fault(juggling())
+    assert "resets" in replace(staying("m0"), edges=(0,)).find_fault(family([[1]]))
+
+
+def test_claim_names_the_value():
+    system = hidden_value(3)
+    assert MIDDLE.claim(system).startswith("At 1/2 of the way from the low to the high end")
+    parameter = FixedParameter("k", Fraction(10), Fraction("10.5"))
+    named = replace(system, switching=replace(PAIR, fixed_parameter=parameter))
+    assert MIDDLE.claim(named).startswith("At k = 10.25, which the range allows and which does not")
+    assert "Mode m0 to m1 is not Hurwitz" in MIDDLE.claim(named)
+
+
+def test_ends_of_other_systems_are_no_ends():
+    _, evidence = genuine("growing-sequence, value")
+    wrong = Switching(fixed_ends=(("m0", "m9"),))
+    for switching in (wrong, Switching(fixed_ends=(("m0", "m0"),)), Switching()):
+        assert evidence.find_fault(replace(branicky(), switching=switching)) is not None
+
+
+def test_a_narrow_window_between_two_points_of_the_grid():
+    """Unstable within 0.00095 of one share only, while the grid has steps of 0.0039."""
+    share = Fraction(70711, 100_000)
+    low = [["-1", -1000 * share], [1000 * share, "0.9"]]
+    high = [["-1", 1000 * (1 - share)], [-1000 * (1 - share), "0.9"]]
+    system = family(low, high, switching=PAIR)
+    # Trace -0.1, determinant (1000 (s - share))^2 - 0.9: Hurwitz unless |s - share| <= 0.00094868.
+    found = certify(system, limits=FAST)
+    assert found.evidence.share is not None
+    assert abs(found.evidence.share - share) < Fraction("0.00095")

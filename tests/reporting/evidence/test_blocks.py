@@ -1,0 +1,73 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.evidence import (
+    BlockTriangular,
+    CommonPolynomial,
+    CommonQuadratic,
+)
+from nrs_design.proof.evidence.growing_sequence import staying
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Switching
+from nrs_design.reporting.document import Table
+from nrs_design.reporting.evidence import page_of
+from tests.simulation.systems import system
+
+ONE = CommonQuadratic(((1,),), 0, Fraction(1, 2))
+FOURTH = CommonPolynomial(2, ((1,),), 0, (((0,),), ((0,),)), Fraction(1, 4))
+CASCADE = system([[-1, 5], [0, -2]], [[-2, -7], [0, -1]])
+# The second state moves by itself and grows; the first one follows it.
+GROWING = system([[-1, 5], [0, 1]], [[-2, -7], [0, -1]])
+BLOCKS = ((0,), (1,))
+
+
+def table(page):
+    """The table of the blocks, by their numbers."""
+    found = next(b for s in page.sections() for b in s.blocks if isinstance(b, Table))
+    return {row[0]: row[1:] for row in found.rows}
+
+
+def test_blocks_are_called_by_the_names_of_their_pages():
+    page = page_of(CASCADE, BlockTriangular(BLOCKS, ((0, ONE), (1, FOURTH))))
+    assert table(page) == {
+        "1": ("x1", "common quadratic function", "0.5"),
+        "2": ("x2", "common polynomial of degree 4", "0.25"),
+    }
+
+
+def test_blocks_that_are_not_needed_have_no_rate():
+    page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, staying("m0")),)))
+    assert table(page) == {
+        "1": ("x1", "not needed", ""),
+        "2": ("x2", "a mode that is not stable", ""),
+    }
+
+
+def test_the_structure_is_drawn_once():
+    page = page_of(CASCADE, BlockTriangular(BLOCKS, ((0, ONE), (1, ONE))))
+    (first,), (second,) = page.sections(), page.sections(first=False)
+    assert first.blocks[-1] == second.blocks[-1]
+    assert len(second.blocks) == 1
+
+
+def test_the_witness_of_a_block_runs_in_the_whole_family():
+    unstable = staying("m0")
+    page = page_of(GROWING, BlockTriangular(BLOCKS, ((1, unstable),)))
+    assert page.meaning()[1:] == page_of(GROWING, unstable).meaning()
+    assert page.limits() == page_of(GROWING, unstable).limits()
+    # A phase plane needs both states, and the block has one of them.
+    assert [block.name for block in page.run().blocks] == ["run", "phase-plane"]
+
+
+@pytest.mark.parametrize(("part", "costs"), [(ONE, False), (FOURTH, True)])
+def test_corners_in_discrete_time_are_as_good_as_the_worst_part(part, costs):
+    discrete = replace(CASCADE, time=Time.DISCRETE, switching=Switching())
+    page = page_of(discrete, BlockTriangular(BLOCKS, ((0, ONE), (1, part))))
+    (text,) = page.between_corners()
+    assert text.endswith("up to a constant factor.") is costs
+    (continuous,) = page_of(CASCADE, page.evidence).between_corners()
+    assert "constant factor" not in continuous

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from nrs_design.proof.switching import Stay
+from nrs_design.reporting.evidence import page_of
+from tests.proof.systems import genuine
+
+SYSTEM, EVIDENCE = genuine("mode-polynomial")
+PAGE = page_of(SYSTEM, EVIDENCE)
+
+
+def test_the_size_is_that_of_the_certificate():
+    (section,) = PAGE.sections()
+    rows = dict(section.blocks[1].rows)
+    assert rows["Degree of V"] == "4"
+    assert rows["Functions"] == str(len(SYSTEM.modes))
+    assert PAGE.name == "polynomial of degree 4 of each mode"
+
+
+def test_it_rests_on_the_declared_rules():
+    """And on the times of single modes, which are whole steps: there are no exponentials."""
+    assert "The list of allowed switches is part of the claim as well." in PAGE.meaning()
+    assert PAGE.limits()[-1] == "Switches that the spec does not list."
+    assert "Leaving a mode before its own dwell time is over." in PAGE.limits()
+    assert PAGE.meaning()[-1].endswith("; a second library agreed.")
+    assert not any("exponentials" in text for text in PAGE.meaning())
+
+
+def test_modes_that_must_be_left_are_named_as_for_quadratic_functions():
+    left = SYSTEM.modes[0].name
+    stays = ((left, Stay(Fraction(1), Fraction(2))),)
+    system = replace(SYSTEM, switching=replace(SYSTEM.switching, stays=stays))
+    own = replace(EVIDENCE.quadratic, leaving=(left,))
+    page, quadratic = page_of(system, replace(EVIDENCE, quadratic=own)), page_of(system, own)
+    assert f"Staying longer than declared in {left}." in page.limits()
+    assert page.limits() == quadratic.limits()
+    assert page.meaning()[:-1] == quadratic.meaning()[:-1]
+
+
+def test_the_run_is_drawn_beside_the_slope_of_its_bound():
+    run = PAGE.run().blocks[0]
+    labels = [line.get_label() for line in run.figure.axes[0].lines]
+    assert "slope of the proved bound, rho^t" in labels
+    assert "up to one constant factor" in run.caption

@@ -1,0 +1,66 @@
+"""The greedy adversary keeps to what contact and clock allow, and stays below proved bounds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.proof.switching import Clock
+from nrs_design.reporting.evidence.norms import step_norms
+from nrs_design.reporting.evidence.offers import offer_of
+from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
+from nrs_design.simulation.norms import quadratic_norm
+from nrs_design.simulation.switched import simulate_switching
+from tests.proof.systems import bouncing_in_turns, doubled_in_turns, genuine
+from tests.simulation.systems import system as modes
+
+
+def test_every_mode_takes_its_turn():
+    system = doubled_in_turns(3)
+    norm = [lambda x: np.abs(x[..., 0])] * 3
+    run = greedy_run(system, norm, np.ones(1), 1.0, 7)
+    assert run.mode.tolist() == [0, 1, 1, 0, 1, 1, 0]
+    assert run.state[:, 0] == pytest.approx([1, 2, 1.5, 1.125, 2.25, 1.6875, 1.265625, 2.53125])
+    assert relative_norms(run, norm) == pytest.approx(run.state[:, 0])
+
+
+def test_contact_decides_which_modes_are_possible():
+    system = bouncing_in_turns()
+    norms = [lambda x: np.linalg.norm(x, axis=-1)] * 2
+    run = greedy_run(system, norms, np.array([-3.0, 1.0]), 1.0, 60)
+    names = [all_modes(system).modes[k].name for k in run.mode]
+    for t, (name, x) in enumerate(zip(names, run.state, strict=False)):
+        assert name.startswith("fall") == (x[-1] <= 0)
+        assert (name in system.clock.first) == (t % 2 == 0)
+    assert {"fall", "fall on", "rest"} <= set(names)
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_no_run_is_above_a_proved_bound(kept):
+    system, evidence = genuine("periodic-quadratic, kept" if kept else "periodic-quadratic")
+    norms, rng = step_norms(offer_of(evidence).forms, system), np.random.default_rng(3)
+    for _ in range(20):
+        run = greedy_run(system, norms, rng.standard_normal(2), 1.0, 60)
+        allowed = float(evidence.rate) ** run.time * (1 + 1e-9)
+        assert (relative_norms(run, norms) <= allowed).all()
+    assert all_modes(system).contact is None
+
+
+def test_only_what_takes_turns_is_run():
+    kept = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
+    assert all_modes(kept) is kept
+
+
+def test_adversary_is_at_least_as_bad_as_any_single_mode():
+    norm, x = quadratic_norm(np.diag([1.0, 5.0])), np.array([1.0, 0.0])
+    dayawansa_martin = modes([[-1, -1], [1, -1]], [[-1, -5], [1, -1]])
+    run = greedy_run(dayawansa_martin, norm, x, 0.1, 1)
+    for mode in range(2):
+        single = simulate_switching(dayawansa_martin, np.array([mode]), x, 0.1)
+        assert relative_norms(run, norm)[-1] >= relative_norms(single, norm)[-1]
+
+
+def test_norms_start_at_one():
+    norm = quadratic_norm(np.eye(2))
+    run = simulate_switching(modes([[-1, 1], [-1, -1]]), np.array([0]), np.array([3.0, 4.0]), 1.0)
+    assert relative_norms(run, norm) == pytest.approx([1.0, np.exp(-1)])

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
-from nrs_design.thesis.gallery.figures import draw_counterparts
-from nrs_design.thesis.gallery.page import gallery_page
+from nrs_design.thesis.figures import draw_counterparts, gallery_page
 from nrs_design.thesis.page import render_page
 from nrs_design.thesis.table import reproduce
 from tests.reporting.conftest import KINDS

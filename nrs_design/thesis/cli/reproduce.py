@@ -15,7 +15,7 @@ from nrs_design.progress import Progress
 
 if TYPE_CHECKING:
     from nrs_design.thesis.comparison import ReproducedValue
-    from nrs_design.thesis.gallery.counterpart import Counterpart
+    from nrs_design.thesis.figures import Counterpart
 
 _GALLERY = "figures.html"
 
@@ -29,7 +29,7 @@ def reproduce(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Simulate and draw counterparts of figures 6.14 to 6.34, and write figures.html "
+            help="Simulate and draw the records of figures 6.14 to 6.34, and write figures.html "
             "and a CSV of each run there (some ten seconds).",
         ),
     ] = None,
@@ -64,7 +64,7 @@ def reproduce(
         insist(f"drift: {row.section} {row.name}: {row.value} {row.unit}, printed {row.printed}")
     return Answer(
         lambda: _summary(table, gallery),
-        lambda: _print(table, gallery),
+        lambda: _print(table),
         exit_codes.unless(drifted(table)),
     )
 
@@ -72,8 +72,7 @@ def reproduce(
 def _draw(folder: Path, step: Progress) -> tuple[Counterpart, ...]:
     """Write the page of figures and the runs that they show."""
     from nrs_design.output import PAGE, RESPONSE, write_outputs
-    from nrs_design.thesis.gallery.figures import draw_counterparts
-    from nrs_design.thesis.gallery.page import gallery_page
+    from nrs_design.thesis.figures import draw_counterparts, gallery_page
 
     found = draw_counterparts(step)
     runs = {folder / f"{name}.csv": run for one in found for name, run in one.runs.items()}
@@ -125,13 +124,13 @@ def _summary(
         "source": CONVERTED,
     }
     if gallery is not None:
-        from nrs_design.thesis.gallery.page import summarize_gallery
+        from nrs_design.thesis.figures import summarize_gallery
 
         content["figures"] = summarize_gallery(gallery)
     return content
 
 
-def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] | None) -> None:
+def _print(table: tuple[ReproducedValue, ...]) -> None:
     from nrs_design.thesis.page import format_within
     from nrs_design.thesis.table import CONVERTED, counts_line, printed_errors
 
@@ -171,10 +170,4 @@ def _print(table: tuple[ReproducedValue, ...], gallery: tuple[Counterpart, ...] 
     if errors:
         print_table("Errors of the print", ["error", "where", "what", "rows"], errors)
     say(CONVERTED)
-    if gallery is not None:
-        from nrs_design.thesis.gallery.page import count_outcomes
-
-        outcomes = count_outcomes(gallery)
-        told = ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items())
-        say(f"figures, {sum(outcomes.values())} statements: {told}")
     say(counts_line(table))

@@ -45,6 +45,7 @@ from nrs_design.spec.features import (
     SPRUNG,
     TISSUE_RANGE,
     TWO_PERIODS,
+    UNPARALLEL,
     UNSPRUNG,
 )
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
@@ -70,13 +71,26 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, COUPLED, IDLE, LOADED),
     *_beside(PRELOADED, LOSABLE, DISTURBED),
     *_beside(MEMORY, SAMPLED, IDLE),
-    *_beside(FORCE_COORDINATES, HAND, PRELOADED, MEMORY, IDLE, COUPLED, SAMPLED),
+    *_beside(
+        FORCE_COORDINATES,
+        LOSABLE,
+        SPRUNG,
+        DISTURBED,
+        HAND,
+        PRELOADED,
+        MEMORY,
+        IDLE,
+        COUPLED,
+        SAMPLED,
+    ),
     not_together(DAMPED_FORCE),
     not_together(HEAVY_AT_ONCE),
     not_together(LOSABLE, LAGGING_AT_ONCE),
     not_together(OFFSET, IDLE),
     not_together(IDLE_RESET, BLEEDING),
     not_together(FILTER, OTHERS),
+    # Their modes would share no state.
+    not_together(PARALLEL, UNPARALLEL),
     # The motor. Under a preload, one that carries what is touched rests elsewhere for every gain.
     *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED),
     not_together(LOADED, MOTOR_RANGE, PRELOADED),
@@ -97,7 +111,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # An integral has to be balanced by a force.
     not_together(LOSABLE, BLEEDING, SAMPLED),
     not_together(LOSABLE, IDLE, SAMPLED),
-    not_together(LOSABLE, SPRUNG, UNSPRUNG, SAMPLED),
+    not_together(LOSABLE, SPRUNG, UNSPRUNG),
     # The position is added to the reference at every sample, which rounds an angle once more.
     not_together(ANGLE, IDLE, SAMPLED),
     # Modes are not made one by one beside these; free motion is a mode that no rule names.

@@ -242,6 +242,12 @@ PARALLEL = _F(
     "use impedance, position and force controllers",
     _controller(lambda c: not c.sampled),
 )
+UNPARALLEL = _F(
+    "{0!r}, a controller of another type,",
+    "controllers.{0}.type",
+    "write a spec for each type",
+    _controller(lambda c: c.sampled),
+)
 SPRUNG = _F(
     "the spring Kt of {0}", "controllers.{0}.Kt", "leave Kt out", _controller(lambda c: c.sprung)
 )

@@ -54,8 +54,11 @@ def first(**more):
 
 # What a spec must say to have a feature, merged into the plainest one, in this order.
 CHANGES = {
+    f.SPRUNG: {"controllers": {name: {"Kt": "0.5 N*m/rad"} for name in ("first", "second")}},
+    f.UNSPRUNG: {"controllers": {"second": IMPEDANCE}},
     f.OTHERS: {"controllers": {"second": FORCE}},
     f.PARALLEL: {"controllers": {"first": PARALLEL, "second": PARALLEL}},
+    f.UNPARALLEL: {"controllers": {"second": FORCE}},
     f.BLEEDING: {"controllers": {"second": PI}, "idle_states": {"decay": "20 1/s"}},
     f.OFFSET: {"controllers": {"second": FORCE | {"offset": "measured"}}},
     f.IDLE: {"idle_states": {"decay": "20 1/s"}},
@@ -110,8 +113,6 @@ CHANGES = {
     }
     | first(contacts=[["soft", "stiff"]]),
     f.SEVERAL_CONTACTS: TWO | first(contacts=["soft", "stiff"]),
-    f.SPRUNG: first(Kt="0.5 N*m/rad"),
-    f.UNSPRUNG: {},
     f.GAIN_RANGE: first(
         Bt={"nominal": "2.15 N*m*s/rad", "range": ["2 N*m*s/rad", "2.3 N*m*s/rad"]}
     ),
@@ -152,7 +153,7 @@ def test_every_feature_has_its_change():
 def test_the_plainest_spec_has_no_feature_that_needs_a_change():
     plain = parse_spec(spec_with())
     found = {feature for feature in CHANGES if feature.find(plain)}
-    assert found == {f.CONTINUOUS, f.UNSPRUNG}
+    assert found == {f.CONTINUOUS, f.UNSPRUNG, f.UNPARALLEL}
 
 
 @pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)

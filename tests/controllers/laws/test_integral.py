@@ -26,8 +26,8 @@ def test_the_integral_is_added_and_gathers_the_error():
 
 
 def test_a_sample_adds_its_share_in_single_precision():
-    sampled = IntegralForce(KP, KI).sampled(Fraction(1, 500), "exact")
-    assert sampled.coefficients == {"Kp": KP, "Ki_T": to_float32(Fraction(1, 1000))}
+    law = IntegralForce(KP, KI).discretize(Fraction(1, 500), "exact")
+    assert law.coefficients == {"Kp": KP, "Ki_T": to_float32(Fraction(1, 1000))}
 
 
 @pytest.mark.parametrize(

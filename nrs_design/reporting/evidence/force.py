@@ -10,7 +10,6 @@ from nrs_design.reporting.evidence.norms import matrix_blocks
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import (
     Greedy,
-    contact_figure,
     simulated,
     trials_per_step,
 )
@@ -69,14 +68,14 @@ class ForcePage(AbstractPage):
             "The run is no part of the proof."
         )
         matrices = matrix_blocks(self.offer.forms, self.system.states, "constant-force-quadratic")
-        blocks = (Paragraph(text), *matrices, *self._illustrations())
+        blocks = (Paragraph(text), *matrices, self._illustration())
         return (Section("Contact under a constant force", blocks),)
 
     def run(self) -> Section:
         """Draw the function along a run from the air, and when there is contact."""
-        return simulated(*self._illustrations())
+        return simulated(self._illustration())
 
-    def _illustrations(self) -> tuple[Illustration, ...]:
+    def _illustration(self) -> Illustration:
         (numerators,), (slope,) = (form.Q for form in self.offer.forms), self.offer.numbers
         (Q,) = scaled_matrices(numerators)
         largest = max(abs(entry) for row in numerators for entry in row)
@@ -88,5 +87,4 @@ class ForcePage(AbstractPage):
         slowest = float(mode_rates(hardest, Q).min())
         greedy = Greedy(self.system, driven, norm, initial, slowest)
         title, name = "Run under a constant force", "constant-force-run"
-        response, run = greedy.draw(title, _RUN, _LABEL, name=name)
-        return run, contact_figure(self.system, response, "constant-force-deflection")
+        return greedy.draw(title, _RUN, _LABEL, name=name)[1]

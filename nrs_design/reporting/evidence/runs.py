@@ -16,7 +16,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Section
 from nrs_design.reporting.evidence.offers import Form
-from nrs_design.reporting.figures.contact import draw_deflection
 from nrs_design.reporting.figures.run import (
     MOTION_STATES,
     draw_mode_levels,
@@ -141,15 +140,15 @@ class Greedy:
         values = relative_norms(response, self.norms)
         bound = bound_line(response, rate, drawn.time, line) if rate and line else None
         caption = f"{said}{freely(self.system)}{some_modes(self.system, self.played)}"
-        return response, Illustration(
-            name, title, caption, draw_run(response, values, bound, drawn, label)
-        )
+        deflection = "" if self.played.contact is None else drawn.states[-1]
+        figure = draw_run(response, values, bound, drawn, label, deflection)
+        return response, Illustration(name, title, caption, figure)
 
 
 def bounded_run(
     greedy: Greedy, label: str, note: str = "", levels: tuple[float, ...] = (1.0,)
 ) -> Section:
-    """Draw a greedy run below its bound, and when contact is lost, or its path in the plane.
+    """Draw a greedy run below its bound, and its path in the plane where contact is kept.
 
     Parameters
     ----------
@@ -172,35 +171,9 @@ def bounded_run(
     said = " ".join(text for text in (how, note, holds) if text)
     label = f"|{letter}(t)| / |{letter}(0)| {label} [1]"
     response, run = greedy.draw(AGAINST, said, label, "proved bound, ")
-    if played.contact is not None:
-        return simulated(run, contact_figure(greedy.system, response))
-    if played.clock is not None or not callable(greedy.norms):
+    if played.contact is not None or not callable(greedy.norms):
         return simulated(run)
     return simulated(run, *phase_plane(played, response, greedy.norms, levels))
-
-
-def contact_figure(
-    system: SwitchedSystem, response: SwitchedRun, name: str = "deflection"
-) -> Illustration:
-    """Draw when contact is lost during a run.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the deflection as its last state.
-    response : SwitchedRun
-        The run.
-    name : str
-        Of the figure.
-    """
-    depth = response.state[:, -1]
-    unit = "steps" if system.time is Time.DISCRETE else "s"
-    return Illustration(
-        name,
-        "Contact during this run",
-        "Deflection of the same run; shaded where the environment is not touched.",
-        draw_deflection(response.time, depth / np.abs(depth).max(), system.states[-1], unit),
-    )
 
 
 def slowest_in_a_round(system: SwitchedSystem, norms: Sequence[Norm]) -> Array:

@@ -294,7 +294,7 @@ def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> Non
 
     gains = {name: parse_exact(text) for name, text in certificate.gains[MOTION].items()}
     motion = ProportionalDerivative.of(gains)
-    factor = motion.sampled(period).D
+    factor = motion.over(period)
     if factor * period != motion.Kd:
         units = gain_units(certificate)[MOTION]
         say(

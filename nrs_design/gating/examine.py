@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import (
     Certificate,
     Verdict,
@@ -17,6 +18,7 @@ from nrs_design.certificates.certificate import (
     refutes_in_contact,
 )
 from nrs_design.certificates.goals import certified_goals
+from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
 from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.gating.lock import LockedGoal
     from nrs_design.pipeline.scenarios import Simulated
+    from nrs_design.search.certification import Certification
 
 
 _NO_NUMBERS = frozenset({"settles", "largest"})
@@ -67,9 +70,14 @@ class Examiner:
         return cls(loaded, Places(loaded))
 
     def obligation(
-        self, rule: Rule, subject: str, status: Status, message: str, place: Position
+        self,
+        rule: Rule,
+        subject: str,
+        status: Status,
+        message: str,
+        place: Position | tuple[str | int, ...],
     ) -> Obligation:
-        """Return an obligation at a place in this spec.
+        """Return an obligation about something in this spec.
 
         Parameters
         ----------
@@ -81,11 +89,54 @@ class Examiner:
             How it ended.
         message : str
             What was found; one line.
-        place : Position
-            Line and column.
+        place : Position or tuple of str or int
+            Where in the spec: line and column, or the keys that lead there.
         """
-        path = self.loaded.path
-        return Obligation(rule, path, subject, status, message, place.line, place.column)
+        at = self.places.at(*place) if isinstance(place, tuple) else place
+        return Obligation(rule, self.loaded.path, subject, status, message, at.line, at.column)
+
+    def caution(self, message: str, *keys: str | int) -> Caution:
+        """Return a caution about something in this spec, by the keys that lead there."""
+        at = self.places.at(*keys)
+        return Caution(self.loaded.path, message, at.line, at.column)
+
+    def outcome(
+        self,
+        decided: Certification | Certificate,
+        file: Path | None,
+        certificate: Certificate | None,
+        obligations: Iterable[Obligation],
+        cautions: Iterable[Caution],
+    ) -> SpecOutcome:
+        """Return what was found about a spec whose switched system was decided.
+
+        Parameters
+        ----------
+        decided : Certification or Certificate
+            The verdict, with the system and all statements.
+        file, certificate
+            What was written or re-checked; None if nothing was shown.
+        obligations, cautions : iterable
+            All that was found.
+        """
+        rate, rate_name = certified_rate(certificate)
+        return SpecOutcome(
+            path=self.loaded.path,
+            obligations=tuple(obligations),
+            sha256=self.loaded.sha256,
+            verdict=str(decided.verdict),
+            refuted_in=decided.refuted_in,
+            common_quadratic=str(decided.common_quadratic),
+            rate=rate,
+            rate_name=rate_name,
+            modes=len(decided.system.modes),
+            certificate=file,
+            certificate_id=None if certificate is None else certificate.id,
+            gains={} if certificate is None else certificate.gains,
+            units={} if certificate is None else gain_units(certificate),
+            bounds=bounds_summary(decided.system, decided.statements),
+            cautions=tuple(cautions),
+        )
 
     def stability(
         self, system: SwitchedSystem, statements: Sequence[AbstractEvidence], searched: str
@@ -120,8 +171,11 @@ class Examiner:
         else:
             status = Status.PROVED if proved else Status.REFUTED
             message = evidence.claim(system)
-        place = self.places.at("switching")
-        return (*modes, self.obligation(SWITCHING_STABLE, "system", status, message, place))
+        return (*modes, self.system(status, message))
+
+    def system(self, status: Status, message: str) -> Obligation:
+        """Return NRS102: how the search for a proof of the whole system ended."""
+        return self.obligation(SWITCHING_STABLE, "system", status, message, ("switching",))
 
     def _mode(
         self, mode: Mode, system: SwitchedSystem, *, proved: bool, affordable: bool
@@ -157,7 +211,7 @@ class Examiner:
     def nothing_to_certify(self) -> SpecOutcome:
         """Return the outcome of a valid spec that makes no claim about switching."""
         message = f"a valid {self.loaded.spec.kind} spec; it has nothing to certify"
-        obligation = self.obligation(SPEC, "spec", Status.MET, message, self.places.at("kind"))
+        obligation = self.obligation(SPEC, "spec", Status.MET, message, ("kind",))
         return SpecOutcome(self.loaded.path, (obligation,), self.loaded.sha256, certifiable=False)
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
@@ -166,14 +220,12 @@ class Examiner:
             status, message = Status.MET, f"{file.as_posix()} holds, checked exactly"
         else:
             status, message = Status.MISSED, f"{file.as_posix()} is rejected: {fault}"
-        return self.obligation(
-            CERTIFICATE_HOLDS, "certificate", status, message, self.places.at("name")
-        )
+        return self.obligation(CERTIFICATE_HOLDS, "certificate", status, message, ("name",))
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
         message = f"design goal: {error.message}{self._in_contact} (floating point, not a proof)"
-        place = self.places.at("controllers")
+        place = ("controllers",)
         return self.obligation(STIFFNESS_RANGE, "controllers", self._missed, message, place)
 
     @property
@@ -202,13 +254,8 @@ class Examiner:
                 f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name}{held}, "
                 "at the worst corner of the other ranges (floating point, not a proof)"
             )
-            yield self.obligation(
-                STIFFNESS_RANGE,
-                item.name,
-                Status.MET if reached else self._missed,
-                message,
-                self.places.at("controllers", item.name),
-            )
+            status, place = Status.MET if reached else self._missed, ("controllers", item.name)
+            yield self.obligation(STIFFNESS_RANGE, item.name, status, message, place)
 
     def goals(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
         """Yield NRS106 for every goal of every controller."""
@@ -233,7 +280,7 @@ class Examiner:
             # What wants no number is said whole already.
             wanted = "" if goal.wanted in _NO_NUMBERS else f"; {goal.wanted} is wanted"
             status = Status.PROVED if goal.met else Status.INCONCLUSIVE
-            place = self.places.at("goals", goal.key)
+            place = ("goals", goal.key)
             subject = f"system: {goal.key}"
             yield self.obligation(CERTIFIED_GOAL, subject, status, goal.said + wanted, place)
 
@@ -251,14 +298,14 @@ class Examiner:
                 f"({run.engine} engine, floating point: one run, not a proof)"
             )
             status = Status.MET if met else Status.MISSED
-            place = self.places.at("scenarios", name, "limits", quantity)
+            place = ("scenarios", name, "limits", quantity)
             subject = f"{scenario.name}: {quantity}"
             yield self.obligation(SCENARIO_LIMIT, subject, status, message, place)
 
     def no_scenario(self, name: str, error: DesignError) -> Obligation:
         """Return NRS109 for a scenario with limits that cannot be simulated."""
         message = f"simulated: {error.message} (no run, so no limit is met)"
-        place = self.places.at("scenarios", name)
+        place = ("scenarios", name)
         return self.obligation(SCENARIO_LIMIT, name, Status.MISSED, message, place)
 
     def robot_bounds(self, file: Path, faults: Sequence[str]) -> Obligation:
@@ -286,13 +333,11 @@ class Examiner:
             What the lock file says of its bounds.
         """
         file, faults = load_wing("robot", "pipeline").contradict_robot_bounds(robot)
-        place = self.places.at("coupling", "robot")
-        caution = Caution(
-            self.loaded.path,
+        caution = self.caution(
             f"taken on trust: the bounds of {file.as_posix()}; the lock file says that a gate "
             "computed them again (nrs-design robot bounds --check does)",
-            place.line,
-            place.column,
+            "coupling",
+            "robot",
         )
         if faults:
             return self._of_bounds(Status.MISSED, "; ".join(faults)), (caution,)
@@ -302,8 +347,7 @@ class Examiner:
         return self._of_bounds(Status(locked.status), locked.message), (caution,)
 
     def _of_bounds(self, status: Status, message: str) -> Obligation:
-        place = self.places.at("coupling", "robot")
-        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, place)
+        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, ("coupling", "robot"))
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""
@@ -318,7 +362,7 @@ class Examiner:
             if item.accept_doubt is not None:
                 key, status = "accept_doubt", Status.MET
                 message += f"; accepted because: {item.accept_doubt}"
-            place = self.places.at(*at, key)
+            place = (*at, key)
             yield self.obligation(NOT_DOUBTED, at[-1], status, message, place)
 
     def contact(self, certificate: Certificate | None) -> Iterator[Caution]:
@@ -327,21 +371,18 @@ class Examiner:
         if certificate is None or spec.kind != "interaction-design" or spec.contact is not None:
             return
         evidence = certificate.evidence
-        if certificate.verdict == Verdict.PROVED and not (
-            evidence is not None and evidence.covers_lost_contact
-        ):
-            place = self.places.at("kind")
+        covered = evidence is not None and evidence.covers_lost_contact
+        if certificate.verdict == Verdict.PROVED and not covered:
             message = (
                 "proved for contact that is kept: its loss is not covered; write `contact: kept` "
                 "if it is, or `contact: losable` to insist"
             )
-            yield Caution(self.loaded.path, message, place.line, place.column)
+            yield self.caution(message, "kind")
 
     def cautions(self, analysis: DesignAnalysis | None) -> Iterator[Caution]:
         """Yield what is doubtful about the spec and its design."""
         for doubt in (*doubt_spec(self.loaded.spec), *(analysis.warnings if analysis else ())):
-            place = self.places.at(*doubt.at)
-            yield Caution(self.loaded.path, str(doubt), place.line, place.column)
+            yield self.caution(str(doubt), *doubt.at)
 
 
 def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:

@@ -7,9 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from nrs_design import __version__
-from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.certificates.units import gain_units
 from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
@@ -27,11 +25,9 @@ from nrs_design.gating.rules import (
     ROBOT_BOUNDS,
     RULES,
     SCENARIO_LIMIT,
-    SWITCHING_STABLE,
 )
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
-from nrs_design.spec.document import Position
 
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
@@ -117,14 +113,8 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
         return examiner.nothing_to_certify()
     if entry is None:
         return _missed(examiner, f"this spec is not in {file.name} ({RENEW})")
-    if entry.sha256 != loaded.sha256:
-        return _missed(examiner, f"this spec has changed since it was locked ({RENEW})")
-    if entry.recorded != hash_recorded(loaded):
-        message = f"a file of commands of a scenario has changed since it was locked ({RENEW})"
-        return _missed(examiner, message)
-    if entry.gains and entry.version != __version__:
-        message = f"this spec was designed by nrs-design {entry.version}, and this is {__version__}"
-        return _missed(examiner, f"{message}, which may design other gains ({RENEW})")
+    if (changed := _find_change(loaded, entry)) is not None:
+        return _missed(examiner, f"{changed} ({RENEW})")
     if entry.certificate is None:
         return _inconclusive(examiner, entry, file)
     place = Path(os.path.normpath(file.parent / entry.certificate.file))
@@ -140,36 +130,42 @@ def _examine(loaded: LoadedSpec, entry: LockedSpec | None, file: Path) -> SpecOu
     return _confirmed(examiner, certificate, entry, place, file)
 
 
+def _find_change(loaded: LoadedSpec, entry: LockedSpec) -> str | None:
+    """Say what has changed since a spec was locked."""
+    if entry.sha256 != loaded.sha256:
+        return "this spec has changed since it was locked"
+    if entry.recorded != hash_recorded(loaded):
+        return "a file of commands of a scenario has changed since it was locked"
+    if entry.gains and entry.version != __version__:
+        was = f"this spec was designed by nrs-design {entry.version}"
+        return f"{was}, and this is {__version__}, which may design other gains"
+    return None
+
+
 def _confirmed(
     examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
-    rate, rate_name = certified_rate(certificate)
+    stability = examiner.stability(certificate.system, certificate.statements, "as locked")
+    shown = (*stability, examiner.certificate(place, None))
+    others, on_trust = _others(examiner, certificate, entry, file)
+    cautions = (*on_trust, *examiner.cautions(None))
+    return examiner.outcome(certificate, place, certificate, (*shown, *others), cautions)
+
+
+def _others(
+    examiner: Examiner, certificate: Certificate | None, entry: LockedSpec, file: Path
+) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
+    """Return the obligations beside stability, and that bounds of a robot are on trust."""
     bounds, on_trust = _bounds(examiner, entry)
-    return SpecOutcome(
-        path=examiner.loaded.path,
-        obligations=(
-            *examiner.stability(certificate.system, certificate.statements, "as locked"),
-            examiner.certificate(place, None),
-            *examiner.certified_goals(certificate),
-            *_goals(examiner, entry),
-            *bounds,
-            *examiner.identified(),
-            _agrees(examiner, file),
-        ),
-        sha256=examiner.loaded.sha256,
-        verdict=certificate.verdict,
-        refuted_in=certificate.refuted_in,
-        common_quadratic=str(certificate.common_quadratic),
-        rate=rate,
-        rate_name=rate_name,
-        modes=len(certificate.system.modes),
-        certificate=place,
-        certificate_id=certificate.id,
-        gains=certificate.gains,
-        units=gain_units(certificate),
-        bounds=bounds_summary(certificate.system, certificate.statements),
-        cautions=(*on_trust, *examiner.cautions(None)),
+    agrees = examiner.obligation(LOCKED, "lock", Status.MET, f"as in {file.name}", ("name",))
+    found = (
+        *examiner.certified_goals(certificate),
+        *_goals(examiner, entry),
+        *bounds,
+        *examiner.identified(),
+        agrees,
     )
+    return found, on_trust
 
 
 def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
@@ -182,7 +178,7 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
             goal.subject,
             Status(goal.status),
             f"{goal.message} (as locked; not computed again)",
-            _place(examiner, goal),
+            _place(goal),
         )
 
 
@@ -197,13 +193,13 @@ def _bounds(
     return (bounds,), cautions
 
 
-def _place(examiner: Examiner, goal: LockedGoal) -> Position:
-    """Return where a locked obligation stands in the spec."""
+def _place(goal: LockedGoal) -> tuple[str, ...]:
+    """Return the keys of a locked obligation in the spec."""
     if goal.rule == SCENARIO_LIMIT.id:
         # A run is named by its scenario, and perhaps its axis: `NAME.theta1: torque`.
         scenario = goal.subject.partition(":")[0].partition(".")[0]
-        return examiner.places.at("scenarios", scenario, "limits")
-    return examiner.places.at("controllers", goal.subject)
+        return "scenarios", scenario, "limits"
+    return "controllers", goal.subject
 
 
 def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: LoadedSpec) -> str | None:
@@ -221,24 +217,11 @@ def _find_difference(certificate: Certificate, entry: LockedSpec, loaded: Loaded
 
 
 def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutcome:
-    obligation = examiner.obligation(
-        SWITCHING_STABLE,
-        "system",
-        Status.INCONCLUSIVE,
-        f"neither a proof nor a refutation is locked in {file.name}",
-        examiner.places.at("switching"),
-    )
-    bounds, on_trust = _bounds(examiner, entry)
+    message = f"neither a proof nor a refutation is locked in {file.name}"
+    others, on_trust = _others(examiner, None, entry, file)
     return SpecOutcome(
         path=examiner.loaded.path,
-        obligations=(
-            obligation,
-            *examiner.certified_goals(None),
-            *_goals(examiner, entry),
-            *bounds,
-            *examiner.identified(),
-            _agrees(examiner, file),
-        ),
+        obligations=(examiner.system(Status.INCONCLUSIVE, message), *others),
         sha256=examiner.loaded.sha256,
         verdict="inconclusive",
         common_quadratic="unknown",
@@ -246,16 +229,8 @@ def _inconclusive(examiner: Examiner, entry: LockedSpec, file: Path) -> SpecOutc
     )
 
 
-def _agrees(examiner: Examiner, file: Path) -> Obligation:
-    return examiner.obligation(
-        LOCKED, "lock", Status.MET, f"as in {file.name}", examiner.places.at("name")
-    )
-
-
 def _missed(examiner: Examiner, message: str) -> SpecOutcome:
-    obligation = examiner.obligation(
-        LOCKED, "lock", Status.MISSED, message, examiner.places.at("name")
-    )
+    obligation = examiner.obligation(LOCKED, "lock", Status.MISSED, message, ("name",))
     return SpecOutcome(examiner.loaded.path, (obligation,), examiner.loaded.sha256)
 
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
-from nrs_design.gating.examine import Examiner, certified_rate
+from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import (
     Caution,
     GateOutcome,
@@ -144,13 +143,19 @@ def run_gate(
     read = [_read(path) for path in specs]
     robots = Robots()
     namesakes = _namesakes(item for item in read if isinstance(item, LoadedSpec))
+
+    def examine(loaded: LoadedSpec) -> SpecOutcome:
+        namesake, name = namesakes.get(loaded.path), loaded.spec.name
+        try:
+            if namesake is not None:
+                raise _shared_name(loaded, namesake)
+            return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides, robots)
+        except Exception as error:
+            # One spec must not keep the others from being examined, whatever goes wrong with it.
+            return failed(loaded.path, error, loaded.sha256)
+
     return GateOutcome(
-        tuple(
-            item
-            if isinstance(item, SpecOutcome)
-            else _examine_safely(item, namesakes.get(item.path), files, progress, overrides, robots)
-            for item in read
-        )
+        tuple(item if isinstance(item, SpecOutcome) else examine(item) for item in read)
     )
 
 
@@ -171,25 +176,6 @@ def _namesakes(specs: Iterable[LoadedSpec]) -> dict[Path, Path]:
         named[loaded.spec.name.casefold()].append(loaded.path)
     shared = (paths for paths in named.values() if len(paths) > 1)
     return {path: paths[paths[0] == path] for paths in shared for path in paths}
-
-
-def _examine_safely(
-    loaded: LoadedSpec,
-    namesake: Path | None,
-    files: Files,
-    progress: Progress,
-    overrides: Overrides | None,
-    robots: Robots,
-) -> SpecOutcome:
-    try:
-        if namesake is not None:
-            raise _shared_name(loaded, namesake)
-        return _examine(
-            loaded, files, lambda step: progress(f"{loaded.spec.name}: {step}"), overrides, robots
-        )
-    except Exception as error:
-        # One spec must not keep the others from being examined, whatever goes wrong with it.
-        return failed(loaded.path, error, loaded.sha256)
 
 
 def _shared_name(loaded: LoadedSpec, namesake: Path) -> SpecError:
@@ -232,41 +218,40 @@ def _examine(
         write_output(file, text, replaces=CERTIFICATE)
         progress("re-check")
         obligations += (examiner.certificate(file, run_verification(file, result).fault),)
-    robot = loaded.robot
-    on_trust: tuple[Caution, ...] = ()
-    if robot is not None and loaded.sha256 not in files.bounds:
-        obligations += (robots.bounds(robot, examiner, progress),)
-    elif robot is not None:
-        bounds, on_trust = examiner.known_bounds(robot, files.bounds[loaded.sha256])
-        obligations += (bounds,)
+    bounds, on_trust = _bounds(loaded, files, examiner, progress, robots)
     recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)
-    rate, rate_name = certified_rate(certificate)
-    return SpecOutcome(
-        path=loaded.path,
-        obligations=(
+    outcome = examiner.outcome(
+        certification,
+        file,
+        certificate,
+        (
             *obligations,
+            *bounds,
             *examiner.certified_goals(certificate),
             *goals,
             *simulated,
             *examiner.identified(),
         ),
-        sha256=loaded.sha256,
-        verdict=str(certification.verdict),
-        refuted_in=certification.refuted_in,
-        common_quadratic=str(certification.common_quadratic),
-        rate=rate,
-        rate_name=rate_name,
-        modes=len(certification.system.modes),
-        certificate=file,
-        certificate_id=None if certificate is None else certificate.id,
-        gains=gains_of(result.design) if result.design else {},
-        units=result.design.units if result.design else {},
-        bounds=bounds_summary(certification.system, certification.statements),
-        cautions=(*on_trust, *cautions),
-        recorded=recorded,
+        (*on_trust, *cautions),
     )
+    if result.design is None:
+        return replace(outcome, recorded=recorded)
+    gains, units = gains_of(result.design), result.design.units
+    return replace(outcome, gains=gains, units=units, recorded=recorded)
+
+
+def _bounds(
+    loaded: LoadedSpec, files: Files, examiner: Examiner, progress: Progress, robots: Robots
+) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
+    """Return NRS111 of a spec that names a robot, and whether its bounds are on trust."""
+    if loaded.robot is None:
+        return (), ()
+    if loaded.sha256 not in files.bounds:
+        return (robots.bounds(loaded.robot, examiner, progress),), ()
+    bounds, on_trust = examiner.known_bounds(loaded.robot, files.bounds[loaded.sha256])
+    return (bounds,), on_trust
 
 
 def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:

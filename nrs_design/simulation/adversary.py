@@ -8,7 +8,8 @@ programming over the rules of switching. Where contact is kept, no sweep makes a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,10 @@ from nrs_design.simulation.norms import Array
 # Where a run is continued by the new choices: from these shares of its length on.
 _CUTS = (0.0, 0.5, 0.8)
 _NO_GAIN = 1e-5
-# Mean length of a change, as a share of a run, and the error of a misjudged choice.
-_SPAN, _ERROR = 0.06, 0.2
+# Mean length of a change, as a share of a run.
+_SPAN = 0.06
+# Of misjudged choices: from one run to the other, small ones or large ones.
+_ERRORS = (0.01, 0.5)
 
 
 def held_signals(game: Game, steps: int) -> Signals:
@@ -118,11 +121,11 @@ def misjudged_signals(
     game, signals, copies, rng
         As for `changed_signals`, which it is for where rules are to be kept.
     aim : Aim
-        Of each run.
+        What is to become large.
     """
     runs = np.tile(np.arange(signals.actions.shape[1]), copies)
     many = signals.only(runs)
-    policy = _Policy.against(game, aim.only(runs), many, play(game, many), rng)
+    policy = _Policy.against(game, aim, many, play(game, many), rng)
     fresh, cut = policy.follow(game, many), rng.integers(0, len(_CUTS), len(runs))
     return fresh.only(cut * len(runs) + np.arange(len(runs)))
 
@@ -154,11 +157,11 @@ def improve(game: Game, aim: Aim, signals: Signals, sweeps: int) -> tuple[Signal
     for _ in range(sweeps):
         if not len(moving):
             break
-        own, now = aim.only(moving), Signals(actions[:, moving], shares[:, moving])
-        policy = _Policy.against(game, own, now, states[:, moving])
+        now = Signals(actions[:, moving], shares[:, moving])
+        policy = _Policy.against(game, aim, now, states[:, moving])
         fresh = policy.follow(game, now)
         reached = play(game, fresh)
-        values = _at_end(game, own.repeated(len(_CUTS)), fresh, reached)
+        values = _at_end(game, aim, fresh, reached)
         best = values.reshape(len(_CUTS), -1).argmax(axis=0)
         picked = best * len(moving) + np.arange(len(moving))
         gained = values[picked] > value[moving] * (1 + _NO_GAIN)
@@ -202,6 +205,8 @@ class _Policy:
         p, c = _final(game, aim, states[-1], runs), np.zeros((nodes, runs))
         pull, reset = _Pull(game), len(rules.jumps) > 1
         taken = rules.jumps[rules.jump]
+        least, most = map(math.log, _ERRORS)
+        errors = 0.0 if rng is None else np.exp(rng.uniform(least, most, runs))
         column, row = np.arange(runs), np.arange(nodes)[:, None]
         for k in range(steps - 1, -1, -1):
             x = (taken @ states[k].T).transpose(0, 2, 1) if reset else states[k]
@@ -209,7 +214,7 @@ class _Policy:
             added = np.abs(pulled[:, :, n:]).sum(axis=2) + c[rules.target]
             worth = (pulled[:, :, :n] * x).sum(axis=2) + added
             if rng is not None:
-                worth *= 1 + _ERROR * rng.standard_normal(worth.shape)
+                worth *= 1 + errors * rng.standard_normal(worth.shape)
             action = rules.choices[row, worth[rules.choices].argmax(axis=1)]
             own = pulled[action, column]
             actions[k], signs[k] = action, np.where(own[:, :, n:] < 0, -1, 1)
@@ -263,7 +268,7 @@ def _final(game: Game, aim: Aim, ends: Array, runs: int) -> Array:
     p = np.zeros((len(rules.choices), runs, game.order))
     # The mode of a node is that of any action that leads to it; of one node, any mode's.
     if len(rules.choices) == 1:
-        free = Aim(aim.rows, np.ones_like(aim.allowed), aim.one_sided)
+        free = replace(aim, allowed=np.ones_like(aim.allowed))
         p[0] = free.values(game, ends, np.zeros(runs, dtype=np.int64))[1]
         return p
     for node, mode in dict(zip(rules.target.tolist(), rules.mode.tolist(), strict=True)).items():

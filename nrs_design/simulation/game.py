@@ -89,12 +89,11 @@ class Game:
 
 @dataclass(frozen=True, eq=False)
 class Aim:
-    """What is to become large at the end of each of S runs."""
+    """What is to become large at the end of a run."""
 
-    rows: Array  # Shape (S, r, n). Rows over the state; a run that has fewer repeats one.
-    allowed: NDArray[np.bool_]  # Shape (S, m, r). Which of them apply in each mode.
-    # Shape (S,). Whether positive values alone count, and those without contact not at all.
-    one_sided: NDArray[np.bool_]
+    rows: Array  # Shape (r, n), over the state
+    allowed: NDArray[np.bool_]  # Shape (m, r). Which of them apply in each mode.
+    one_sided: bool  # Positive values alone count, and those without contact not at all
 
     def values(self, game: Game, states: Array, modes: Indices) -> tuple[Array, Array]:
         """Return the largest size at states in modes, and the row with the sign that has it.
@@ -112,26 +111,13 @@ class Aim:
         -------
         ndarray, shape (S,), and ndarray, shape (S, n)
         """
-        runs = np.arange(len(states))
-        found = (self.rows @ states[:, :, None])[:, :, 0]
-        lost = self.one_sided & game.flies(states)
-        size = np.where(self.one_sided[:, None], found, np.abs(found))
-        size = np.where(self.allowed[runs, modes], size, -np.inf)
+        runs, found = np.arange(len(states)), states @ self.rows.T
+        size = np.where(self.allowed[modes], found if self.one_sided else np.abs(found), -np.inf)
         best = size.argmax(axis=1)
-        sign = np.where(~self.one_sided & (found[runs, best] < 0), -1.0, 1.0)
-        return np.where(lost, 0.0, size[runs, best]), self.rows[runs, best] * sign[:, None]
-
-    def repeated(self, times: int) -> Aim:
-        """Return the same aims again and again."""
-        return Aim(
-            np.tile(self.rows, (times, 1, 1)),
-            np.tile(self.allowed, (times, 1, 1)),
-            np.tile(self.one_sided, times),
-        )
-
-    def only(self, runs: Indices) -> Aim:
-        """Return the aims of some runs."""
-        return Aim(self.rows[runs], self.allowed[runs], self.one_sided[runs])
+        if self.one_sided:
+            return np.where(game.flies(states), 0.0, size[runs, best]), self.rows[best]
+        sign = np.where(found[runs, best] < 0, -1.0, 1.0)
+        return size[runs, best], self.rows[best] * sign[:, None]
 
 
 @dataclass(frozen=True, eq=False)

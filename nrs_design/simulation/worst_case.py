@@ -100,45 +100,73 @@ def worst_runs(
     _check(system)
     if rounds is None:
         rounds = ROUNDS if system.contact is None else ROUNDS * _BOUNCING
-    found = [
-        _on_grid(system, outputs, allowed, step, steps, (seed, starts, rounds))
-        for step, steps in _grids(system)
-    ]
-    return tuple(max(runs, key=lambda run: run.value) for runs in zip(*found, strict=True))
+    grids = [_Grid.of(system, wanted, steps) for wanted, steps in _grids(system)]
+    return tuple(
+        max(
+            (_found(system, grid, output, allowed, (seed, starts, rounds)) for grid in grids),
+            key=lambda run: run.value,
+        )
+        for output in outputs
+    )
 
 
-def _on_grid(
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """A system on a grid of time, with a finer one for the end where choices are free."""
+
+    step: float
+    steps: int
+    game: Game
+    fine: Game | None
+
+    @classmethod
+    def of(cls, system: SwitchedSystem, wanted: float, steps: int) -> _Grid:
+        step = fitting_step(system, wanted)
+        fine = None
+        if system.time is Time.CONTINUOUS and _is_free(system):
+            fine = Game.of(system, system.channels, step / _FINER)
+        return cls(step, steps, Game.of(system, system.channels, step), fine)
+
+
+def _found(
     system: SwitchedSystem,
-    outputs: Sequence[Output],
+    grid: _Grid,
+    output: Output,
     allowed: Mapping[str, NDArray[np.bool_]],
-    wanted: float,
-    steps: int,
     effort: tuple[int, int, int],
-) -> tuple[WorstRun, ...]:
-    """Search among runs of so many steps of about this time; effort: seed, starts, rounds."""
+) -> WorstRun:
+    """Search on one grid, with an effort of seed, starts and rounds."""
     seed, starts, rounds = effort
-    step = fitting_step(system, wanted)
-    game = Game.of(system, system.channels, step)
-    own = [_aim(system, output, allowed) for output in outputs]
-    search = _Search(game, own, np.random.default_rng(seed))
-    signals, values = search.begin(steps, starts)
+    game, aim, rng = grid.game, _aim(system, output, allowed), np.random.default_rng(seed)
+    drawn = random_signals(game, grid.steps, starts, rng)
+    signals, values, first = _searched(game, aim, drawn, rounds, rng)
+    if _is_free(system):
+        signals, values = _lengthened(game, aim, signals, values)
+    step = grid.step
+    if grid.fine is not None:
+        step, game = step / _FINER, grid.fine
+        signals, values = improve(game, aim, signals.finer(_FINER), SWEEPS)
+    return _run(system, game, output, signals, step, float(values[0]), first)
+
+
+def _searched(
+    game: Game, aim: Aim, signals: Signals, rounds: int, rng: np.random.Generator
+) -> tuple[Signals, Array, Array]:
+    """Improve runs, and again what becomes of the best of them by errors; return the best.
+
+    The value of the best, shape (1,), and what every start came to are returned besides.
+    """
+    signals, values = improve(game, aim, signals, SWEEPS)
     first = values
     for _ in range(rounds):
-        signals, values = search.again(signals, values)
-    signals, values = search.best(signals, values, 1)
-    if _is_free(system):
-        signals, values = _lengthened(game, _joined(own), signals, values)
-    if system.time is Time.CONTINUOUS and _is_free(system):
-        step /= _FINER
-        game = Game.of(system, system.channels, step)
-        signals, values = improve(game, _joined(own), signals.finer(_FINER), SWEEPS)
-    unit = step if system.sample_time is None else float(system.sample_time)
-    return tuple(
-        _run(
-            system, game, output, signals.only(np.array([i])), unit, values[i], np.sort(came)[::-1]
-        )
-        for i, (output, came) in enumerate(zip(outputs, np.split(first, len(own)), strict=True))
-    )
+        kept = np.argsort(-values)[:_KEPT]
+        best = signals.only(kept)
+        changed = changed_signals(game, best, _COPIES, rng)
+        misjudged = misjudged_signals(game, aim, best, _COPIES, rng)
+        fresh, came = improve(game, aim, changed.beside(misjudged), SWEEPS)
+        signals, values = best.beside(fresh), np.concatenate([values[kept], came])
+    top = np.argsort(-values)[:1]
+    return signals.only(top), values[top], first
 
 
 def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
@@ -160,15 +188,9 @@ def worst_against(system: SwitchedSystem, bound: Bound) -> WorstRun:
     steps = int(np.clip(_FILLED / (rate * step), _FEWEST, _LONGEST))
     game, aim = Game.of(free, bound.channels, step), _aim(free, bound.output, {})
     rng = np.random.default_rng(0)
-    search = _Search(game, [aim], rng)
-    drawn = random_signals(game, steps, _DRAWN, rng)
-    signals, values = search.improved(held_signals(game, steps).beside(drawn))
-    first = values
-    for _ in range(_TURNS):
-        signals, values = search.again(signals, values)
-    (signals, values) = search.best(signals, values, 1)
-    unit = step if system.sample_time is None else float(system.sample_time)
-    return _run(free, game, bound.output, signals, unit, float(values[0]), first)
+    begin = held_signals(game, steps).beside(random_signals(game, steps, _DRAWN, rng))
+    signals, values, first = _searched(game, aim, begin, _TURNS, rng)
+    return _run(free, game, bound.output, signals, step, float(values[0]), first)
 
 
 def _lengthened(game: Game, aim: Aim, signals: Signals, values: Array) -> tuple[Signals, Array]:
@@ -179,63 +201,6 @@ def _lengthened(game: Game, aim: Aim, signals: Signals, values: Array) -> tuple[
         if (values <= _WORTH * before).all():
             break
     return signals, values
-
-
-@dataclass(frozen=True, eq=False)
-class _Search:
-    """Runs for several aims at once: those of the first aim, then as many of the next."""
-
-    game: Game
-    aims: Sequence[Aim]
-    rng: np.random.Generator
-
-    def begin(self, steps: int, starts: int) -> tuple[Signals, Array]:
-        """Improve random runs; what is drawn is the same for all aims."""
-        count = len(self.aims)
-        drawn = random_signals(self.game, steps, starts, self.rng)
-        signals = Signals(np.tile(drawn.actions, count), np.tile(drawn.shares, (1, count, 1)))
-        return self.improved(signals)
-
-    def again(self, signals: Signals, values: Array) -> tuple[Signals, Array]:
-        """Keep the best runs, and improve what becomes of them by some changes."""
-        kept, reached = self.best(signals, values, _KEPT)
-        groups = np.arange(len(reached)).reshape(len(self.aims), -1)
-        parts = [
-            self._children(kept.only(group), aim)
-            for group, aim in zip(groups, self.aims, strict=True)
-        ]
-        fresh, came = self.improved(_beside(parts))
-        every = kept.beside(fresh)
-        # In the order of the aims again.
-        mine = np.arange(len(came)).reshape(len(self.aims), -1) + len(reached)
-        order = np.concatenate([groups, mine], axis=1).ravel()
-        return every.only(order), np.concatenate([reached, came])[order]
-
-    def _children(self, signals: Signals, aim: Aim) -> Signals:
-        """Change what the best runs do for a while, or how they are continued."""
-        runs = signals.actions.shape[1]
-        own = _joined([aim] * runs)
-        changed = changed_signals(self.game, signals, _COPIES, self.rng)
-        return changed.beside(misjudged_signals(self.game, own, signals, _COPIES, self.rng))
-
-    def best(self, signals: Signals, values: Array, count: int) -> tuple[Signals, Array]:
-        """Return the best runs for each aim, the worst ones for the robot first."""
-        parts = np.split(np.arange(len(values)), len(self.aims))
-        kept = np.concatenate([part[np.argsort(-values[part])[:count]] for part in parts])
-        return signals.only(kept), values[kept]
-
-    def improved(self, signals: Signals) -> tuple[Signals, Array]:
-        """Improve as many runs for each aim."""
-        each = signals.actions.shape[1] // len(self.aims)
-        aim = _joined([aim for aim in self.aims for _ in range(each)])
-        return improve(self.game, aim, signals, SWEEPS)
-
-
-def _beside(parts: Sequence[Signals]) -> Signals:
-    first, *others = parts
-    for other in others:
-        first = first.beside(other)
-    return first
 
 
 def _is_free(system: SwitchedSystem) -> bool:
@@ -277,26 +242,10 @@ def _grids(system: SwitchedSystem) -> list[tuple[float, int]]:
 
 def _aim(system: SwitchedSystem, output: Output, allowed: Mapping[str, NDArray[np.bool_]]) -> Aim:
     rows = np.array([row.floats()[0] for row in output.rows])
-    every = np.ones((len(system.modes), len(rows)), dtype=np.bool_)
     # Under free switching, any mode may take over at the very end.
     given = None if _is_free(system) else allowed.get(output.name)
-    return Aim(
-        rows[None],
-        (every if given is None else given)[None],
-        np.array([pushes_only(system, output)]),
-    )
-
-
-def _joined(aims: Sequence[Aim]) -> Aim:
-    """Put aims of different outputs beside each other; who has fewer rows repeats the last."""
-    width = max(aim.rows.shape[1] for aim in aims)
-
-    kept = [np.minimum(np.arange(width), aim.rows.shape[1] - 1) for aim in aims]
-    return Aim(
-        np.concatenate([aim.rows[:, rows] for aim, rows in zip(aims, kept, strict=True)]),
-        np.concatenate([aim.allowed[:, :, rows] for aim, rows in zip(aims, kept, strict=True)]),
-        np.concatenate([aim.one_sided for aim in aims]),
-    )
+    every = np.ones((len(system.modes), len(rows)), dtype=np.bool_)
+    return Aim(rows, every if given is None else given, pushes_only(system, output))
 
 
 def _run(
@@ -304,11 +253,10 @@ def _run(
     game: Game,
     output: Output,
     signals: Signals,
-    unit: float,
+    step: float,
     value: float,
     starts: Array,
 ) -> WorstRun:
-    order = np.sort(starts)[::-1]
     if _is_free(system):
         signals = signals.after_rest()
     states = play(game, signals)[:, 0]
@@ -317,6 +265,7 @@ def _run(
         flies = game.flies(states[:-1])
         mode = np.where(flies, len(system.modes) + free_counterparts(system)[mode], mode)
     bounds = np.array([float(channel.bound) for channel in system.channels])
+    unit = step if system.sample_time is None else float(system.sample_time)
     time = np.asarray(unit * np.arange(len(states)), dtype=float)
-    shares = signals.shares[:, 0]
-    return WorstRun(output, float(value), time, states, mode, shares * bounds, order)
+    disturbances = signals.shares[:, 0] * bounds
+    return WorstRun(output, value, time, states, mode, disturbances, np.sort(starts)[::-1])

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.controllers.sampled import rounding_share
+from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.proof.channels import Channel, Output, Rounding

@@ -210,11 +210,3 @@ def test_without_room_for_a_process_nothing_begins(monkeypatch: pytest.MonkeyPat
     with proof_beside(_document(SPEC)) as proof:
         assert proof is None
     assert set(os.listdir("/proc/self/fd")) == before
-
-
-def test_the_former_schema_is_proved_with_the_spec_only() -> None:
-    document, loaded = _document(SPEC), read_spec(SPEC)
-    document["schema"] = "nrs-design/certificate/3"
-    with proof_beside(document) as proof:
-        both = verify_document(document, loaded, proof=proof)
-    assert both.fault == verify_document(document, loaded).fault

@@ -46,9 +46,7 @@ def game_of(switching):
     return Game(maps, np.zeros((0, 2, 3)), np.zeros((0, 2)), Rules.of(system, 1.0))
 
 
-def aim_of(runs, modes=3):
-    rows = np.tile(ROW, (runs, 1, 1))
-    return Aim(rows, np.ones((runs, modes, 1), dtype=bool), np.zeros(runs, dtype=bool))
+AIM = Aim(ROW[None], np.ones((3, 1), dtype=bool), one_sided=False)
 
 
 def largest(game):
@@ -76,11 +74,11 @@ def largest(game):
 def test_it_finds_the_worst_of_all_signals(name):
     """By improvement, and by runs that are continued with errors and improved again."""
     game, rng = game_of(RULES[name]), np.random.default_rng(3)
-    signals, values = improve(game, aim_of(RUNS), random_signals(game, STEPS, RUNS, rng), 30)
+    signals, values = improve(game, AIM, random_signals(game, STEPS, RUNS, rng), 30)
     for _ in range(ROUNDS):
         best = signals.only(np.argsort(-values)[:4])
-        fresh = misjudged_signals(game, aim_of(4), best, 6, rng)
-        signals, values = improve(game, aim_of(28), best.beside(fresh), 30)
+        fresh = misjudged_signals(game, AIM, best, 6, rng)
+        signals, values = improve(game, AIM, best.beside(fresh), 30)
     assert values.max() == pytest.approx(largest(game), rel=1e-12)
     assert np.abs(play(game, signals)[-1] @ ROW) == pytest.approx(values)
 
@@ -91,7 +89,7 @@ def test_no_sweep_makes_a_run_less_bad(name):
     signals = random_signals(game, 60, 8, np.random.default_rng(2))
     last = np.zeros(8)
     for _ in range(6):
-        signals, values = improve(game, aim_of(8), signals, 1)
+        signals, values = improve(game, AIM, signals, 1)
         assert (values >= last * (1 - 1e-12)).all()
         last = values
     nodes = np.zeros(8, dtype=int)

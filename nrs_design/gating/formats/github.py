@@ -12,34 +12,30 @@ MAX_ANNOTATIONS = 10
 
 def to_github(outcome: GateOutcome) -> str:
     """Return one ``::error`` command per failure, worst first, and a notice if there are more."""
-    lines = [_annotation(item) for item in outcome.broken[:MAX_ANNOTATIONS]]
-    more = len(outcome.broken) - len(lines)
-    if more > 0:
-        lines.append(f"::notice title=nrs-design::{more} more not shown; see the log of this step")
-    cautions = [item for spec in outcome.specs for item in spec.cautions]
-    if outcome.changes is not None:
-        cautions += outcome.changes.others
-    lines += [_warning(item) for item in cautions[:MAX_ANNOTATIONS]]
-    if len(cautions) > MAX_ANNOTATIONS:
-        more = len(cautions) - MAX_ANNOTATIONS
-        lines.append(f"::notice title=nrs-design::{more} more warnings; see the log of this step")
+    errors = [
+        _annotation("error", i, i.rule.id, f"{i.rule.title}: {i.status}. {i.message}")
+        for i in outcome.broken
+    ]
+    changed = () if outcome.changes is None else outcome.changes.others
+    cautions = (*(item for spec in outcome.specs for item in spec.cautions), *changed)
+    warnings = [_annotation("warning", i, "nrs-design", i.message) for i in cautions]
+    lines = (*_first(errors, "more"), *_first(warnings, "more warnings"))
     return "".join(f"{line}\n" for line in lines)
 
 
-def _annotation(item: Obligation) -> str:
-    properties = {
-        "file": from_here(item.path),
-        "line": item.line or 1,
-        "col": item.column or 1,
-        "title": item.rule.id,
-    }
+def _first(annotations: list[str], what: str) -> list[str]:
+    """Return as many annotations as GitHub shows, and a notice of the others."""
+    if (more := len(annotations) - MAX_ANNOTATIONS) <= 0:
+        return annotations
+    notice = f"::notice title=nrs-design::{more} {what} not shown; see the log of this step"
+    return [*annotations[:MAX_ANNOTATIONS], notice]
+
+
+def _annotation(kind: str, item: Obligation | Caution, title: str, text: str) -> str:
+    place = {"file": from_here(item.path), "line": item.line or 1, "col": item.column or 1}
+    properties = {**place, "title": title}
     listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
-    return f"::error {listed}::{_data(f'{item.rule.title}: {item.status}. {item.message}')}"
-
-
-def _warning(item: Caution) -> str:
-    place = f"file={_property(from_here(item.path))},line={item.line},col={item.column}"
-    return f"::warning {place},title=nrs-design::{_data(item.message)}"
+    return f"::{kind} {listed}::{_data(text)}"
 
 
 def _data(text: str) -> str:

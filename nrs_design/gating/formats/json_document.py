@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nrs_design.gating.obligations import BaseChanges, GateOutcome, Obligation, SpecOutcome
+from nrs_design.gating.obligations import BaseChanges, Caution, GateOutcome, Obligation, SpecOutcome
 from nrs_design.gating.paths import from_here
 from nrs_design.printable import json_text
 
@@ -27,15 +27,7 @@ def _against(changes: BaseChanges) -> dict[str, Any]:
     return {
         "base": changes.base.as_posix(),
         "weaker": changes.weaker,
-        "others": [
-            {
-                "path": from_here(item.path),
-                "message": item.message,
-                "line": item.line,
-                "column": item.column,
-            }
-            for item in changes.others
-        ],
+        "others": [{"path": from_here(item.path), **_found(item)} for item in changes.others],
     }
 
 
@@ -54,20 +46,15 @@ def _spec(spec: SpecOutcome) -> dict[str, Any]:
         "certificate_id": spec.certificate_id,
         "gains": {name: dict(gains) for name, gains in spec.gains.items()},
         "gain_units": {name: dict(units) for name, units in spec.units.items()},
-        "warnings": [
-            {"message": item.message, "line": item.line, "column": item.column}
-            for item in spec.cautions
-        ],
+        "warnings": [_found(item) for item in spec.cautions],
         "obligations": [_obligation(item) for item in spec.obligations],
     }
 
 
 def _obligation(item: Obligation) -> dict[str, Any]:
-    return {
-        "rule": item.rule.id,
-        "subject": item.subject,
-        "status": str(item.status),
-        "message": item.message,
-        "line": item.line,
-        "column": item.column,
-    }
+    head = {"rule": item.rule.id, "subject": item.subject, "status": str(item.status)}
+    return head | _found(item)
+
+
+def _found(item: Obligation | Caution) -> dict[str, Any]:
+    return {"message": item.message, "line": item.line, "column": item.column}

@@ -12,13 +12,13 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from nrs_design.arrays.exact import is_state_space, read_number, read_rows, time_of
 from nrs_design.errors import SpecError
-from nrs_design.given.matrices import is_state_space, read_number, read_rows, time_of
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
 from nrs_design.spec.document import parse_document
-from nrs_design.spec.faults import file_faults
 from nrs_design.spec.meaning import hash_meaning
+from nrs_design.spec.places import file_faults
 
 Document = dict[str, Any]
 _NAME = re.compile(r"(?<![\w.])[a-zA-Z]")

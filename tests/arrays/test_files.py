@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import scipy.io
 
+from nrs_design.arrays.files import read_proposal
 from nrs_design.errors import DataError
-from nrs_design.given.files import read_proposal
 
 A = np.array([[[-1.0, -1.0], [1.0, -1.0]], [[-1.0, -5.0], [0.25, -1.0]]])
 P = np.diag([1.0, 5.0])
@@ -106,25 +106,21 @@ def test_an_empty_row_is_a_matrix_of_none(tmp_path):
     assert read_proposal(tmp_path / "a.json").modes == {"A1": [[]]}
 
 
-@pytest.mark.slow
-def test_packed_files_are_not_unfolded_beyond_measure(tmp_path):
-    large = np.zeros(34 * 2**20, dtype=np.int8)
-    np.savez_compressed(tmp_path / "a.npz", P=large)
-    scipy.io.savemat(tmp_path / "a.mat", {"P": large}, do_compression=True)
+def test_few_bytes_with_many_entries_are_refused(tmp_path):
+    """What takes more than the process that reads may hold ends there: `tests/test_confined.py`."""
     many = np.zeros((500, 500), dtype=np.int8)
     np.savez_compressed(tmp_path / "b.npz", P=many)
     scipy.io.savemat(tmp_path / "b.mat", {"P": many}, do_compression=True)
-    for name, said in (("a", "unfolds to more"), ("b", "more than 200000 entries")):
-        for suffix in (".npz", ".mat"):
-            with pytest.raises(DataError, match=said):
-                read_proposal(tmp_path / (name + suffix))
+    for suffix in (".npz", ".mat"):
+        with pytest.raises(DataError, match="more than 200000 entries"):
+            read_proposal(tmp_path / f"b{suffix}")
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
 @pytest.mark.parametrize("packed", [False, True])
 def test_cells_in_each_other_do_not_exhaust_the_stack(tmp_path, order, packed):
     (tmp_path / "a.mat").write_bytes(nested_cells(100_000, order, packed))
-    with pytest.raises(DataError, match="matrices in each other"):
+    with pytest.raises(DataError):
         read_proposal(tmp_path / "a.mat")
 
 

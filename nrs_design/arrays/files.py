@@ -13,11 +13,10 @@ from typing import Any, BinaryIO, NoReturn
 
 from typing_extensions import TypeAliasType
 
+from nrs_design.arrays.exact import refuse_times
 from nrs_design.confined import read_confined
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular, read_json_text, unique_keys
-from nrs_design.given.matrices import refuse_times
-from nrs_design.given.unpacked import check_mat, check_npz
 from nrs_design.proof.text import quoted
 
 MAX_BYTES = 16 * 2**20
@@ -150,7 +149,6 @@ def unpack_npz(file: BinaryIO, path: Path) -> Content:
     """Return the arrays of a NumPy archive as lists; in a process of its own."""
     import numpy as np
 
-    check_npz(file)
     with np.load(file, allow_pickle=False) as archive:
         arrays = {key: archive[key] for key in archive.files}
     for key, array in arrays.items():
@@ -163,8 +161,6 @@ def unpack_mat(file: BinaryIO, path: Path) -> Content:
     """Return the variables of a MATLAB file as lists; in a process of its own."""
     from scipy.io import loadmat
 
-    check_mat(file.read())
-    file.seek(0)
     # It reads from streams, too, which its annotations do not know.
     stream: Any = file
     variables = loadmat(stream)

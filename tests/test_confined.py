@@ -16,7 +16,7 @@ from nrs_design import confined
 from nrs_design.arrays.files import unpack_npz
 from nrs_design.confined import encoded, read_confined
 from nrs_design.errors import DataError
-from nrs_design.foreign import read_npz, unpack_sheet
+from nrs_design.identification.foreign import read_npz, unpack_sheet
 from tests import foreign_readers
 from tests.support import ROOT
 

@@ -8,12 +8,13 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.measure import Finding, Size
+from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.pipeline import Designed, Overrides, run_certification, search_limits
 from nrs_design.proof.evidence.abstract import Bound
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 from nrs_design.simulation.worst_case import worst_against
 from nrs_design.spec import LoadedSpec, parse_spec
 
@@ -115,12 +116,13 @@ def _largest_force(
     design: ControllerDesign = designed.design
     period = designed.spec.sampling.period.exact if designed.spec.sampling else None
     assert period is not None
-    laws = [c.law.sampled(period, "exact") for c in design.controllers]
-    whole = [law for law in laws if law is not None]
+    laws = {c.name: c.law.discretize(period, "exact") for c in design.controllers}
+    whole = {name: law for name, law in laws.items() if law is not None}
     choices = _choices(designed, system, found, rng, runs)
     offset = rng.uniform(-1, 1, runs) * np.deg2rad(LARGEST_ANGLE) * 0.9
-    motion = design.motion.sampled(period)
-    forces = simulate_single_precision(motion, whole, PERIOD, choices, offset, losable=losable)
+    frame = StepFrame(design.motion.Kp, design.motion.over(period))
+    law = build_law(frame, whole)
+    forces = simulate_single_precision(law, PERIOD, choices, offset, losable=losable)
     return float(np.abs(forces).max())
 
 

@@ -181,9 +181,10 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     plain = isinstance(evidence, FormsOnGraph) and len(evidence.nodes) == 1
     if plain:
         plain = evidence.degree == 1 and not evidence.multipliers and evidence.stays is None
-    if not (plain or evidence.names_unstable_mode):
+    is_mode = evidence.kind == "growing-sequence" and evidence.names_unstable_mode
+    if not (plain or is_mode):
         return truth.holds(system, evidence)
-    if evidence.names_unstable_mode:
+    if is_mode:
         ((name, _),) = evidence.steps
         (mode,) = [mode for mode in system.modes if mode.name == name]
         may_stay = truth.bounds_of(system, name)[1] is None

@@ -37,6 +37,8 @@ REACHED = {
     # What a scenario moves may be all links, or MuJoCo.
     ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
     ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
+    # A recorded command is a record.
+    ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }
 STAGES = {"models", "design", "switched", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.
@@ -273,7 +275,7 @@ def test_a_report_assembles_and_searches_nothing():
 
 
 VERBS = {
-    ("nrs_design.models.plant", "build_plant"),
+    ("nrs_design.spec.build_plant", "build_plant"),
     ("nrs_design.design.design", "design_controllers"),
     ("nrs_design.design.analysis", "analyze_design"),
     ("nrs_design.switched.assemble", "assemble"),

@@ -14,9 +14,7 @@ from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTAC
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.system_fields import system_fields
 
-SCHEMA = "nrs-design/certificate/6"
-# It named the modes only; what they are had to be assembled from the spec.
-FORMER = "nrs-design/certificate/3"
+SCHEMA = "nrs-design/certificate/7"
 # What says nothing about the claim, so that the id does not cover it.
 UNSIGNED = frozenset({"id", "origin"})
 
@@ -53,8 +51,6 @@ class Certificate:
     system: SwitchedSystem  # What the statements are about
     statements: tuple[AbstractEvidence, ...]  # What is shown, each with its numbers; at least one
     version: str  # Version of this package
-    # Of the file that it was read from; `FORMER` has no modes and no rules of switching.
-    schema: str = SCHEMA
 
     @property
     def verdict(self) -> str:
@@ -156,8 +152,8 @@ def common_quadratic_of(
 def to_document(certificate: Certificate) -> dict[str, Any]:
     """Return the JSON document of a certificate, without its id."""
     system = certificate.system
-    document = {
-        "schema": certificate.schema,
+    return {
+        "schema": SCHEMA,
         "verdict": certificate.verdict,
         **({} if certificate.refuted_in is None else {"refuted_in": certificate.refuted_in}),
         "spec": {"name": certificate.spec_name, "sha256": certificate.spec_sha256},
@@ -170,10 +166,6 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
         ],
         "package": {"name": "nrs-design", "version": certificate.version},
     }
-    if certificate.schema == FORMER:
-        document["modes"] = [mode.name for mode in system.modes]
-        del document["switching"]
-    return document
 
 
 def content_id(document: Mapping[str, Any]) -> str:

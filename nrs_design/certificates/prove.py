@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from nrs_design.certificates.certificate import (
-    FORMER,
     SCHEMA,
     UNSIGNED,
     Certificate,
@@ -77,9 +76,9 @@ def find_altered(document: Mapping[str, Any]) -> Verification | None:
     """Reject a document that is not as it was written, or of another schema."""
     if document.get("id") != content_id(document):
         return Verification(None, "its content does not match its id: it was altered")
-    if document.get("schema") not in (SCHEMA, FORMER):
-        fault = f"its schema is not {SCHEMA}: another version of nrs-design made it, make it anew"
-        return Verification(None, fault)
+    if document.get("schema") != SCHEMA:
+        other = f"its schema is not {SCHEMA}: another version of nrs-design made it"
+        return Verification(None, f"{other}; make it again with certify-switching")
     return None
 
 
@@ -91,10 +90,6 @@ def held_system(document: Mapping[str, Any]) -> SwitchedSystem:
     KeyError, TypeError, ValueError
         If it holds none, or a malformed one.
     """
-    if document["schema"] == FORMER:
-        raise ValueError(
-            f"{FORMER} holds no modes: name its spec too, or make it anew with certify-switching"
-        )
     return read_system(read_text(document["spec"]["name"]), document)
 
 
@@ -118,7 +113,6 @@ def read_certificate(document: Mapping[str, Any], system: SwitchedSystem) -> Cer
         system=system,
         statements=_statements(document, system),
         version=read_text(document["package"]["version"]),
-        schema=document["schema"],
     )
 
 

@@ -13,7 +13,6 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from nrs_design.certificates.certificate import FORMER
 from nrs_design.certificates.prove import (
     Verification,
     check_document,
@@ -92,8 +91,7 @@ def verify_document(
     """
     if spec is None:
         return prove(document)
-    # The former schema holds no modes that could be proved without the spec.
-    if proof is None or document.get("schema") == FORMER:
+    if proof is None:
         return confirmed(lambda: _verify(document, spec, coordinates, plant, check_document))
 
     def stated(document: Mapping[str, Any], system: SwitchedSystem) -> Verification:
@@ -121,11 +119,10 @@ def _verify(
 
     gains = read_gains(document)
     system = assemble_from_text(spec.spec, gains, document["coordinates"], plant=plant)
-    if document["schema"] != FORMER:
-        held = held_system(document)
-        for field in fields(SwitchedSystem):
-            if getattr(held, field.name) != getattr(system, field.name):
-                return Verification(None, f"its field {field.name!r} is not that of the spec")
+    held = held_system(document)
+    for field in fields(SwitchedSystem):
+        if getattr(held, field.name) != getattr(system, field.name):
+            return Verification(None, f"its field {field.name!r} is not that of the spec")
     return check(document, system)
 
 

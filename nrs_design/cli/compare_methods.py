@@ -112,7 +112,7 @@ def _print(loaded: LoadedSpec, system: SwitchedSystem, runs: tuple[MethodRun, ..
 
 def _draw(runs: tuple[MethodRun, ...], path: Path) -> None:
     from nrs_design.output import PNG, write_output
-    from nrs_design.reporting.figures.methods import draw_histories
     from nrs_design.reporting.images import to_png
+    from nrs_design.reporting.sections.methods import draw_histories
 
     write_output(path, to_png(draw_histories(runs)), replaces=PNG)

@@ -58,6 +58,7 @@ class Value:
     starts_at_angle: bool = False
     # Whether a value beyond its limit is refused as such; if not, the checks of results do it.
     guarded: bool = True
+    stored: str = ""  # As modes call a state that matters to stability, with its unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,7 @@ class Coefficient:
     # Whether it is a number of the robot, without a name of its own in the exported code.
     inline: bool = False
     table: bool = False  # Whether it is a table at equal distances, for `interpolate`
+    symbols: tuple[str, ...] = ()  # As terms call it in each mode, where that is not `symbol`
 
     @property
     def by_mode(self) -> bool:
@@ -81,6 +83,10 @@ class Coefficient:
     def of(self, mode: int) -> Fraction:
         """Return its value in a mode."""
         return self.values[mode if self.by_mode else 0]
+
+    def symbol_in(self, mode: int) -> str:
+        """Return what terms call it in a mode."""
+        return self.symbols[mode] if self.symbols else self.symbol
 
 
 @dataclass(frozen=True, slots=True)

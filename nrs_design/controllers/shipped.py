@@ -6,19 +6,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import ControllerDesign
+from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
+from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sampled import (
-    SampledAdmittance,
-    SampledForce,
-    SampledLaw,
-)
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.step_analysis import check_range
-from nrs_design.controllers.step_law import build_law
+from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
-from nrs_design.controllers.step_parts import BEYOND, StepFrame, StepLimits
 from nrs_design.errors import DesignError
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
 
@@ -49,16 +45,18 @@ def shipped_law(
         If a controller has no step yet, or a step could leave single precision.
     """
     method = "exact" if spec.sampling is None else spec.sampling.admittance
-    laws: dict[str, SampledLaw] = {}
-    for controller in design.controllers:
-        sampled = controller.law.sampled(outer or period, method)
-        if sampled is None:
-            what = f"{controller.name} is a {controller.law.name} controller"
-            raise _without_program(what, controller.name)
-        laws[controller.name] = sampled
+    laws = {c.name: _discrete(c, outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
     return replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
+
+
+def _discrete(controller: Controller, period: Fraction, method: str) -> DiscreteLaw:
+    law = controller.law.discretize(period, method)
+    if law is None:
+        what = f"{controller.name} is a {controller.law.name} controller"
+        raise _without_program(what, controller.name)
+    return law
 
 
 def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> StepLogic | None:
@@ -72,17 +70,17 @@ def _logic_of(spec: InteractionDesignSpec, law: StepLaw, period: Fraction) -> St
 def _step_law(
     spec: InteractionDesignSpec,
     design: ControllerDesign,
-    laws: Mapping[str, SampledLaw],
+    laws: Mapping[str, DiscreteLaw],
     period: Fraction,
     outer: Fraction,
 ) -> StepLaw:
     low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
-    frame = StepFrame(design.motion.sampled(period), low_pass, step_limits(spec))
-    moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
-    placed = [name for name, law in laws.items() if isinstance(law, SampledForce)]
+    motion = design.motion
+    frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec))
     if spec.offset != "none":
-        raise _without_program("force control takes an offset", placed[0])
-    if len({law.a is None for law in moving}) > 1:
+        first = next(c.name for c in design.controllers if c.law.commands == "position")
+        raise _without_program("force control takes an offset", first)
+    if not share_states(design):
         raise DesignError(
             "some impedance controllers have a virtual inertia and some have none",
             remedy="give all of them an inertia Mt > 0, or none",
@@ -90,6 +88,12 @@ def _step_law(
         )
     idle = spec.idle_states
     return build_law(frame, laws, None if idle is None else _left(idle, period))
+
+
+def share_states(design: ControllerDesign) -> bool:
+    """Tell whether all controllers that command a velocity have the same states of their own."""
+    laws = (c.law for c in design.controllers if c.law.commands == "velocity")
+    return len({law.states for law in laws}) <= 1
 
 
 def _left(idle: IdleStatesSpec, period: Fraction) -> Fraction:

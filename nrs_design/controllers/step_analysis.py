@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from nrs_design.controllers.float32 import PRECISION
 from nrs_design.controllers.operations import LINEAR, Operation, StepLaw
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm, combine
@@ -14,7 +15,31 @@ from nrs_design.models.linear_form import LinearForm, combine
 LARGEST = Fraction(2) ** 127
 # More than all roundings of a step add to a value, over its size.
 SLACK = 1 + Fraction(1, 2**16)
+# Half a unit in the last place, over the number.
+UNIT = Fraction(1, 2**PRECISION)
 ONE = Fraction(1)
+
+
+def rounding_share(count: int) -> Fraction:
+    """Return how much so many roundings change a term at most, over its size.
+
+    Rounding to nearest changes a result by at most ``u = 2^-24`` of its size; a fused product and
+    sum rounds once less. That is ``n u / (1 - n u)``, and ``n u (1 + 2^-20)`` is not less for n up
+    to 15: a dyadic number.
+
+    Parameters
+    ----------
+    count : int
+        The n, from 1 to 15.
+
+    Raises
+    ------
+    ValueError
+        If there are more.
+    """
+    if not 1 <= count <= 15:
+        raise ValueError(f"{count} roundings are not counted")
+    return count * UNIT * (1 + Fraction(1, 2**20))
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +178,7 @@ def _terms(
             # Both products are exact.
             return right if factor else ()
         factor = numbers.get(operation.left, factor)
-        return tuple(term.times(factor, f"{coefficient.symbol} ", 1) for term in right)
+        return tuple(term.times(factor, f"{coefficient.symbol_in(mode)} ", 1) for term in right)
     add, left = operation.kind == "add", terms[operation.left]
     sign = ONE if add else -ONE
     if not left or not right:

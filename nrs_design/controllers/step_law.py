@@ -1,308 +1,247 @@
 """One sample of a law as a list of operations: PD control below the compliant laws.
 
-The list is the law, for the program and for the proof: `nrs_design.switched.sampled_law` takes the
-matrices and the roundings of a certificate from it.
+The list is the law, for the program and for the proof. Every coefficient and every result is a
+single-precision number:
+
+    x1 = p x1 + q F              (where the force is filtered; then x2 = p x2 + q x1, ...)
+    xref = X + ...               (what the parts of the laws add to the commanded position)
+    e = xref - theta
+    u = Kp e + D (e - e_before)
+    ...                          (what the parts compute for the next sample)
+
+The position is taken at the sample, the force sample may be older.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.sampled import SampledAdmittance, SampledForce, SampledLaw
-from nrs_design.controllers.step_parts import (
-    BEYOND,
-    HAND,
-    VELOCITY,
-    StepFrame,
-    StepLimits,
-    admitted,
-    error_before,
-    filtered,
-    lags,
-    motion,
-)
+from nrs_design.controllers.parts import BEYOND, FORCE, HAND, POSITION, StepPart
+from nrs_design.controllers.sensor import SampledLowPass
 
 UNITS = {"command": "rpm"}
-ONE, ZERO = Fraction(1), Fraction(0)
-
-
-def build_law(
-    frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Fraction | None = None
-) -> StepLaw:
-    """Write the laws of controllers out, by the names of these.
-
-    Parameters
-    ----------
-    frame : StepFrame
-        Below and before all of them.
-    laws : mapping of str to SampledAdmittance or SampledForce
-        By the names of their controllers; all admittances have an inertia, or none has.
-    idle : Fraction, optional
-        What a sample leaves of the states of idle admittances, where there are both kinds, and of
-        an integral of the force error beside others.
-    """
-    moving = {name: law for name, law in laws.items() if isinstance(law, SampledAdmittance)}
-    placed = {name: law for name, law in laws.items() if isinstance(law, SampledForce)}
-    if not moving:
-        return build_placed_law(frame, placed, idle or ZERO)
-    if not placed:
-        return build_step_law(frame, moving)
-    assert idle is not None, "beside others, admittances are idle at times"
-    return build_mixed_law(frame, laws, idle)
-
-
-def numbers_of(frame: StepFrame, law: SampledLaw, idle: Fraction | None) -> dict[str, Fraction]:
-    """Return the coefficients of one controller by name, be they single-precision numbers or not.
-
-    Parameters
-    ----------
-    frame, idle
-        As for `build_law`; ``idle`` where there are other controllers, too.
-    law : SampledAdmittance or SampledForce
-        Of the controller.
-    """
-    found = {c.name: c.of(0) for c in (*frame.coefficients, _force_gains((law,)))}
-    found |= {c.name: c.of(0) for c in _integral_gains((law,), idle or ZERO)}
-    if isinstance(law, SampledAdmittance):
-        return found | {c.name: c.of(0) for c in _admittances((law,), idle)}
-    # Of both states of an idle admittance, the same is left.
-    return found if idle is None else found | {"d": idle, "a": idle}
-
-
-def build_step_law(frame: StepFrame, laws: Mapping[str, SampledAdmittance]) -> StepLaw:
-    """Write impedance control out, by the names of its controllers.
-
-    All of them have a virtual inertia, or none has.
-    """
-    limits = frame.limits
-    inert = any(law.a is not None for law in laws.values())
-    sprung = any(law.Kt for law in laws.values())
-    following = {"reference": "next_reference", **frame.memory}
-    following |= {"velocity": "next_velocity"} if inert else {}
-    following |= {"commanded": "next_commanded"} if sprung else {}
-    return StepLaw(
-        tuple(laws),
-        (*limits.measured, HAND),
-        tuple(_states(limits, frame.order, inert=inert, sprung=sprung)),
-        (
-            *frame.coefficients,
-            *_admittances(laws.values()),
-            *_hand(limits),
-            *limits.coefficients,
-        ),
-        (
-            *filtered(frame.order),
-            *motion(limits),
-            *_moving(frame.force, inert=inert, sprung=sprung),
-        ),
-        limits.output,
-        following,
-        UNITS,
-    )
-
-
-def build_placed_law(
-    frame: StepFrame, laws: Mapping[str, SampledForce], idle: Fraction = ZERO
-) -> StepLaw:
-    """Write position and force control out; neither has a reference of its own.
-
-    Parameters
-    ----------
-    frame : StepFrame
-        Below and before all of them.
-    laws : mapping of str to SampledForce
-        By the names of their controllers.
-    idle : Fraction
-        What a sample leaves of an integral while another controller is active.
-    """
-    limits = frame.limits
-    integral = _Integral.of(laws.values(), idle, limits)
-    gains = (_force_gains(laws.values()), *integral.coefficients)
-    place = Operation("reference", "add", "position", integral.correction, "angle")
-    return StepLaw(
-        tuple(laws),
-        (*limits.measured, *limits.commanded),
-        (error_before(2 * BEYOND), *lags(frame.order), *integral.states),
-        (*frame.coefficients, *gains, *limits.coefficients),
-        (
-            *filtered(frame.order),
-            *_correction(frame.force),
-            *integral.added,
-            place,
-            *motion(limits),
-            *integral.advanced,
-        ),
-        limits.output,
-        {**frame.memory, **integral.memory},
-        UNITS,
-    )
-
-
-def build_mixed_law(frame: StepFrame, laws: Mapping[str, SampledLaw], idle: Fraction) -> StepLaw:
-    """Write impedance control beside position and force control out.
-
-    The reference of impedance control is counted from the commanded position. While another
-    controller is active, it and the velocity of the admittances decay. A product with zero or one
-    is exact, and so is a sum with zero: what is absent in a mode rounds nothing there.
-
-    Parameters
-    ----------
-    frame : StepFrame
-        Below and before all of them.
-    laws : mapping of str to SampledAdmittance or SampledForce
-        By the names of their controllers; all admittances have an inertia, or none has.
-    idle : Fraction
-        What a sample leaves of the states of idle controllers; nothing where a switch resets them.
-    """
-    limits = frame.limits
-    moving = [law for law in laws.values() if isinstance(law, SampledAdmittance)]
-    inert, sprung = any(law.a is not None for law in moving), any(law.Kt for law in moving)
-    offset = Value("offset", "r", "rad", limits.angle, "reference over the commanded position")
-    integral = _Integral.of(laws.values(), idle, limits)
-    following = {"offset": "next_offset", **frame.memory, **integral.memory}
-    following |= {"velocity": "next_velocity"} if inert else {}
-    gains = (_force_gains(laws.values()), *integral.coefficients)
-    force, pulls = _pulled(frame.force) if sprung else (frame.force, ())
-    admittances = _admittances(laws.values(), idle)
-    ends = (*_hand(limits), *limits.coefficients)
-    return StepLaw(
-        tuple(laws),
-        (*limits.measured, *limits.commanded, HAND),
-        (
-            offset,
-            error_before(2 * BEYOND),
-            *([VELOCITY] if inert else []),
-            *lags(frame.order),
-            *integral.states,
-        ),
-        (*frame.coefficients, *gains, *admittances, *ends),
-        (
-            *filtered(frame.order),
-            *_correction(frame.force),
-            *integral.added,
-            *_mixed_reference(integral.correction),
-            *motion(limits),
-            *pulls,
-            *admitted(force, inert=inert),
-            Operation("left", "multiply", "d", "offset"),
-            Operation("next_offset", "add", "left", "moved", "angle"),
-            *integral.advanced,
-        ),
-        limits.output,
-        following,
-        UNITS,
-    )
-
-
-def _states(limits: StepLimits, order: int, *, inert: bool, sprung: bool) -> Iterator[Value]:
-    angle, meaning = limits.angle, "reference of the motion controller"
-    yield Value("reference", "xref", "rad", angle, meaning, starts_at_angle=True)
-    yield error_before(2 * angle)
-    yield from [VELOCITY] if inert else []
-    yield from lags(order)
-    if sprung:
-        meaning = "reference that the command alone gives"
-        yield Value("commanded", "xcom", "rad", angle, meaning, starts_at_angle=True)
-
-
-def _moving(force: str, *, inert: bool, sprung: bool) -> Iterator[Operation]:
-    """Yield admittances with a reference of their own."""
-    if sprung:
-        yield Operation("offset", "subtract", "reference", "commanded", "term", "r")
-        force, pulls = _pulled(force)
-        yield from pulls
-    yield from admitted(force, inert=inert)
-    yield Operation("next_reference", "add", "reference", "moved", "angle")
-    if sprung:
-        yield Operation("advanced", "multiply", "T", "wanted")
-        yield Operation("next_commanded", "add", "commanded", "advanced", "angle")
-
-
-def _pulled(force: str) -> tuple[str, tuple[Operation, ...]]:
-    """Return the force that an admittance takes together with its spring, and how it is made."""
-    pull = Operation("pull", "multiply", "Kt", "offset")
-    return "felt", (pull, Operation("felt", "add", force, "pull"))
-
-
-def _admittances(
-    laws: Collection[SampledLaw], idle: Fraction | None = None
-) -> Iterator[Coefficient]:
-    """Yield coefficients for every mode; beside others, ``idle`` is left of the states."""
-    each = [law if isinstance(law, SampledAdmittance) else None for law in laws]
-    if idle is not None:
-        yield Coefficient("takes_offset", "", "1", tuple(ONE if law else ZERO for law in each))
-        yield Coefficient("d", "d", "1", tuple(ONE if law else idle for law in each))
-    if any(law.Kt for law in each if law):
-        yield Coefficient("Kt", "Kt", "N*m/rad", tuple(law.Kt if law else ZERO for law in each))
-    kept = tuple(a for a in (law.a if law else idle for law in each) if a is not None)
-    if any(law.a is not None for law in each if law):
-        yield Coefficient("a", "a", "1", kept)
-    yield Coefficient("b", "b", "rad/(s*N*m)", tuple(law.b if law else ZERO for law in each))
-    # All admittances have the same period.
-    steps = tuple(law.T if law else ZERO for law in each)
-    yield Coefficient("T", "T", "s", steps[:1] if idle is None else steps)
-
-
-def _hand(limits: StepLimits) -> Iterator[Coefficient]:
-    yield Coefficient("velocity_limit", "", "rad/s", (limits.velocity,))
-
-
-def _force_gains(laws: Iterable[SampledLaw]) -> Coefficient:
-    gains = (law.Kp if isinstance(law, SampledForce) else ZERO for law in laws)
-    return Coefficient("Kf", "Kp", "rad/(N*m)", tuple(gains))
-
-
-def _correction(force: str) -> Iterator[Operation]:
-    yield Operation("lack", "subtract", "wanted_torque", force)
-    yield Operation("correction", "multiply", "Kf", "lack")
-
-
-def _mixed_reference(correction: str) -> Iterator[Operation]:
-    yield Operation("taken", "multiply", "takes_offset", "offset")
-    yield Operation("off", "add", "taken", correction)
-    yield Operation("reference", "add", "position", "off", "angle")
+ZERO = Fraction(0)
 
 
 @dataclass(frozen=True, slots=True)
-class _Integral:
-    """The integral of the force error, in the reference of every mode; empty where there is none.
+class StepLimits:
+    """Where inputs are refused and where signals saturate; single-precision numbers."""
 
-    It goes on where the force is controlled with it, and bleeds in all other modes.
-    """
+    # Joint angle and reference beyond it are refused, rad.
+    angle: Fraction = BEYOND
+    # The velocity command saturates there, rad/s.
+    velocity: Fraction = BEYOND
+    # The speed command of the motor saturates there, rpm; None for nowhere.
+    command: Fraction | None = None
 
-    correction: str = "correction"
-    states: tuple[Value, ...] = ()
-    coefficients: tuple[Coefficient, ...] = ()
-    added: tuple[Operation, ...] = ()
-    advanced: tuple[Operation, ...] = ()
-    memory: Mapping[str, str] = field(default_factory=dict)
+    def within(self, value: Value) -> Value:
+        """Return a value that is refused beyond the largest angle, if it is one."""
+        return replace(value, limit=self.angle) if value.unit == "rad" else value
 
-    @classmethod
-    def of(cls, laws: Collection[SampledLaw], idle: Fraction, limits: StepLimits) -> _Integral:
-        if not any(_gathers(law) for law in laws):
-            return cls()
-        return cls(
-            "aimed",
-            (Value("integral", "w", "rad", limits.angle, "integral of the force error"),),
-            tuple(_integral_gains(laws, idle)),
-            (Operation("aimed", "add", "integral", "correction"),),
-            (
-                Operation("bleeding", "multiply", "bled", "integral"),
-                Operation("gathered", "multiply", "Ki_T", "lack"),
-                Operation("next_integral", "add", "bleeding", "gathered"),
-            ),
-            {"integral": "next_integral"},
+
+@dataclass(frozen=True, slots=True)
+class StepFrame:
+    """What all laws of a program have in common."""
+
+    # Of the motion controller, in rpm/rad: its Kp, and Kd over the period.
+    Kp: Fraction
+    D: Fraction
+    # Through which the force passes on its way to the laws.
+    low_pass: SampledLowPass | None = None
+    # By default nothing saturates, and inputs are refused where no robot gets.
+    limits: StepLimits = StepLimits()
+
+    @property
+    def order(self) -> int:
+        """How many lags the filter of the force has."""
+        return 0 if self.low_pass is None else self.low_pass.order
+
+    @property
+    def numbers(self) -> dict[str, Fraction]:
+        """The numbers of motion controller and filter, by the names of their coefficients."""
+        held = {"Kp": self.Kp, "Kd_over_T": self.D}
+        return held | (
+            {} if self.low_pass is None else {"p": self.low_pass.p, "q": self.low_pass.q}
         )
 
+    @property
+    def coefficients(self) -> Iterator[Coefficient]:
+        """Those of the motion controller and of the filter of the force."""
+        said = {"Kp": ("Kp", "rpm/rad"), "Kd_over_T": ("D", "rpm/rad")}
+        for name, number in self.numbers.items():
+            yield Coefficient(name, *said.get(name, (name, "1")), (number,))
 
-def _gathers(law: SampledLaw) -> bool:
-    return isinstance(law, SampledForce) and law.Ki_T != 0
+
+def step_parts(laws: Collection[DiscreteLaw]) -> tuple[StepPart, ...]:
+    """Return the parts of some laws, each once: first of those that are given a position."""
+    placed = [law for law in laws if law.law.commands == "position"]
+    ordered = (*placed, *(law for law in laws if law not in placed))
+    used = {name for law in laws for name in law.numbers}
+    each = (part for law in ordered for part in law.law.parts(used, beside=bool(placed)))
+    return tuple({part.name: part for part in each}.values())
 
 
-def _integral_gains(laws: Collection[SampledLaw], idle: Fraction) -> Iterator[Coefficient]:
-    gains = tuple(law.Ki_T if isinstance(law, SampledForce) else ZERO for law in laws)
-    yield Coefficient("Ki_T", "Ki_T", "rad/(N*m)", gains)
-    yield Coefficient("bled", "g", "1", tuple(ONE if _gathers(law) else idle for law in laws))
+def numbers_in_force(
+    law: DiscreteLaw, parts: Iterable[StepPart], idle: Fraction | None
+) -> dict[str, Fraction]:
+    """Return the numbers of all parts while one law is active, by name.
+
+    Parameters
+    ----------
+    law : DiscreteLaw
+        The active one; its numbers need not be those of single precision.
+    parts : iterable of StepPart
+        Of all laws of the program.
+    idle : Fraction or None
+        What a sample leaves of the states of laws that are not active.
+    """
+    found: dict[str, Fraction] = {}
+    for part in parts:
+        active = _has(law, part)
+        for gain in part.gains:
+            number = law.numbers.get(gain.name, ZERO) if gain.fixed is None else gain.fixed
+            found[gain.name] = number if active else (idle or ZERO) if gain.idle else ZERO
+    return found
+
+
+def _has(law: DiscreteLaw, part: StepPart) -> bool:
+    """Tell whether a part is one of a law's own."""
+    return part.name in {own.name for own in law.law.parts(law.numbers, beside=False)}
+
+
+def build_law(
+    frame: StepFrame, laws: Mapping[str, DiscreteLaw], idle: Fraction | None = None
+) -> StepLaw:
+    """Write the laws of controllers out.
+
+    Parameters
+    ----------
+    frame : StepFrame
+        Below and before all of them.
+    laws : mapping of str to DiscreteLaw
+        By the names of their controllers; all admittances have an inertia, or none has.
+    idle : Fraction, optional
+        What a sample leaves of the states of laws that are not active.
+    """
+    limits, parts = frame.limits, step_parts(laws.values())
+    places = [part.place for part in parts if part.place is not None]
+    states = [state for part in reversed(parts) for state in part.states]
+    inputs = {value.name: value for part in parts for value in part.inputs}
+    placed = POSITION.name in inputs
+    takes_hand = HAND.name in inputs
+    error = Value(
+        "error_before",
+        "e before",
+        "rad",
+        2 * (BEYOND if placed else limits.angle),
+        "error of motion a sample ago",
+        stored="e before [rad]",
+    )
+    edges = {"velocity_limit": (limits.velocity, "rad/s")} if takes_hand else {}
+    edges |= {} if limits.command is None else {"command_limit": (limits.command, "rpm")}
+    lagging = {f"filtered_{i}": _lagged(i) for i in range(1, frame.order + 1)}
+    following = {name: made for part in parts for name, made in part.following.items()}
+    first = {place.name: following[place.name] for place in places}
+    operations = (
+        *_filtered(frame.order),
+        *_referred(parts, placed=placed),
+        *motion_operations(limits),
+        *(operation for part in reversed(parts) for operation in part.after),
+    )
+    return StepLaw(
+        tuple(laws),
+        (*_measured(limits), *map(limits.within, inputs.values())),
+        (
+            *map(limits.within, places),
+            error,
+            *(limits.within(state) for state in states if state.stored),
+            *_lags(frame.order),
+            *(limits.within(state) for state in states if not state.stored),
+        ),
+        (
+            *frame.coefficients,
+            *_coefficients(laws.values(), parts, idle),
+            *(Coefficient(name, "", unit, (edge,)) for name, (edge, unit) in edges.items()),
+        ),
+        tuple(_with_force(operation, _lagged(frame.order)) for operation in operations),
+        {"command": "command" if limits.command is None else "limited_command"},
+        {**first, "error_before": "error", **lagging, **following},
+        UNITS,
+    )
+
+
+def _coefficients(
+    laws: Collection[DiscreteLaw], parts: Iterable[StepPart], idle: Fraction | None
+) -> Iterator[Coefficient]:
+    beside = len({law.law.commands for law in laws}) > 1
+    for part in parts:
+        each = [numbers_in_force(law, (part,), idle) for law in laws]
+        for gain in part.gains:
+            values = tuple(numbers[gain.name] for numbers in each)
+            symbols = tuple(gain.symbol if _has(law, part) else gain.idle for law in laws)
+            yield Coefficient(
+                gain.name,
+                gain.symbol,
+                gain.unit,
+                values[:1] if gain.common and not beside else values,
+                symbols=symbols if gain.idle else (),
+            )
+
+
+def _measured(limits: StepLimits) -> tuple[Value, ...]:
+    angle = Value("angle", "theta", "rad", BEYOND, "measured angle of the joint", "angle")
+    torque = Value("torque", "F", "N*m", BEYOND, "measured torque of the contact", "term")
+    return limits.within(angle), torque
+
+
+def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]:
+    """Yield the reference: the commanded position, and what the parts add to it."""
+    total = ""
+    for part in parts:
+        yield from part.before
+        if part.adds and total:
+            yield Operation(part.total, "add", part.adds, total)
+        total = part.total if part.adds and total else part.adds or total
+    if placed:
+        yield Operation("reference", "add", "position", total, "angle")
+
+
+def motion_operations(limits: StepLimits) -> Iterator[Operation]:
+    """Yield the PD controller, from ``reference`` and ``angle`` to ``command``."""
+    yield Operation("error", "subtract", "reference", "angle", "own", "e")
+    yield Operation("proportional", "multiply", "Kp", "error")
+    yield Operation("change", "subtract", "error", "error_before")
+    yield Operation("derivative", "multiply", "Kd_over_T", "change")
+    yield Operation("command", "add", "proportional", "derivative")
+    if limits.command is not None:
+        yield Operation("limited_command", "saturate", "command_limit", "command")
+
+
+def _lags(order: int) -> Iterator[Value]:
+    """Yield the states of a filter with so many lags."""
+    for i in range(1, order + 1):
+        meaning = f"torque behind lag {i} of the filter"
+        stored = f"filtered {i} before [N*m]"
+        yield Value(f"filtered_{i}", f"x{i}", "N*m", BEYOND, meaning, stored=stored)
+
+
+def _lagged(order: int) -> str:
+    """Return the name of the force behind so many lags."""
+    return f"next_filtered_{order}" if order else "torque"
+
+
+def _filtered(order: int) -> Iterator[Operation]:
+    """Yield the lags of a filter, one after the other."""
+    for i in range(1, order + 1):
+        yield Operation(f"kept_{i}", "multiply", "p", f"filtered_{i}")
+        yield Operation(f"added_{i}", "multiply", "q", _lagged(i - 1))
+        yield Operation(_lagged(i), "add", f"kept_{i}", f"added_{i}")
+
+
+def _with_force(operation: Operation, force: str) -> Operation:
+    left, right = (force if n == FORCE else n for n in (operation.left, operation.right))
+    return replace(operation, left=left, right=right)

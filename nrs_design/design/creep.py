@@ -16,8 +16,7 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.gain_range import gain_interval
-from nrs_design.controllers.sampled import SampledAdmittance
-from nrs_design.controllers.sampled_range import coefficient_ranges
+from nrs_design.controllers.laws.impedance import lasting_gain
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import CREEP, CREEP_ANGLE
@@ -71,11 +70,11 @@ def creep_of(
         error = sensor.lasting
         if sensor.filter is not None:
             error *= sensor.filter.sampled(period).lasting_gain
-        law = controller.law.sampled(period, sampling.admittance)
-        assert isinstance(law, SampledAdmittance)
-        retuned = coefficient_ranges(controller.law, ranges, period, sampling.admittance)
-        lasting = retuned["c"].high if retuned else law.lasting_gain
-        gain = lasting * law.T / period
+        law = controller.law.discretize(period, sampling.admittance)
+        assert law is not None
+        retuned = controller.law.enclose(ranges, period, sampling.admittance)
+        lasting = retuned["c"].high if "c" in retuned else lasting_gain(law.numbers)
+        gain = lasting * law.numbers["T"] / period
     if "Kt" in lowest:
         return Creep(Fraction(0), error / lowest["Kt"], noise)
     return Creep(error * gain, None, noise)

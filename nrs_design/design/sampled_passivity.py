@@ -27,13 +27,12 @@ roots are isolated rigorously.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
 
 from nrs_design.controllers.laws import ProportionalDerivative
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
 from nrs_design.design.enclosed_polynomial import (
     Enclosed,
     Polynomial,
@@ -73,7 +72,7 @@ class SampledBand:
 def sampled_bands(
     motor: Actuator,
     motion: ProportionalDerivative,
-    law: SampledAdmittance,
+    law: Mapping[str, Fraction],
     period: Fraction,
     ages: Sequence[int],
 ) -> tuple[SampledBand, ...]:
@@ -85,8 +84,8 @@ def sampled_bands(
         Gain and time constant.
     motion : ProportionalDerivative
         The motion controller.
-    law : SampledAdmittance
-        Without a spring.
+    law : mapping of str to Fraction
+        Numbers of a discrete admittance without a spring.
     period : Fraction
         In s.
     ages : sequence of int
@@ -103,10 +102,10 @@ def sampled_bands(
     ValueError
         If the law has a spring.
     """
-    if law.Kt:
+    if "Kt" in law:
         raise ValueError("a spring makes another admittance")
-    loop = _Loop.of(motor, motion.sampled(period), period)
-    if not (loop.is_stable and (law.a is None or abs(law.a) < 1)):
+    loop = _Loop.of(motor, motion, period)
+    if not (loop.is_stable and abs(law.get("a", ZERO)) < 1):
         return ()
     return tuple(_band(loop, law, motor.time_constant, period, age) for age in ages)
 
@@ -119,7 +118,7 @@ class _Loop:
     denominator: Polynomial
 
     @classmethod
-    def of(cls, motor: Actuator, motion: SampledMotion, period: Fraction) -> _Loop:
+    def of(cls, motor: Actuator, motion: ProportionalDerivative, period: Fraction) -> _Loop:
         """Close the loop of PD and motor.
 
         With ``u = C (xref - theta)``, ``C = ((Kp + D) z - D)/z`` and ``theta = Km N/((z - 1)
@@ -130,7 +129,8 @@ class _Loop:
         s = times(exactly(motor.time_constant), left)
         rest = plus(exactly(period), negative(s))
         N = [plus(times(s, left), negative(times(rest, E))), rest]
-        C = numbers(-motion.D, motion.Kp + motion.D)
+        D = motion.over(period)
+        C = numbers(-D, motion.Kp + D)
         lag = [negative(E), exactly(ONE)]
         turned = multiply(numbers(0, -1, 1), lag)
         driven = multiply(multiply(C, N), numbers(motor.gain))
@@ -147,7 +147,7 @@ class _Loop:
 
 
 def _band(
-    loop: _Loop, law: SampledAdmittance, tau: Fraction, period: Fraction, age: int
+    loop: _Loop, law: Mapping[str, Fraction], tau: Fraction, period: Fraction, age: int
 ) -> SampledBand:
     """Bracket the first frequency at which the real part may be negative."""
     signs = sign_polynomials(*_admittance(loop, law, age), 2 * tau / period)
@@ -170,13 +170,15 @@ def _band(
     return SampledBand(age, passive)
 
 
-def _admittance(loop: _Loop, law: SampledAdmittance, age: int) -> tuple[Polynomial, Polynomial]:
+def _admittance(
+    loop: _Loop, law: Mapping[str, Fraction], age: int
+) -> tuple[Polynomial, Polynomial]:
     """Return the U from force to command as two polynomials in w, but for a positive factor.
 
     The reference moves by T v at a sample, and ``v+ = a v + b F``, or ``v = b F`` without inertia;
     the ``z - 1`` of the reference is that of the loop.
     """
-    lag = numbers(1) if law.a is None else numbers(-law.a, 1)
+    lag = numbers(-law["a"], 1) if "a" in law else numbers(1)
     denominator = multiply(lag, loop.denominator)
     degree = len(denominator) - 1
     late, early = numbers(1), numbers(1)

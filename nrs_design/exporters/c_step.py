@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nrs_design.controllers.operations import Operation, StepLaw
-from nrs_design.controllers.step_parts import BEYOND
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.exporters.c_names import CNames, literal
 from nrs_design.exporters.template import fill_template
 

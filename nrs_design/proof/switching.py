@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.proof.matrix import RationalMatrix, exact_fraction
@@ -46,8 +46,8 @@ class FixedParameter:
     """A parameter that is unknown but constant: its name and the ends of its range."""
 
     name: str
-    low: Fraction
-    high: Fraction
+    low: Fraction = field(metadata={"signed": True})
+    high: Fraction = field(metadata={"signed": True})
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
-
-if TYPE_CHECKING:
-    from nrs_design.proof.saturation import Saturation
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Annotated, ClassVar, Literal, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import Discriminator, Field
 
+from nrs_design.models.contact import (
+    AbstractLinearLaw,
+    AbstractNonlinearLaw,
+    Elastic,
+    Hand,
+    HuntCrossley,
+    KelvinBoltzmann,
+    KelvinVoigt,
+    Maxwell,
+)
+from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
-from nrs_design.spec.faults import fault
+from nrs_design.spec.check import Row, each
+from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
@@ -42,20 +53,16 @@ _COVERS = (
     "all specimens) or prediction (the next record), each with 95 %"
 )
 
-Number = TypeVar("Number", float, Fraction)
+_LENGTHS = "write lengths with a lever_arm, and angles without one"
 
 
 class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
-    # Whether the force depends on more than the deflection and the velocity of the moment.
-    remembers: ClassVar[bool] = False
-    # Whether a constant deflection keeps a force.
-    has_rest: ClassVar[bool] = True
-    # Whether its ranges hold while the deflection stays in a preload, off its surface, and no more.
-    preloaded: ClassVar[bool] = False
-    # Whether a mass moves with the contact.
-    has_mass: ClassVar[bool] = False
+    # The law that designs and proofs take, and its own where that is not linear: the former stands
+    # for it while the deflection stays in a preload, off its surface, and no more.
+    law: ClassVar[type[AbstractLinearLaw]]
+    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = None
 
     model: str
 
@@ -67,16 +74,54 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         "hold small motions there",
     )
 
-    @model_validator(mode="after")
-    def _check_lever_arm(self) -> Self:
+    def _quantities(self) -> Iterator[tuple[Location, tuple[RangedQuantity, Quantity | None]]]:
         for name, quantity in self.parameters().items():
-            _check_arm(quantity, name, self.lever_arm)
-        return self
+            yield (name,), (quantity, self.lever_arm)
+
+    checks: ClassVar[tuple[Row[Any], ...]] = (
+        *IdentifiedRangesSpec.checks,
+        *each(
+            _quantities,
+            Row[Any](
+                "",
+                lambda x: x[1] is None and is_translational(x[0].nominal) and x[0].nominal.text,
+                "{0!r} is linear, and there is no lever_arm",
+                "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or "
+                "write the rotational value at the pivot",
+            ),
+            Row[Any](
+                "",
+                lambda x: x[1] and not is_translational(x[0].nominal) and x[0].nominal.text,
+                "{0!r} is rotational, and a lever_arm is given",
+                "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
+            ),
+        ),
+    )
 
     @property
     def fixed(self) -> bool:
         """Whether every parameter has a single value."""
         return all(quantity.fixed for quantity in self.parameters().values())
+
+    @property
+    def remembers(self) -> bool:
+        """Whether the force depends on more than the deflection and the velocity of the moment."""
+        return self.law.remembers
+
+    @property
+    def has_rest(self) -> bool:
+        """Whether a constant deflection keeps a force."""
+        return self.law.has_rest
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass moves with the contact."""
+        return self.law.has_mass
+
+    @property
+    def preloaded(self) -> bool:
+        """Whether its ranges hold in a preload only."""
+        return self.nonlinear is not None
 
     @property
     def is_spring(self) -> bool:
@@ -92,11 +137,6 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     def preload_range(self) -> tuple[Quantity, Quantity] | None:
         """The lowest and highest deflection of the preload, if there is one."""
         return None
-
-    @property
-    def linear_model(self) -> str:
-        """The linear law that stands for it."""
-        return self.model
 
     def linear_at_pivot(self) -> dict[str, Interval]:
         """Return the parameters of that law with their ranges for a rotation."""
@@ -147,12 +187,16 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 class ElasticSpec(AbstractEnvironmentSpec):
     """Elastic environment, ``F = k delta`` (thesis 2.5)."""
 
+    law: ClassVar[type[AbstractLinearLaw]] = Elastic
+
     model: Literal["elastic"] = Field(description="law of the environment: elastic, F = k delta")
     stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
 
 
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
     """Kelvin-Voigt environment, ``F = k delta + b ddelta`` (thesis 2.5)."""
+
+    law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
 
     model: Literal["kelvin-voigt"] = Field(
         description="law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
@@ -169,7 +213,7 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 class HandSpec(AbstractEnvironmentSpec):
     """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
 
-    has_mass: ClassVar[bool] = True
+    law: ClassVar[type[AbstractLinearLaw]] = Hand
 
     model: Literal["hand"] = Field(
         description="law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
@@ -196,8 +240,7 @@ class HandSpec(AbstractEnvironmentSpec):
 class MaxwellSpec(AbstractEnvironmentSpec):
     """Maxwell environment, a spring and a damper in a row: ``F + (b/k) dF = b ddelta``."""
 
-    remembers: ClassVar[bool] = True
-    has_rest: ClassVar[bool] = False
+    law: ClassVar[type[AbstractLinearLaw]] = Maxwell
 
     model: Literal["maxwell"] = Field(
         description="law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
@@ -210,7 +253,7 @@ class MaxwellSpec(AbstractEnvironmentSpec):
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     """Kelvin-Boltzmann environment, the standard linear solid (thesis 2.5)."""
 
-    remembers: ClassVar[bool] = True
+    law: ClassVar[type[AbstractLinearLaw]] = KelvinBoltzmann
 
     model: Literal["kelvin-boltzmann"] = Field(
         description="law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
@@ -228,7 +271,8 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 class HuntCrossleySpec(AbstractEnvironmentSpec):
     """Hunt-Crossley environment, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
 
-    preloaded: ClassVar[bool] = True
+    law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
+    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = HuntCrossley
 
     model: Literal["hunt-crossley"] = Field(
         description="law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
@@ -251,27 +295,36 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         "proof holds"
     )
 
-    @model_validator(mode="after")
-    def _check_preload(self) -> Self:
-        low, high = self.preload
+    def _of_other_kind(self) -> tuple[str, str, str] | None:
+        """Return a deflection that is a length without a lever arm, or an angle with one."""
         of_length = kinds.LENGTH.accepts(self.about.dimension)
-        if of_length != (self.lever_arm is not None):
-            raise fault(
-                f"{self.about.text!r} is {'a length' if of_length else 'an angle'}, and "
-                f"{'there is no lever_arm' if of_length else 'a lever_arm is given'}",
-                "write lengths with a lever_arm, and angles without one",
-                "about",
-            )
-        scales = {(q.dimension, q.pi_power) for q in (self.about, low, high)}
-        if len(scales) > 1:
-            raise fault("about and preload have different units", "use one unit", "preload")
-        if not low.rational_part <= self.about.rational_part <= high.rational_part:
-            raise fault(
-                f"about {self.about.text!r} is not within the preload [{low.text}, {high.text}]",
-                "write [lowest, highest] around it",
-                "preload",
-            )
-        return self
+        if of_length == (self.lever_arm is not None):
+            return None
+        found = "a length", "there is no lever_arm"
+        return self.about.text, *(found if of_length else ("an angle", "a lever_arm is given"))
+
+    def _off_preload(self) -> tuple[str, str, str] | None:
+        """Return `about` and the ends of a preload in the same unit that does not hold it."""
+        low, high = self.preload
+        if self._units() or low.rational_part <= self.about.rational_part <= high.rational_part:
+            return None
+        return self.about.text, low.text, high.text
+
+    def _units(self) -> bool:
+        """Return whether `about` and the preload have different units."""
+        return len({(q.dimension, q.pi_power) for q in (self.about, *self.preload)}) > 1
+
+    checks = (
+        *AbstractEnvironmentSpec.checks,
+        Row("about", _of_other_kind, "{0!r} is {1}, and {2}", _LENGTHS),
+        Row("preload", _units, "about and preload have different units", "use one unit"),
+        Row(
+            "preload",
+            _off_preload,
+            "about {0!r} is not within the preload [{1}, {2}]",
+            "write [lowest, highest] around it",
+        ),
+    )
 
     @property
     def preload_range(self) -> tuple[Quantity, Quantity]:
@@ -301,11 +354,6 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         exponent = pick(Interval(self.exponent.nominal, *self.exponent.range))
         return {**tangent, "exponent": exponent, "about": self.about.si / arm}
 
-    @property
-    def linear_model(self) -> str:
-        """A spring beside a damper."""
-        return "kelvin-voigt"
-
     def linear_at_pivot(self) -> dict[str, Interval]:
         """Return the box of stiffness and damping over the preload, rounded outwards."""
         tangent, about = self.exact_at_pivot(), self.about.rational_part
@@ -326,11 +374,6 @@ def _quantities(turned: Interval, unit: str) -> RangedQuantity:
     return RangedQuantity(nominal=nominal, range=(low, high))
 
 
-def turn(value: Number, radius: Number) -> Number:
-    """Convert a linear stiffness, damping or mass to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
-    return value * radius**2
-
-
 def unit_at_pivot(quantity: Quantity) -> str:
     """Return the unit of a stiffness, damping or mass at the pivot."""
     each = (
@@ -349,19 +392,3 @@ def is_translational(quantity: Quantity) -> bool:
     """Whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
     linear = kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING, kinds.MASS
     return any(kind.accepts(quantity.dimension) for kind in linear)
-
-
-def _check_arm(quantity: RangedQuantity, name: str, arm: Quantity | None) -> None:
-    if is_translational(quantity.nominal) and arm is None:
-        raise fault(
-            f"{quantity.nominal.text!r} is linear, and there is no lever_arm",
-            "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or write "
-            "the rotational value at the pivot",
-            name,
-        )
-    if arm is not None and not is_translational(quantity.nominal):
-        raise fault(
-            f"{quantity.nominal.text!r} is rotational, and a lever_arm is given",
-            "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
-            name,
-        )

@@ -20,9 +20,15 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from nrs_design.controllers.laws import Admittance, CompliantLaw, ProportionalDerivative
-from nrs_design.controllers.sampled import SampledAdmittance, SampledForce, SampledLaw
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import (
+    Admittance,
+    CompliantLaw,
+    DiscreteLaw,
+    ProportionalDerivative,
+)
 from nrs_design.controllers.sensor import LowPass, Sensor
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import LinearForm
@@ -224,7 +230,7 @@ class ProcessorAxis(AbstractAxis):
         law, contact, place
             As in `AbstractAxis.cut`.
         """
-        held = law.sampled(self.sampling.outer, self.sampling.admittance)
+        held = law.discretize(self.sampling.outer, self.sampling.admittance)
         assert held is not None, "a spec with sampling has laws that are sampled"
         return self._cut(held, contact, place)
 
@@ -238,14 +244,14 @@ class ProcessorAxis(AbstractAxis):
         contact, spring, place, inert
             As in `AbstractAxis.admittances`.
         """
-        T = Admittance(ZERO, ONE).sampled(self.sampling.outer, self.sampling.admittance).T
+        T = to_float32(self.sampling.outer)
         first, second, third = (
-            self._cut(SampledAdmittance(a if inert else None, b, T, spring), contact, place)
+            self._cut(Admittance.discrete(a if inert else None, b, T, spring), contact, place)
             for a, b in COORDINATES
         )
         return first, second, third
 
-    def _cut(self, law: SampledLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
+    def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
         """Close the loop over a period of the force; what is touched does not load the motor."""
         k, b = contact.exact[0], (*contact.exact, ZERO)[1]
         frame = self._frame(law, place)
@@ -259,7 +265,7 @@ class ProcessorAxis(AbstractAxis):
         return CutLoop(opened, closed, opened)
 
     def _rows(
-        self, frame: Frame, law: SampledLaw, place: Place, k: Fraction, b: Fraction
+        self, frame: Frame, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
     ) -> Sequence[LinearForm]:
         E = sum(exponential_between(-frame.period / place.motor.time_constant), ZERO) / 2
         values = {"Km": place.motor.gain, "E": E, "k": k, "b": b}
@@ -271,20 +277,11 @@ class ProcessorAxis(AbstractAxis):
                 rows = [*multiply_matrices(between, rows)]
         return rows
 
-    def _frame(self, law: SampledLaw, place: Place) -> Frame:
-        moves = isinstance(law, SampledAdmittance)
-        return Frame(
-            self.sampling.step,
-            self.motion.sampled(self.sampling.period.exact),
-            isinstance(law, SampledAdmittance) and law.a is not None,
-            place.age,
-            place.motor.time_constant,
-            None if self.low_pass is None else self.low_pass.sampled(self.sampling.outer),
-            isinstance(law, SampledAdmittance) and law.Kt != 0,
-            moves,
-            isinstance(law, SampledForce) and law.Kp != 0 and not law.Ki_T,
-            gathers=isinstance(law, SampledForce) and law.Ki_T != 0,
-        )
+    def _frame(self, law: DiscreteLaw, place: Place) -> Frame:
+        low_pass = None if self.low_pass is None else self.low_pass.sampled(self.sampling.outer)
+        D = self.motion.over(self.sampling.period.exact)
+        step = StepFrame(self.motion.Kp, D, low_pass)
+        return Frame(self.sampling.step, step, (law,), place.age, place.motor.time_constant)
 
 
 def axis_of(

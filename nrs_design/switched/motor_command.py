@@ -13,7 +13,6 @@ from fractions import Fraction
 from itertools import product
 
 from nrs_design.controllers.float32 import float32_not_above
-from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
@@ -50,7 +49,6 @@ class MotorCommand:
 def motor_command(
     spec: InteractionDesignSpec,
     frame: Frame,
-    laws: Sequence[SampledLaw],
     channels: Sequence[Channel],
 ) -> MotorCommand | None:
     """Return the command under disturbances, or None.
@@ -65,8 +63,6 @@ def motor_command(
         With the limit of the driver.
     frame : Frame
         Of all modes.
-    laws : sequence of SampledAdmittance or SampledForce
-        Of all controllers.
     channels : sequence of Channel
         The disturbances.
 
@@ -76,10 +72,10 @@ def motor_command(
         None where nothing disturbs, the spec names no limit, or the command is not of this form.
     """
     largest = spec.limits.command
-    moving = all(isinstance(law, SampledAdmittance) for law in laws)
+    moving = all(law.law.commands == "velocity" for law in frame.laws)
     if largest is None or not channels or not moving or frame.holds:
         return None
-    form, sizes = frame.command(laws[0])
+    form, sizes = frame.command()
     n, end = len(frame.states), len(frame.states) + len(INPUTS)
     bounds = {channel.name: channel.bound for channel in channels}
     shares = list(zip(form[end:], sizes, strict=True))

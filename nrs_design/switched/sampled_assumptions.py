@@ -91,7 +91,7 @@ def assume_sampled(
         say("unloaded.sampled"),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
-        *_spring_texts(frame),
+        *_spring_texts(frame, design),
         *_placed_texts(frame, design, reset=reset),
         UNCOUPLED,
         *contact_texts(design),
@@ -134,8 +134,8 @@ def _motor_text(ranges: ActuatorRanges) -> Assumption:
     )
 
 
-def _spring_texts(frame: Frame) -> Iterator[Assumption]:
-    if frame.sprung:
+def _spring_texts(frame: Frame, design: ControllerDesign) -> Iterator[Assumption]:
+    if any(c.law.spring for c in design.controllers):
         yield say("spring.shared" if frame.idle is None else "spring.idle")
         yield say("spring.sample")
 
@@ -147,15 +147,16 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     yield say("rest-position.sampled")
     if not all(c.contacts for c in design.controllers):
         yield say("contacts.in-position", "the environments of the spec")
-    if frame.gathers:
+    if any(c.law.bleeds for c in design.controllers):
         yield say("idle.sampled-integral")
         others = dict.fromkeys(c.law.name for c in design.controllers if not c.law.bleeds)
         if others and frame.idle is not None:
             decay = exact_decimal(frame.idle)
             yield say("idle.sampled-bleeding", others=" or ".join(others), decay=decay)
-    if frame.idle is None or not frame.integrates:
+    moving = [c.law for c in design.controllers if c.law.commands == "velocity"]
+    if frame.idle is None or not moving:
         return
-    what = "velocity vm and reference" if frame.has_inertia else "the reference"
+    what = "velocity vm and reference" if any(law.states for law in moving) else "the reference"
     yield say("idle.sampled", what=what, decay=exact_decimal(frame.idle))
     if reset:
         yield say("at-a-switch.sampled-zeroed")
@@ -192,8 +193,7 @@ def _delay_text(least: int, most: int) -> Assumption:
 
 
 def _coefficients(frame: Frame, gains: Mapping[str, SampledGains]) -> str:
-    motion = frame.motion
-    texts = [f"Kp = {exact_decimal(motion.Kp)}", f"Kd/T = {exact_decimal(motion.D)}"]
+    texts = [f"Kp = {exact_decimal(frame.step.Kp)}", f"Kd/T = {exact_decimal(frame.step.D)}"]
     for name, item in gains.items():
         coefficients = item.law.coefficients.items()
         texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in coefficients]

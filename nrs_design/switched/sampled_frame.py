@@ -13,21 +13,18 @@ that is held stands after e_before.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from functools import lru_cache
+from itertools import takewhile
+from typing import TypeVar
 
-from nrs_design.controllers.sampled import (
-    SampledAdmittance,
-    SampledLaw,
-    SampledMotion,
-    rounding_share,
-)
-from nrs_design.controllers.sensor import SampledLowPass
-from nrs_design.controllers.step_law import numbers_of
-from nrs_design.controllers.step_parts import StepFrame
+from nrs_design.controllers.laws import DiscreteLaw
+from nrs_design.controllers.parts import StepPart
+from nrs_design.controllers.step_analysis import rounding_share
+from nrs_design.controllers.step_law import StepFrame, numbers_in_force, step_parts
 from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
 from nrs_design.switched.sampled_law import (
     ERROR,
@@ -38,12 +35,15 @@ from nrs_design.switched.sampled_law import (
     KP,
     ONE,
     STEP,
-    Kinds,
     ListedLaw,
+    kinds_of,
     list_law,
 )
 from nrs_design.switched.sampled_step import SampledStep, second, short
 
+# The error of motion of a sample ago, and the reference of impedance controllers alone, in whose
+# place the error of motion is a state.
+BEFORE, ALONE = "error_before", "reference"
 # What acts on a frame from outside, in this order.
 INPUTS = (
     "velocity command",
@@ -53,6 +53,8 @@ INPUTS = (
     "rounding of the reference",
     "rounding of the angle",
 )
+
+T = TypeVar("T")
 
 
 class Turn(StrEnum):
@@ -70,22 +72,20 @@ class Frame:
     # Asked for at every corner of every box, and made once for a loop.
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    period: Fraction  # From one sample to the next in s; of two periods the shorter one
-    motion: SampledMotion  # The motion controller
-    has_inertia: bool  # Whether the admittances have a velocity of their own
-    longest_delay: int  # Force samples on their way
-    time_constant: Fraction | None  # The tau of the motor in s, if it is known
-    low_pass: SampledLowPass | None = None  # Through which the law gets the force samples
-    sprung: bool = False  # Whether an admittance has a spring
-    integrates: bool = True  # Whether there are impedance controllers
-    takes_force: bool = False  # Whether there are force controllers
-    # What a period leaves of reference and velocity of the impedance controllers, where there are
-    # other controllers, too.
+    # From one sample to the next in s; of two periods the shorter one.
+    period: Fraction
+    # The motion controller, and the filter through which the laws get the force samples.
+    step: StepFrame
+    # Of all controllers, with the numbers that ship.
+    laws: tuple[DiscreteLaw, ...]
+    # How many force samples are on their way at most.
+    longest_delay: int
+    # The tau of the motor in s, if it is known.
+    time_constant: Fraction | None
+    # What a period leaves of the states of laws that are not active; None where all laws are alike.
     idle: Fraction | None = None
-    # Whether the command of the motion loop outlasts a sample: there are some at which only the
-    # admittance is computed.
-    holds: bool = False
-    gathers: bool = False  # Whether there are PI force controllers
+    # What is computed at the samples of a round.
+    turns: tuple[Turn, ...] = (Turn.BOTH,)
 
     @property
     def roundings(self) -> dict[str, Fraction]:
@@ -107,17 +107,7 @@ class Frame:
     @property
     def listed(self) -> ListedLaw:
         """The list of operations of the law."""
-        return list_law(
-            Kinds(
-                0 if self.low_pass is None else self.low_pass.order,
-                self.has_inertia,
-                self.sprung,
-                moves=self.integrates,
-                places=not self.integrates or self.idle is not None,
-                takes_force=self.takes_force,
-                gathers=self.gathers,
-            )
-        )
+        return list_law(self.step.order, kinds_of(self.laws))
 
     @property
     def _placing(self) -> tuple[str, ...]:
@@ -129,45 +119,34 @@ class Frame:
     @property
     def remembers(self) -> bool:
         """Whether a force sample outlasts its period."""
-        return self.longest_delay > 0 or self.low_pass is not None
+        return self.longest_delay > 0 or self.step.low_pass is not None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the command outlasts a sample, at which the motion loop computes nothing."""
+        return Turn.ADMITTANCE in self.turns
+
+    @property
+    def stored(self) -> dict[str, str]:
+        """The states of the law, by name: as modes call them."""
+        return {value.name: value.stored for value in self.listed.law.states if value.stored}
 
     @property
     def states(self) -> tuple[str, ...]:
         """Names and units of the states."""
+        place, others = _around(self.stored)
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
-        inner = ("vm [rad/s]",) if self.has_inertia else ()
-        first = ("e [rad]" if self.idle is None else "reference [rad]",) if self.integrates else ()
-        sensed = () if self.low_pass is None else self.low_pass.states
-        motion = ("omega [rad/s]", "e before [rad]", *(("u held",) if self.holds else ()))
-        gathered = ("integral [rad]",) if self.gathers else ()
-        return (*first, *motion, *inner, *gathered, *sensed, *ages, "delta [rad]")
+        motion = ("omega [rad/s]", self.stored[BEFORE], *(("u held",) if self.holds else ()))
+        return (*place, *motion, *others, *ages, "delta [rad]")
 
     def rows(
         self,
-        law: SampledLaw,
+        law: DiscreteLaw,
         delay: int,
         values: Mapping[str, Fraction],
         turn: Turn = Turn.BOTH,
     ) -> list[LinearForm]:
-        """Return the map of one period, and below it how large each rounding is at most.
-
-        Without the last of `rows_and_slip`.
-
-        Parameters
-        ----------
-        law, delay, values, turn
-            As there.
-        """
-        return self.rows_and_slip(law, delay, values, turn)[:-1]
-
-    def rows_and_slip(
-        self,
-        law: SampledLaw,
-        delay: int,
-        values: Mapping[str, Fraction],
-        turn: Turn = Turn.BOTH,
-    ) -> list[LinearForm]:
-        """Return the map of one period, and below it how large each rounding is at most.
+        """Return the map of one period, below it the size of each rounding, and the slip.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
         of a rounding, the size is at most that of its row below. The last row is the slip: by how
@@ -175,7 +154,7 @@ class Frame:
 
         Parameters
         ----------
-        law : SampledAdmittance or SampledForce
+        law : DiscreteLaw
             Of the controller in force.
         delay : int
             Age of its force sample.
@@ -193,61 +172,45 @@ class Frame:
         ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
         Km, E, tau = values["Km"], values["E"], self.time_constant
         s = values["s"] if tau is None else tau * (1 - E)
+        _, others = _around(made.after)
         reference, delta = _place(made, Km, s)
         return [
-            *([reference] if self.integrates else []),
+            *reference,
             _speed(made, Km, E),
-            made.seen,
+            made.after[BEFORE],
             *([made.drive] if self.holds else []),
-            *made.velocity,
-            *made.integral,
-            *made.lags,
+            *others,
             *ages[: self.longest_delay],
             delta,
             *made.sizes,
             _slip(made, Km),
         ]
 
-    def command(self, law: SampledLaw) -> tuple[LinearForm, Sequence[LinearForm]]:
+    def command(self) -> tuple[LinearForm, Sequence[LinearForm]]:
         """Return the command of the motion loop, and how large each rounding in it is at most.
 
-        Both are forms of the states, the `INPUTS` and the `roundings`, for an admittance: it
-        changes the reference after the command.
-
-        Parameters
-        ----------
-        law : SampledAdmittance or SampledForce
-            Of the controller in force.
+        Both are forms of the states, the `INPUTS` and the `roundings`, for laws that change the
+        reference after the command: it is then the same under each.
         """
-        shares = self.roundings
-        at = _Signals.of(self, tuple(shares))
+        shares, at, _ = _beginning(self)
         nothing = zero(len(at.delta))
-        step = self._step(law, at, nothing, shares)
+        step = self._step(self.laws[0], nothing)
         sizes = step.motion_sizes()
         return step.command(nothing), [sizes.get(name, nothing) for name in shares]
 
-    def _step(
-        self, law: SampledLaw, at: _Signals, force: LinearForm, shares: Mapping[str, Fraction]
-    ) -> SampledStep:
+    def _step(self, law: DiscreteLaw, force: LinearForm) -> SampledStep:
         """Return what the law makes of a sample of the force."""
-        moves = isinstance(law, SampledAdmittance)
-        # Beside one with a spring, an admittance may have none.
-        numbers = {"Kt": Fraction(0)} | numbers_of(
-            StepFrame(self.motion, self.low_pass), law, self.idle
-        )
+        shares, at, parts = _beginning(self)
         given = {
-            "angle": combine((ONE, at.delta), (ONE, at.encoder), (ONE, at.angle)),
+            **at.states,
+            "angle": combine(*((ONE, f) for f in (at.delta, at.encoder, at.angle))),
             "torque": force,
             "velocity_command": at.command,
-            "reference": at.reference,
-            "offset": at.reference,
-            "error_before": at.before,
-            "velocity": at.velocity,
-            "integral": at.integral,
-            **{f"filtered_{i}": lag for i, lag in enumerate(at.lags, 1)},
         }
-        # A commanded position is rounded as it is read, the reference of an admittance as it moves.
-        given |= {} if moves else {"position": at.reference_rounding}
+        if law.law.commands == "position":
+            # It is rounded as it is read, the reference of an admittance as it moves.
+            given["position"] = at.reference_rounding
+        numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
         return SampledStep.of(self.listed, law, numbers, given, at.rounded, shares)
 
 
@@ -259,12 +222,8 @@ class _Sample:
     __eq__, __hash__ = object.__eq__, object.__hash__
 
     frame: Frame
-    reference: LinearForm
-    seen: LinearForm
+    after: Mapping[str, LinearForm]
     drive: LinearForm
-    velocity: Sequence[LinearForm]
-    integral: Sequence[LinearForm]
-    lags: Sequence[LinearForm]
     sizes: Sequence[LinearForm]
     at: _Signals
     taken: LinearForm
@@ -274,43 +233,34 @@ class _Sample:
 @lru_cache(maxsize=64)
 def _sample(
     frame: Frame,
-    law: SampledLaw,
+    law: DiscreteLaw,
     delay: int,
     contact: tuple[Fraction, Fraction],
     turn: Turn,
     *,
     retuned: bool,
 ) -> _Sample:
-    """Return what `Frame.rows_and_slip` knows before the motor's parameters."""
-    shares, at = _beginning(frame)
-    force = at.samples[delay - 1] if delay else _force(frame, *contact)
-    listed, step = frame.listed, frame._step(law, at, force, shares)
-    following, nothing = listed.following, zero(len(at.delta))
-    lags, velocity = [*at.lags], [at.velocity] if frame.has_inertia else []
-    integral = [at.integral] if frame.gathers else []
-    seen, drive, reference = at.before, at.drive, at.reference
+    """Return what `Frame.rows` knows before the motor's parameters."""
+    shares, at, _ = _beginning(frame)
+    step = frame._step(law, at.samples[delay - 1] if delay else _force(frame, *contact))
+    nothing = zero(len(at.delta))
+    after, drive = dict(at.states), at.drive
     sizes: dict[str, LinearForm] = {}
+    following = frame.listed.following
     if turn is not Turn.ADMITTANCE:
-        seen = step.result(following["error_before"], nothing)
+        after[BEFORE] = step.result(following.pop(BEFORE), nothing)
         drive = step.command(nothing)
         sizes |= step.motion_sizes()
+    following.pop(BEFORE, None)
     if turn is not Turn.MOTION:
-        after = {name: step.result(made, nothing) for name, made in following.items()}
-        lags = [after[f"filtered_{i}"] for i in range(1, len(lags) + 1)]
-        velocity = [after["velocity"] for _ in velocity]
-        integral = [after["integral"] for _ in integral]
-        moves = isinstance(law, SampledAdmittance)
-        reference = after.get("reference", after.get("offset", nothing))
-        reference = combine((ONE, reference), (Fraction(moves), at.reference_rounding))
+        after |= {name: step.result(made, nothing) for name, made in following.items()}
+        moved = (ONE if law.law.commands == "velocity" else ZERO, at.reference_rounding)
+        after |= {name: combine((ONE, after[name]), moved) for name in _places(after)}
         sizes |= step.other_sizes(retuned=retuned)
     return _Sample(
         frame,
-        reference,
-        seen,
+        after,
         drive,
-        velocity,
-        integral,
-        lags,
         [sizes.get(name, nothing) for name in shares],
         at,
         combine((ONE, drive), (ONE, at.friction)),
@@ -320,7 +270,7 @@ def _sample(
 @lru_cache(maxsize=64)
 def _force(frame: Frame, k: Fraction, b: Fraction) -> LinearForm:
     """Return the force sample of a spring and a damper beside it."""
-    _, at = _beginning(frame)
+    _, at, _ = _beginning(frame)
     return combine((k, at.delta), (b, at.omega), (ONE, at.sensor))
 
 
@@ -332,18 +282,29 @@ def _speed(made: _Sample, Km: Fraction, E: Fraction) -> LinearForm:
 
 
 @lru_cache(maxsize=256)
-def _place(made: _Sample, Km: Fraction, s: Fraction) -> tuple[LinearForm, LinearForm]:
-    """Return the reference, or the error of it, and the deflection after the way of the motor."""
-    frame, at = made.frame, made.at
-    delta = combine((ONE, at.delta), (s, at.omega), (Km * (frame.period - s), made.taken))
-    if frame.integrates and frame.idle is None:
-        return combine((ONE, made.reference), (-ONE, delta)), delta
-    return made.reference, delta
+def _place(made: _Sample, Km: Fraction, s: Fraction) -> tuple[list[LinearForm], LinearForm]:
+    """Return the reference, if any, or the error of it, and the deflection after the period."""
+    at = made.at
+    delta = combine((ONE, at.delta), (s, at.omega), (Km * (made.frame.period - s), made.taken))
+    if ALONE in made.after:
+        return [combine((ONE, made.after[ALONE]), (-ONE, delta))], delta
+    return _around(made.after)[0], delta
 
 
 @lru_cache(maxsize=64)
 def _slip(made: _Sample, Km: Fraction) -> LinearForm:
     return combine((ONE, made.at.omega), (-Km, made.taken))
+
+
+def _places(states: Iterable[str]) -> list[str]:
+    """Return the reference among the states of a law, which comes before all others, or nothing."""
+    return [*takewhile(lambda name: name != BEFORE, states)]
+
+
+def _around(states: Mapping[str, T]) -> tuple[list[T], list[T]]:
+    """Return the reference among the states of a law, if any, and what is behind the error."""
+    place = _places(states)
+    return [states[n] for n in place], [states[n] for n in states if n not in (*place, BEFORE)]
 
 
 # The inputs, as their forms are called below.
@@ -354,13 +315,10 @@ _FIELDS = ("command", "friction", "encoder", "sensor", "reference_rounding", "an
 class _Signals:
     """The forms of the states, inputs and roundings of a frame."""
 
-    reference: LinearForm
+    # Those of the law, by name.
+    states: Mapping[str, LinearForm]
     omega: LinearForm
-    before: LinearForm
     drive: LinearForm
-    velocity: LinearForm
-    integral: LinearForm
-    lags: Sequence[LinearForm]
     samples: Sequence[LinearForm]
     delta: LinearForm
     command: LinearForm
@@ -373,40 +331,28 @@ class _Signals:
 
     @classmethod
     def of(cls, frame: Frame, shares: Sequence[str]) -> _Signals:
-        names = frame.states
-        size = len(names)
+        size, stored = len(frame.states), frame.stored
         unit = coordinates(size + len(INPUTS) + len(shares))
-        left, delta, nothing = iter(unit[: size - 1]), unit[size - 1], zero(len(unit))
-        first = next(left) if frame.integrates else nothing
-        reference = first
-        if frame.integrates and frame.idle is None:
-            reference = combine((ONE, first), (ONE, delta))
-        omega, before = next(left), next(left)
-        drive = next(left) if frame.holds else nothing
-        velocity = next(left) if frame.has_inertia else nothing
-        integral = next(left) if frame.gathers else nothing
-        order = 0 if frame.low_pass is None else frame.low_pass.order
-        lags = [next(left) for _ in range(order)]
-        inputs = dict(zip(_FIELDS, unit[size:], strict=False))
-        rounded = dict(zip(shares, unit[size + len(INPUTS) :], strict=True))
-        samples = [*left]
+        by_name = dict(zip(frame.states, unit, strict=False))
+        delta = unit[size - 1]
+        states = {name: by_name[text] for name, text in stored.items()}
+        if ALONE in states:
+            states[ALONE] = combine((ONE, states[ALONE]), (ONE, delta))
         return cls(
-            reference,
-            omega,
-            before,
-            drive,
-            velocity,
-            integral,
-            lags,
-            samples,
+            states,
+            by_name["omega [rad/s]"],
+            by_name.get("u held", zero(len(unit))),
+            unit[size - 1 - frame.longest_delay : size - 1],
             delta,
-            rounded=rounded,
-            **inputs,
+            rounded=dict(zip(shares, unit[size + len(INPUTS) :], strict=True)),
+            **dict(zip(_FIELDS, unit[size:], strict=False)),
         )
 
 
 @lru_cache(maxsize=8)
-def _beginning(frame: Frame) -> tuple[Mapping[str, Fraction], _Signals]:
-    """Return the roundings and the signals of a frame, which all its corners and delays share."""
+def _beginning(
+    frame: Frame,
+) -> tuple[Mapping[str, Fraction], _Signals, tuple[StepPart, ...]]:
+    """Return roundings, signals and parts of a frame, which all its corners and delays share."""
     shares = frame.roundings
-    return shares, _Signals.of(frame, tuple(shares))
+    return shares, _Signals.of(frame, tuple(shares)), step_parts(frame.laws)

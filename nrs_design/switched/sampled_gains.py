@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.controllers.sampled import SampledAdmittance, SampledLaw
-from nrs_design.controllers.sampled_range import coefficient_ranges
+from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.switched.assumption import Assumption, say
@@ -23,16 +22,16 @@ class SampledGains:
     without inertia it is ``c = b`` alone. The map of a period is affine in each of them.
     """
 
-    law: SampledLaw  # With the coefficients that ship
+    law: DiscreteLaw  # With the coefficients that ship
     box: Box  # Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges
 
     @classmethod
-    def of(cls, law: SampledLaw, gains: GainBox, period: Fraction, method: str) -> SampledGains:
+    def of(cls, law: DiscreteLaw, gains: GainBox, period: Fraction, method: str) -> SampledGains:
         """Enclose the coefficients of all gains in a box.
 
         Parameters
         ----------
-        law : SampledAdmittance or SampledForce
+        law : DiscreteLaw
             With the coefficients that ship.
         gains : GainBox
             Where the gains may be.
@@ -46,25 +45,19 @@ class SampledGains:
         AssemblyError
             If single precision loses a coefficient.
         """
-        if gains.fixed or not isinstance(law, SampledAdmittance):
+        if gains.fixed:
             return cls(law, Box({}))
         try:
-            ranges = coefficient_ranges(gains.law, gains.ranges, period, method)
+            ranges = gains.law.enclose(gains.ranges, period, method)
         except DesignError as error:
             # At another scale of the ranges there may be a loop.
             raise AssemblyError(error.message, remedy=error.remedy, at=error.at) from error
-        ranges |= {"Kt": gains.ranges["Kt"]} if "Kt" in gains.ranges else {}
         return cls(law, Box({symbol: r for symbol, r in ranges.items() if r.low != r.high}))
 
-    def at(self, values: Mapping[str, Fraction]) -> SampledLaw:
+    def at(self, values: Mapping[str, Fraction]) -> DiscreteLaw:
         """Return the law at values of the box; other names are left alone."""
-        law = self.law
-        if not isinstance(law, SampledAdmittance) or not self.box.ranges:
-            return law
-        a, b = values["a"] if "a" in self.box.ranges else law.a, law.b
-        if "c" in self.box.ranges:
-            b = values["c"] * (1 if a is None else 1 - a)
-        return replace(law, a=a, b=b, Kt=values.get("Kt", law.Kt))
+        ranged = {name: values[name] for name in self.box.ranges}
+        return self.law.at(ranged) if ranged else self.law
 
     def texts(self, name: str) -> Iterator[Assumption]:
         """Say where the coefficients of a controller of that name may be."""

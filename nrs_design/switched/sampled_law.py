@@ -1,74 +1,71 @@
 """The law in a sampled loop, from the list of operations that ships.
 
-What a result is a sum of, and how often each term is rounded, follows from the kinds of laws that
+What a result is a sum of, and how often each term is rounded, follows from the types of laws that
 a loop has, whatever their numbers; what each term is, from the numbers of the law in force.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
+from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sampled import (
-    SampledAdmittance,
-    SampledForce,
-    SampledLaw,
-    SampledMotion,
-)
 from nrs_design.controllers.sensor import SampledLowPass
 from nrs_design.controllers.step_analysis import Term, counted_terms, rounded_terms
-from nrs_design.controllers.step_law import build_law
-from nrs_design.controllers.step_parts import StepFrame
+from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import InternalError
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 
 ONE = Fraction(1)
-# Not in the loop of a proof: what is commanded is zero, and angles count from there.
-ABSENT = frozenset({"position", "wanted_torque", "commanded"})
+# Inputs that are not zero in the loop of a proof.
+SENSED = frozenset({"angle", "torque", "velocity_command"})
 # Any number that is neither zero nor one: a product with one of these is exact.
 ANY = Fraction(1, 2)
 # Terms of the list.
 ERROR, KP, KD, KEPT, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
 IDLE_REFERENCE, IDLE_VELOCITY = "d r", "d vm"
-INTEGRAL, KEPT_INTEGRAL = "w", "w kept"
 # Those that take a rounded number, of which `nrs_design.switched.sampled_step` bounds what that
 # adds to their own rounding.
 SECOND_ORDER = frozenset({KP, KD, STEP})
 
 
-@dataclass(frozen=True, slots=True)
-class Kinds:
-    """Which kinds of laws a loop has."""
+# The types of the laws of a loop, and the names of the numbers that those of a type have.
+Kinds = tuple[tuple[type[Any], tuple[str, ...]], ...]
 
-    order: int  # Lags of the filter of the force
-    # inert, sprung: whether admittances have a velocity of their own, and whether one has a spring.
-    inert: bool
-    sprung: bool
-    # moves, places, takes_force, gathers: whether there are impedance controllers, others, and
-    # proportional and PI force controllers among these.
-    moves: bool
-    places: bool
-    takes_force: bool
-    gathers: bool = False
+
+def kinds_of(laws: Iterable[DiscreteLaw]) -> Kinds:
+    """Return the types of laws: those that command a velocity first, then those with few numbers.
+
+    In this order a certificate lists the terms that are rounded.
+    """
+    found: dict[type[Any], dict[str, None]] = {}
+    for law in laws:
+        found.setdefault(law.law, {}).update(dict.fromkeys(law.numbers))
+    order = sorted(found.items(), key=lambda item: (item[0].commands != "velocity", len(item[1])))
+    return tuple((law, tuple(names)) for law, names in order)
 
 
 @dataclass(frozen=True, slots=True)
 class ListedLaw:
-    """The list of operations of some kinds of laws; `list_law` makes each once."""
+    """The list of operations of some types of laws; `list_law` makes each once."""
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    law: StepLaw  # With any numbers; its modes are the kinds
+    # With any numbers; its modes are the types.
+    law: StepLaw
+    # For each mode and result, the names of its terms by those of the list.
+    names: Mapping[str, Mapping[str, Mapping[str, str]]]
     # For each mode and result, how often each of its terms is rounded, by name.
     counts: Mapping[str, Mapping[str, Mapping[str, int]]]
 
     @property
     def following(self) -> dict[str, str]:
         """The states of the loop, and the results that they have after a sample."""
-        return {s: made for s, made in self.law.following.items() if s not in ABSENT}
+        return {v.name: self.law.following[v.name] for v in self.law.states if v.stored}
 
     @property
     def all_counts(self) -> dict[str, int]:
@@ -81,7 +78,7 @@ class ListedLaw:
 
     def terms(
         self,
-        law: SampledLaw,
+        law: DiscreteLaw,
         numbers: Mapping[str, Fraction],
         given: Mapping[str, LinearForm],
         rounded: Mapping[str, LinearForm],
@@ -90,16 +87,16 @@ class ListedLaw:
 
         Parameters
         ----------
-        law : SampledAdmittance or SampledForce
+        law : DiscreteLaw
             In force.
         numbers : mapping of str to Fraction
-            Its coefficients by name.
+            The coefficients by name.
         given : mapping of str to LinearForm
             Inputs and states; those that are missing are zero.
         rounded : mapping of str to LinearForm
             By what terms are off, by name.
         """
-        mode = mode_of(law)
+        mode = law.law.name
         nothing = zero(len(next(iter(given.values()))))
         every = {value.name: given.get(value.name, nothing) for value in self.law.values}
         errors = {
@@ -107,96 +104,83 @@ class ListedLaw:
             for name in own_results(self.law)
         }
         found = rounded_terms(self.law, self.law.modes.index(mode), every, numbers, errors)
+        names = self.names[mode]
         return {
-            name: tuple(replace(term, name=_name(term, mode, name)) for term in terms)
-            for name, terms in found.items()
+            result: tuple(replace(t, name=names[result].get(t.name, t.name)) for t in terms)
+            for result, terms in found.items()
+            if result in names
         }
 
     def off(
-        self, law: SampledLaw, result: str, rounded: Mapping[str, LinearForm]
+        self, law: DiscreteLaw, result: str, rounded: Mapping[str, LinearForm]
     ) -> list[LinearForm]:
         """Return by what the terms of a result are off.
 
         Parameters
         ----------
-        law : SampledAdmittance or SampledForce
+        law : DiscreteLaw
             In force.
         result : str
             Name of the result.
         rounded : mapping of str to LinearForm
             By what terms are off, by name.
         """
-        return [rounded[name] for name in self.counts[mode_of(law)][result]]
+        return [rounded[name] for name in self.counts[law.law.name][result]]
 
-
-def mode_of(law: SampledLaw) -> str:
-    """Return the mode of the list in which a law is active."""
-    if isinstance(law, SampledAdmittance):
-        return "impedance"
-    if law.Ki_T:
-        return "pi-force"
-    return "force" if law.Kp else "position"
+    def takes_force(self, law: DiscreteLaw) -> bool:
+        """Tell whether a law uses the force, through anything but its filter."""
+        nothing = [Fraction(0)]
+        given = {v.name: [ONE] if v.name == "torque" else nothing for v in self.law.values}
+        terms = rounded_terms(self.law, self.law.modes.index(law.law.name), given)
+        return any(any(term.form) for result in terms.values() for term in result)
 
 
 @lru_cache(maxsize=32)
-def list_law(kinds: Kinds) -> ListedLaw:
+def list_law(order: int, kinds: Kinds) -> ListedLaw:
     """Write the list out, and count its roundings.
+
+    Parameters
+    ----------
+    order : int
+        Lags of the filter of the force.
+    kinds : tuple
+        As `kinds_of` returns them.
 
     Raises
     ------
     InternalError
         If a term takes a rounded number and nothing bounds what that adds to its own rounding.
     """
-    laws: dict[str, SampledLaw] = {}
-    if kinds.moves:
-        a, Kt = ANY if kinds.inert else None, ANY if kinds.sprung else Fraction(0)
-        laws["impedance"] = SampledAdmittance(a, ANY, ANY, Kt)
-    if kinds.places:
-        laws["position"] = SampledForce(Fraction(0))
-        laws |= {"force": SampledForce(ANY)} if kinds.takes_force else {}
-        laws |= {"pi-force": SampledForce(ANY, ANY)} if kinds.gathers else {}
-    low_pass = SampledLowPass(kinds.order, ANY, ANY) if kinds.order else None
-    law = build_law(StepFrame(SampledMotion(ANY, ANY), low_pass), laws, ANY)
+    laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
+    low_pass = SampledLowPass(order, ANY, ANY) if order else None
+    law = build_law(StepFrame(ANY, ANY, low_pass), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
+    # What is commanded is zero in the loop of a proof, and angles count from there.
     given: dict[str, LinearForm] = {
-        value.name: zero(len(mark)) if value.name in ABSENT else form
+        value.name: form if value.stored or value.name in SENSED else zero(len(mark))
         for value, form in zip(law.values, unit, strict=True)
     }
-    left_out = {law.following[name] for name in ABSENT & law.following.keys()}
+    left_out = {law.following[value.name] for value in law.states if not value.stored}
+    every: dict[str, dict[str, dict[str, str]]] = {}
     counts: dict[str, dict[str, dict[str, int]]] = {}
     takes_rounded: set[str] = set()
     for i, mode in enumerate(law.modes):
-        each = counted_terms(law, i, given)
-        counts[mode] = {
-            result: {_renamed(term, mode, result): count for term, count in terms.items()}
-            for result, terms in each.items()
-            if result not in left_out
-        }
-        names = [name for terms in counts[mode].values() for name in terms]
-        if len({*names}) < len(names):
+        names, counted = every.setdefault(mode, {}), counts.setdefault(mode, {})
+        taken: set[str] = set()
+        for result, terms in counted_terms(law, i, given).items():
+            if result in left_out:
+                continue
             # One name is one rounding: of two results, each has its own.
-            raise InternalError(f"a term of {mode} is rounded in two results")
+            names[result] = {t: f"{t} kept" if t in taken else t for t in terms}
+            counted[result] = {names[result][term]: count for term, count in terms.items()}
+            taken |= {*counted[result]}
         marked = rounded_terms(law, i, given, errors=dict.fromkeys(own_results(law), mark))
         takes_rounded |= {t.name for terms in marked.values() for t in terms if t.form[-1]}
     if unknown := takes_rounded - SECOND_ORDER:
         raise InternalError(f"the second order of {', '.join(sorted(unknown))} is not bounded")
-    return ListedLaw(law, counts)
+    return ListedLaw(law, every, counts)
 
 
 def own_results(law: StepLaw) -> Iterator[str]:
     """Yield the results with a rounding of their own."""
     yield from (operation.name for operation in law.operations if operation.rounding == "own")
-
-
-def _name(term: Term, mode: str, result: str) -> str:
-    return _renamed(term.name, mode, result)
-
-
-def _renamed(term: str, mode: str, result: str) -> str:
-    """Name a term: the coefficient of a velocity that is idle is d.
-
-    The integral is rounded once in the reference and once as it goes on, each by itself.
-    """
-    if term == INTEGRAL and result == "next_integral":
-        return KEPT_INTEGRAL
-    return IDLE_VELOCITY if term == KEPT and mode != "impedance" else term

@@ -10,11 +10,9 @@ from itertools import chain, product
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_share
-from nrs_design.controllers.sampled import (
-    SampledAdmittance,
-    SampledForce,
-    SampledLaw,
-)
+from nrs_design.controllers.laws import DiscreteLaw
+from nrs_design.controllers.shipped import share_states
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
@@ -27,8 +25,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.spec.touched import FREE
 from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching
@@ -94,10 +92,10 @@ def close_sampled_loop(
     ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
-    loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period), _turns(sampling))
+    loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
     touched = plant.among(design.contacts)
-    loss = _loss_of_contact(spec, touched, [item.law for item in laws.values()])
-    parts, free = _motions(loop, plant, design, laws, loss)
+    loss = _loss_of_contact(spec, touched, design)
+    parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
     acting = could_pull(touched)
@@ -117,7 +115,7 @@ def close_sampled_loop(
     outputs = outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else ()
     driven = None
     if coupling is None:
-        driven = motor_command(spec, frame, [item.law for item in laws.values()], channels)
+        driven = motor_command(spec, frame, channels)
     texts: tuple[str, ...] = (
         *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
         *at_once_texts(touched),
@@ -174,6 +172,7 @@ def _flights(
 
 
 def _motions(
+    frame: Frame,
     loop: _Loop,
     plant: Plant,
     design: ControllerDesign,
@@ -195,7 +194,7 @@ def _motions(
             free += loop.in_the_air(c.name, laws[c.name])
         elif loss.startswith("anywhere"):
             parts[c.name] += loop.in_the_air(c.name, laws[c.name])
-    if Turn.MOTION in loop.turns:
+    if Turn.MOTION in frame.turns:
         law = next(iter(laws.values())).law
         # No controller has a name with a slash.
         parts[f"/{Turn.MOTION}"] = tuple(loop.between(law, str(Turn.MOTION)))
@@ -219,7 +218,7 @@ def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
 
 def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> SampledGains:
     period, method = sampling.outer, sampling.admittance
-    law = controller.law.sampled(period, method)
+    law = controller.law.discretize(period, method)
     if law is None:
         # The spec is read with a check that says so at its place.
         raise InternalError(f"{controller.name} has no sampled law")
@@ -230,26 +229,27 @@ def _frame(
     spec: InteractionDesignSpec,
     sampling: SamplingSpec,
     design: ControllerDesign,
-    laws: Sequence[SampledLaw],
+    laws: Sequence[DiscreteLaw],
     ranges: ActuatorRanges,
 ) -> Frame:
-    tau, low_pass = ranges.time_constant, design.sensor.filter
-    admittances = [law for law in laws if isinstance(law, SampledAdmittance)]
+    if not share_states(design):
+        raise AssemblyError(
+            "some impedance controllers have a virtual inertia and some have none, so they share "
+            "no state",
+            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
+            at=("controllers",),
+        )
+    tau, low_pass, motion = ranges.time_constant, design.sensor.filter, design.motion
     outer = sampling.outer
-    idle = None if spec.idle_states is None else idle_share(spec.idle_states, outer)
+    filtered = None if low_pass is None else low_pass.sampled(outer)
     return Frame(
         sampling.step,
-        design.motion.sampled(sampling.period.exact),
-        _have_inertia(admittances),
+        StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered),
+        tuple(laws),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
-        None if low_pass is None else low_pass.sampled(outer),
-        any(law.Kt for law in admittances),
-        bool(admittances),
-        any(isinstance(law, SampledForce) and law.Kp and not law.Ki_T for law in laws),
-        idle,
-        Turn.ADMITTANCE in _turns(sampling),
-        any(isinstance(law, SampledForce) and law.Ki_T for law in laws),
+        None if spec.idle_states is None else idle_share(spec.idle_states, outer),
+        _turns(sampling),
     )
 
 
@@ -260,7 +260,6 @@ class _Loop:
     frame: Frame
     delays: tuple[int, int]
     motor: Box
-    turns: tuple[Turn, ...]
 
     def in_contact(
         self, controller: Controller, gains: SampledGains, touched: Iterable[Environment]
@@ -284,11 +283,11 @@ class _Loop:
         """Return the motions of a controller that touches nothing."""
         return tuple(self._corners(gains, self.motor, f"{controller}/{FREE}"))
 
-    def between(self, law: SampledLaw, name: str) -> Iterator[SampledMode]:
+    def between(self, law: DiscreteLaw, name: str) -> Iterator[SampledMode]:
         """Yield the motions at samples of the motion loop alone, which no force reaches."""
 
         def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
-            return self.frame.rows_and_slip(law, 0, values, Turn.MOTION)
+            return self.frame.rows(law, 0, values, Turn.MOTION)
 
         for corner, rows in self.motor.corners(rows_at, name):
             yield SampledMode.of(corner, rows, len(self.frame.states), begins=False)
@@ -297,9 +296,9 @@ class _Loop:
         """Yield the motions in one contact, at every delay that makes a difference."""
         law = gains.law
         ages = range(self.delays[0], self.delays[1] + 1)
-        if isinstance(law, SampledForce) and not law.Kp and self.frame.low_pass is None:
+        if not self.frame.listed.takes_force(law):
             ages = ages[:1]
-        for turn, delay in product(self.turns, ages):
+        for turn, delay in product(self.frame.turns, ages):
             if turn is Turn.MOTION:
                 continue
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
@@ -312,35 +311,18 @@ class _Loop:
     def _rows(
         self, gains: SampledGains, delay: int, turn: Turn, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
-        return self.frame.rows_and_slip(gains.at(values), delay, values, turn)
-
-
-def _have_inertia(laws: Iterable[SampledAdmittance]) -> bool:
-    """Tell whether the admittances have a velocity of their own: all of them, or none."""
-    found = {law.a is not None for law in laws}
-    if len(found) > 1:
-        raise AssemblyError(
-            "some impedance controllers have a virtual inertia and some have none, so they share "
-            "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
-            at=("controllers",),
-        )
-    return True in found
+        return self.frame.rows(gains.at(values), delay, values, turn)
 
 
 def _loss_of_contact(
-    spec: InteractionDesignSpec,
-    touched: Iterable[Environment],
-    laws: Iterable[SampledLaw],
+    spec: InteractionDesignSpec, touched: Iterable[Environment], design: ControllerDesign
 ) -> Loss:
     """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
-    sprung = set[bool]()
-    for law in laws:
-        if isinstance(law, SampledForce):
-            # Force control rests in the air where it does in contact: at what is commanded.
-            lost = spec.contact == "losable"
-            return "anywhere under force control" if lost else "not under force control"
-        sprung.add(law.Kt != 0)
+    if any(c.law.commands == "position" for c in design.controllers):
+        # Force control rests in the air where it does in contact: at what is commanded.
+        lost = spec.contact == "losable"
+        return "anywhere under force control" if lost else "not under force control"
+    sprung = {c.law.spring != 0 for c in design.controllers}
     if spec.contact == "kept" or (True in sprung and spec.contact is None):
         return "never"
     if any(e.preloaded or (e.parts and not e.each_losable) for e in touched):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 
-from nrs_design.controllers.sampled import SampledLaw
+from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.step_analysis import Term
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.switched.sampled_law import (
@@ -42,7 +42,7 @@ class SampledStep:
     """One sample of a law in force."""
 
     listed: ListedLaw  # The list of operations
-    law: SampledLaw  # In force
+    law: DiscreteLaw  # In force
     numbers: Mapping[str, Fraction]  # Its coefficients by name
     # By what each term is off, the last coordinates of all forms.
     rounded: Mapping[str, LinearForm]
@@ -53,7 +53,7 @@ class SampledStep:
     def of(
         cls,
         listed: ListedLaw,
-        law: SampledLaw,
+        law: DiscreteLaw,
         numbers: Mapping[str, Fraction],
         given: Mapping[str, LinearForm],
         rounded: Mapping[str, LinearForm],

@@ -91,7 +91,7 @@ def altered(document, *path_and_value):
         (("states",), "x1", "expected a list"),
         (("time",), "both", "not a valid Time"),
         (("switching",), "free", "malformed"),
-        (("switching",), {}, "malformed"),
+        (("switching",), {}, "does not follow"),
         (("switching",), None, "malformed"),
     ],
 )
@@ -102,15 +102,7 @@ def test_malformed_systems(path, value, reason):
     assert reason in fault
 
 
-RULES = {
-    "dwell_time": "0",
-    "stays": [],
-    "transitions": None,
-    "resets": [],
-    "constant": [],
-    "parameter": None,
-}
-ZERO_MAP = {"numerators": [[9, 0], [0, 9]], "denominator": 0}
+MAP = {"source": "a", "target": "b", "numerators": [[9, 0], [0, 9]], "denominator": 1}
 
 
 @pytest.mark.parametrize(
@@ -122,20 +114,28 @@ ZERO_MAP = {"numerators": [[9, 0], [0, 9]], "denominator": 0}
         ({"transitions": [["a", "z"]]}, "a transition does not lead"),
         ({"transitions": [["a", "a"]]}, "a transition does not lead"),
         ({"transitions": [["a"]]}, "malformed"),
-        ({"resets": [{"from": "a", "to": "b", **ZERO_MAP}]}, "no positive denominator"),
-        ({"resets": [{"from": "a", "to": "b", **ZERO_MAP, "denominator": 1}]}, "does not cover"),
-        ({"resets": [{"from": "a", "to": "z", **ZERO_MAP, "denominator": 1}]}, "a reset does not"),
-        ({"stays": [{"mode": "z", "shortest": "1", "longest": None}]}, "not those of modes"),
-        ({"stays": [{"mode": "a", "shortest": "2", "longest": "1"}]}, "must be left before"),
-        ({"constant": [["a", "z"]]}, "not the ends of one constant parameter"),
-        ({"constant": [["a", "b"], ["a", "b"]]}, "not the ends of one constant parameter"),
-        ({"parameter": {"name": "k", "low": "--1", "high": "1"}}, "not a ratio"),
+        ({"transitions": None}, "expected a list"),
+        ({"leave": "0"}, "unknown field"),
+        ({"resets": [{**MAP, "denominator": 0}]}, "no positive denominator"),
+        (
+            {"resets": [MAP]},
+            "does not cover",
+        ),
+        (
+            {"resets": [{**MAP, "target": "z"}]},
+            "a reset does not",
+        ),
+        ({"stays": [["z", {"shortest": "1"}]]}, "not those of modes"),
+        ({"stays": [["a", {"shortest": "2", "longest": "1"}]]}, "must be left before"),
+        ({"fixed_ends": [["a", "z"]]}, "not the ends of one constant parameter"),
+        ({"fixed_ends": [["a", "b"], ["a", "b"]]}, "not the ends of one constant parameter"),
+        ({"fixed_parameter": {"name": "k", "low": "--1", "high": "1"}}, "not a ratio"),
     ],
 )
 def test_rules_that_make_no_sense(rules, reason):
     document, _ = signed("given")
     assert [mode["name"] for mode in document["modes"]] == ["a", "b"]
-    fault = prove(altered(document, "switching", {**RULES, **rules})).fault
+    fault = prove(altered(document, "switching", rules)).fault
     assert fault is not None
     assert reason in fault
 
@@ -165,7 +165,7 @@ def test_what_is_written_is_json():
     document, _ = signed("dwell")
     assert json.loads(json.dumps(document)) == document
     assert document["id"] == content_id(document)
-    assert document["switching"] == {**RULES, "dwell_time": document["switching"]["dwell_time"]}
+    assert document["switching"] == {"dwell_time": document["switching"]["dwell_time"]}
 
 
 def test_only_a_valid_proof_is_true_in_a_condition(pair):

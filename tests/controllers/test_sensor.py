@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from nrs_design.controllers.float32 import is_float32
-from nrs_design.controllers.sampled import SampledForce, SampledMotion
+from nrs_design.controllers.laws import DiscreteLaw, PositionControl
 from nrs_design.controllers.sensor import (
     LowPass,
     Sensor,
@@ -18,8 +18,7 @@ from nrs_design.controllers.sensor import (
     length_between,
 )
 from nrs_design.controllers.step_analysis import linear_forms
-from nrs_design.controllers.step_law import build_placed_law
-from nrs_design.controllers.step_parts import StepFrame
+from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.spec.sensor import SensorSpec
@@ -145,7 +144,7 @@ def test_lags_as_a_processor_runs_them(order):
     wanted = force
     for _ in range(order):
         wanted = lfilter([q], [1, -p], wanted)
-    law = build_placed_law(StepFrame(SampledMotion(F(1), F(1)), step), {"one": SampledForce(F(0))})
+    law = build_law(StepFrame(F(1), F(1), step), {"one": DiscreteLaw(PositionControl, {})})
     names = [f"filtered_{i}" for i in range(1, order + 1)]
     given = {value.name: zero(order + 1) for value in law.values}
     given |= zip([*names, "torque"], coordinates(order + 1), strict=True)

@@ -8,10 +8,10 @@ import pytest
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.shipped import shipped_law, step_limits
 from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_logic import StepLogic
-from nrs_design.controllers.step_parts import BEYOND
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline import run_design
@@ -77,7 +77,7 @@ def test_coefficients_are_those_of_the_sampled_design():
     law = law_of(found)
     assert law.modes == ("insertion", "withdrawal")
     for k, controller in enumerate(found.design.controllers):
-        wanted = controller.law.sampled(PERIOD, "exact").coefficients
+        wanted = controller.law.discretize(PERIOD, "exact").numbers
         assert {name: law.coefficient[name].of(k) for name in wanted} == wanted
     assert law_of(found, 2 * PERIOD) != law
 

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from nrs_design.controllers.laws.impedance import lasting_gain
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.measures import CREEP, CREEP_ANGLE
 from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
@@ -93,8 +95,8 @@ def test_worst_gains_of_a_range_count_in_steps(tmp_path):
         run_analysis(found).impedance, found.design.controllers, strict=True
     ):
         law = replace(controller.law, Bt=Fraction(np.float32(0.9).item()))
-        at_worst = law.sampled(Fraction(1, 500), "exact")
-        least = ERROR * float(at_worst.lasting_gain * at_worst.T * 500)
+        at_worst = law.discretize(Fraction(1, 500), "exact").numbers
+        least = ERROR * float(lasting_gain(at_worst) * at_worst["T"] * 500)
         assert least * (1 - 1e-12) <= float(item.creep.velocity) <= least * (1 + 1e-5)
 
 
@@ -111,10 +113,11 @@ def test_simulated_and_bounded(tmp_path, spring):
     item = run_analysis(found).impedance[1]
     period, law = Fraction(1, 500), found.design.controllers[1].law
     low_pass = found.design.sensor.filter.sampled(period)
-    motion = found.design.motion.sampled(period)
-    frame = Frame(period, motion, True, 1, Fraction("0.0351"), low_pass, spring is not None)
+    motion, held = found.design.motion, law.discretize(period, "exact")
+    step = StepFrame(motion.Kp, motion.over(period), low_pass)
+    frame = Frame(period, step, (held,), 1, Fraction("0.0351"))
     E = Fraction(float(np.exp(-0.002 / 0.0351)))
-    rows = frame.rows(law.sampled(period, "exact"), 1, {"Km": Fraction("4.8417e-4"), "E": E})
+    rows = frame.rows(held, 1, {"Km": Fraction("4.8417e-4"), "E": E})
     n = len(frame.states)
     assert n == 8
     M = np.array(rows[:n], dtype=float)

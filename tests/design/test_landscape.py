@@ -10,7 +10,7 @@ from nrs_design.design.impedance import characteristic_basis, stabilizes
 from nrs_design.design.impedance_optimum import impedance_cost
 from nrs_design.design.landscape import alternatives, delay_borne, map_cost
 from nrs_design.pipeline import run_analysis, run_design
-from nrs_design.reporting.figures.landscape import draw_cost
+from nrs_design.reporting.sections.landscape import draw_cost
 from nrs_design.spec import read_spec
 from tests.design.classical import loop_margins
 from tests.support import SOFT_TISSUE

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.laws import Admittance, DiscreteLaw, ProportionalDerivative
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.design.passivity import passive_band
 from nrs_design.design.sampled_passivity import sampled_bands
 from nrs_design.models.actuator import Actuator
@@ -26,15 +27,16 @@ PERIOD = Fraction("0.002")
 
 def law_of(Mt, Bt, period=PERIOD, Kt=0):
     gains = (to_float32(Fraction(gain)) for gain in (Mt, Bt, Kt))
-    return Admittance(*gains).sampled(period, "exact")
+    return Admittance(*gains).discretize(period, "exact").numbers
 
 
 def real_part(omega, law, period, age):
     """Return Re V by the formula in floating point, from the matrices that a proof is about."""
     E = Fraction(float(np.exp(-float(period / MOTOR.time_constant))))
-    motion = MOTION.sampled(period)
-    frame = Frame(period, motion, law.a is not None, age, MOTOR.time_constant)
-    rows = frame.rows(law, age, {"Km": MOTOR.gain, "E": E})
+    held = DiscreteLaw(Admittance, law)
+    step = StepFrame(MOTION.Kp, MOTION.over(period))
+    frame = Frame(period, step, (held,), age, MOTOR.time_constant)
+    rows = frame.rows(held, age, {"Km": MOTOR.gain, "E": E})
     n = len(frame.states)
     # The velocity that the command holds on to; the last state only counts the angle.
     A = np.array([[float(v) for v in row[:n]] for row in rows[:n]])
@@ -116,7 +118,7 @@ def test_a_force_between_samples_takes_any_amount():
 def _work(law, T, age, force, samples, settled=2000):
     """Return the energy that a force puts into the robot within the last samples of a run."""
     Km, tau, parts = float(MOTOR.gain), float(MOTOR.time_constant), 20
-    Kp, D = float(MOTION.Kp), float(MOTION.sampled(Fraction(T).limit_denominator(1000)).D)
+    Kp, D = float(MOTION.Kp), float(MOTION.over(Fraction(T).limit_denominator(1000)))
     theta = omega = before = reference = velocity = work = 0.0
     late = [0.0] * age
     fine = np.arange(parts) / parts * T + T / parts / 2
@@ -127,7 +129,7 @@ def _work(law, T, age, force, samples, settled=2000):
         u = Kp * error + D * (error - before)
         before = error
         reference += T * velocity
-        velocity = float(law.a) * velocity + float(law.b) * late.pop(0)
+        velocity = float(law["a"]) * velocity + float(law["b"]) * late.pop(0)
         if k >= settled:
             speeds = Km * u + (omega - Km * u) * np.exp(-fine / tau)
             work += sum(force(k * T + t) * v for t, v in zip(fine, speeds, strict=True)) * T / parts

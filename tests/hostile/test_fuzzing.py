@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nrs_design.arrays.files import read_proposal
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import read_document, verify_document
 from nrs_design.errors import NrsDesignError
 from nrs_design.gating.lock import read_lock
-from nrs_design.given.files import read_proposal
 from nrs_design.identification.datasets.records import read_tissue
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec

@@ -141,7 +141,7 @@ def test_the_numbers_of_the_page(tmp_path, speed, level, kept):
 
 def bound_law(result):
     (controller,) = result.designed.design.controllers
-    return controller.law.sampled(Fraction(1, 500), "exact")
+    return controller.law.discretize(Fraction(1, 500), "exact").numbers
 
 
 def _commands(pushes, law, k=43.0):
@@ -154,8 +154,8 @@ def _commands(pushes, law, k=43.0):
     for push in pushes.T:
         error = reference - theta.astype(single)
         drive = single(Kp) * error + single(D) * (error - before)
-        reference = reference + single(law.T) * (push.astype(single) - velocity)
-        velocity = single(law.a) * velocity + single(law.b) * late
+        reference = reference + single(law["T"]) * (push.astype(single) - velocity)
+        velocity = single(law["a"]) * velocity + single(law["b"]) * late
         before, late = error, (k * theta).astype(single)
         held = Km * drive.astype(float)
         theta = theta + tau * (1 - E) * omega + (T - tau * (1 - E)) * held

@@ -1,17 +1,16 @@
 """A PI force controller in the sampled loop: its map, its roundings, and what is proved of them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from nrs_design.certificates.verify import verify
+from nrs_design.controllers.laws import IntegralForce, PositionControl
 from nrs_design.design.design import design_controllers
 from nrs_design.errors import SpecError
-from nrs_design.models.plant import build_plant
 from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
-from nrs_design.switched.sampled_law import Kinds, list_law
+from nrs_design.switched.sampled_law import list_law
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of
 from tests.support import ROOT
 
@@ -31,7 +30,7 @@ def assembled(controllers, more=SAMPLED):
 
 @pytest.mark.parametrize("controller", ["position", "force", "insertion", "hold"])
 def test_a_period_is_that_of_processor_and_motor(controller):
-    """The law as its lines in `controllers.sampled` have it, in doubles, and the motor exactly."""
+    """The law as its lines in `controllers.step_law` have it, in doubles, and the motor exactly."""
     system = assembled(BOTH | {"insertion": INSERTION, "hold": FORCE})
     names = [state.split(" [")[0] for state in system.states]
     assert names == ["reference", "omega", "e before", "vm", "integral", "F 1 before", "delta"]
@@ -67,8 +66,8 @@ def test_a_period_is_that_of_processor_and_motor(controller):
 
 def test_how_often_each_term_is_rounded():
     """By hand, from the order of the operations: a sample is rounded as it is read."""
-    kinds = Kinds(0, inert=False, sprung=False, moves=False, places=True, takes_force=False)
-    counts = list_law(replace(kinds, gathers=True)).counts
+    kinds = ((PositionControl, ()), (IntegralForce, ("Kf", "Ki_T")))
+    counts = list_law(0, kinds).counts
     # Kp F: read, lack, product, sum with w, sum with X, difference from the angle.
     assert counts["pi-force"]["error"] == {"e": 1, "w": 3, "Kp F": 6}
     # Ki_T F: read, lack, product, sum; the product of the integral with one is exact.
@@ -85,7 +84,7 @@ def test_the_shipped_certificate_holds():
 
 
 def test_loss_of_contact_is_refused():
-    with pytest.raises(SpecError, match="whose integral a force has to balance"):
+    with pytest.raises(SpecError, match="whose integral bleeds, and a sampled loop: not modelled"):
         parse_spec(text_of(BOTH, more=SAMPLED.replace("kept", "losable")))
 
 

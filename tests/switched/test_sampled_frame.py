@@ -7,14 +7,10 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from nrs_design.controllers.sampled import (
-    UNIT,
-    SampledAdmittance,
-    SampledForce,
-    SampledMotion,
-    rounding_share,
-)
+from nrs_design.controllers.laws import Admittance, DiscreteLaw, PositionControl, ProportionalForce
 from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.controllers.step_analysis import UNIT, rounding_share
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.switched.sampled_frame import Frame, Turn
 
 
@@ -40,16 +36,23 @@ def test_largest_stable_stiffness(Bt, delay, limit):
 
 PERIOD = Fraction(1, 500)
 TAU, KM = Fraction("0.0351"), Fraction("4.8417e-4")
-MOTION = SampledMotion(Fraction("117359.43"), Fraction(1_030_000))
+MOTION = StepFrame(Fraction("117359.43"), Fraction(1_030_000))
 
 
-def _frame(delay: int, *, inertia: bool = True) -> Frame:
-    return Frame(PERIOD, MOTION, inertia, delay, TAU)
+def _frame(delay: int, *laws: DiscreteLaw) -> Frame:
+    return Frame(PERIOD, MOTION, laws or (_law("1.04"),), delay, TAU)
 
 
-def _law(Bt: str) -> SampledAdmittance:
+def _force(Kf: Fraction) -> DiscreteLaw:
+    return DiscreteLaw(ProportionalForce, {"Kf": Kf})
+
+
+POSITION = DiscreteLaw(PositionControl, {})
+
+
+def _law(Bt: str) -> DiscreteLaw:
     a = np.exp(-float(Bt) * 0.002 / 0.01)
-    return SampledAdmittance(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
+    return Admittance.discrete(Fraction(a), Fraction((1 - a) / float(Bt)), PERIOD)
 
 
 def _nominal(k: float, b: float = 0.0) -> dict[str, Fraction]:
@@ -73,13 +76,13 @@ def test_agrees_with_a_simulation_step_by_step(cases):
         delay = int(rng.integers(0, longest + 1))
         inertia = bool(rng.integers(0, 2))
         Kt = float(rng.integers(0, 2) * rng.uniform(0, 10))
-        law = SampledAdmittance(
+        law = Admittance.discrete(
             Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
         )
         order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
         low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
-        motion = SampledMotion(Fraction(Kp), Fraction(D))
-        frame = Frame(Fraction(T), motion, inertia, longest, Fraction(tau), low_pass, Kt > 0)
+        step = StepFrame(Fraction(Kp), Fraction(D), low_pass)
+        frame = Frame(Fraction(T), step, (law,), longest, Fraction(tau))
         values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
         rows = frame.rows(law, delay, {key: Fraction(value) for key, value in values.items()})
         x = rng.normal(size=len(frame.states))
@@ -111,8 +114,8 @@ def test_largest_stable_stiffness_of_a_faster_outer_loop(Bt, limit):
     """
     tick = Fraction(1, 10_000)
     a = np.exp(-float(Bt) * float(tick) / 0.01)
-    law = SampledAdmittance(Fraction(a), Fraction((1 - a) / float(Bt)), tick)
-    frame = replace(_frame(0), period=tick, holds=True)
+    law = Admittance.discrete(Fraction(a), Fraction((1 - a) / float(Bt)), tick)
+    frame = replace(_frame(0), period=tick, turns=(Turn.BOTH, Turn.ADMITTANCE))
 
     def radius(k: float) -> float:
         values = {"Km": KM, "E": Fraction(float(np.exp(-0.0001 / 0.0351))), "k": Fraction(k)}
@@ -144,9 +147,16 @@ def test_two_periods_agree_with_a_simulation_step_by_step(faster):
         longest, inertia = int(rng.integers(0, 4)), bool(rng.integers(0, 2))
         order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
         low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
-        motion, T = SampledMotion(Fraction(Kp), Fraction(D)), tick * (1 if faster else count)
+        T = tick * (1 if faster else count)
+
+        def law_of(a, b, inertia=inertia, T=T, Kt=Kt):
+            kept = Fraction(a) if inertia else None
+            return Admittance.discrete(kept, Fraction(b), Fraction(T), Fraction(Kt))
+
+        step = StepFrame(Fraction(Kp), Fraction(D), low_pass)
+        turns = (Turn.BOTH, Turn.ADMITTANCE if faster else Turn.MOTION)
         frame = Frame(
-            Fraction(tick), motion, inertia, longest, Fraction(tau), low_pass, Kt > 0, holds=faster
+            Fraction(tick), step, (law_of(0.5, 0.5),), longest, Fraction(tau), turns=turns
         )
         n, E = len(frame.states), float(np.exp(-tick / tau))
         x = rng.normal(size=n)
@@ -183,9 +193,7 @@ def test_two_periods_agree_with_a_simulation_step_by_step(faster):
                 samples = samples[:longest]
             theta, omega = (expm(flow * tick) @ [theta, omega, held])[:2]
             turn = Turn.BOTH if moves and admits else Turn.MOTION if moves else Turn.ADMITTANCE
-            law = SampledAdmittance(
-                Fraction(a) if inertia else None, Fraction(gain), Fraction(T), Fraction(Kt)
-            )
+            law = law_of(a, gain)
             values = {"Km": Km, "E": E} | ({"k": k, "b": b} if touches else {})
             exact = {key: Fraction(value) for key, value in values.items()}
             rows = frame.rows(law, delay, exact, turn)
@@ -210,7 +218,7 @@ def exactly(number: np.float32) -> Fraction:
 def test_single_precision_never_leaves_the_roundings():
     """300 random states and laws, computed in float32: every error is within its row.
 
-    The operations of `nrs_design.controllers.sampled`, in numpy's single precision; what the exact
+    The operations of `nrs_design.controllers.step_law`, in numpy's single precision; what the exact
     law would have made of the same numbers is computed in fractions. Angles are exact here.
     """
     rng = np.random.default_rng(14)
@@ -226,12 +234,11 @@ def test_single_precision_never_leaves_the_roundings():
         velocity = v if inertia else b * force
         step = T * (command - velocity)
         kept = a * v + b * force
-        law = SampledAdmittance(exactly(a) if inertia else None, exactly(b), exactly(T))
-        motion = SampledMotion(exactly(Kp), exactly(D))
-        frame = Frame(PERIOD, motion, inertia, 1, TAU)
+        law = Admittance.discrete(exactly(a) if inertia else None, exactly(b), exactly(T))
+        frame = Frame(PERIOD, StepFrame(exactly(Kp), exactly(D)), (law,), 1, TAU)
         n = len(frame.states)
         values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
-        rows = frame.rows(law, 1, values)[n:]
+        rows = frame.rows(law, 1, values)[n:-1]
         state = [exact_e, Fraction(0), exactly(before), *([exactly(v)] * inertia)]
         state += [true, Fraction(0), exactly(command)]
         state += [Fraction(0)] * (len(rows[0]) - len(state))
@@ -284,11 +291,11 @@ def test_filter_and_spring_in_single_precision_stay_within_the_roundings():
         pushed = b * (y2 + Kt * (reference - start))
         velocity = a * v + pushed if inertia else pushed
         step = SampledLowPass(2, exactly(p), exactly(q))
-        law = SampledAdmittance(exactly(a) if inertia else None, exactly(b), PERIOD, exactly(Kt))
-        frame = Frame(PERIOD, MOTION, inertia, 1, TAU, step, sprung=True)
+        law = Admittance.discrete(exactly(a) if inertia else None, exactly(b), PERIOD, exactly(Kt))
+        frame = Frame(PERIOD, replace(MOTION, low_pass=step), (law,), 1, TAU)
         n, names = len(frame.states), list(frame.roundings)
         values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
-        rows = frame.rows(law, 1, values)
+        rows = frame.rows(law, 1, values)[:-1]
         # The reference is e + delta, and the law takes the force that is one sample old.
         state = [moved, *[Fraction(0)] * 2, *([exactly(v)] * inertia), exactly(x1), exactly(x2)]
         state += [true, Fraction(0)]
@@ -341,27 +348,27 @@ def test_position_and_force_control_agree_with_a_simulation_step_by_step():
             )
         )
         k, b, Kf, d = rng.uniform(0, 1, 4) * [100, 0.1, 0.05, 1]
-        Kf *= int(rng.integers(0, 2))
+        force = _force(Fraction(Kf))
+        law = force if rng.integers(0, 2) else POSITION
+        Kf = float(law.numbers.get("Kf", 0))
         longest = int(rng.integers(0, 4))
         delay = int(rng.integers(0, longest + 1))
         mixed = bool(rng.integers(0, 2))
         inertia = mixed and bool(rng.integers(0, 2))
         order, p, q = int(rng.integers(0, 3)), rng.uniform(), rng.uniform()
         low_pass = SampledLowPass(order, Fraction(p), Fraction(q)) if order else None
+        moving = Admittance.discrete(Fraction(1, 2) if inertia else None, Fraction(1), Fraction(T))
         frame = Frame(
             Fraction(T),
-            SampledMotion(Fraction(Kp), Fraction(D)),
-            inertia,
+            StepFrame(Fraction(Kp), Fraction(D), low_pass),
+            (force, POSITION, *([moving] if mixed else [])),
             longest,
             Fraction(tau),
-            low_pass,
-            integrates=mixed,
-            takes_force=True,
-            idle=Fraction(d) if mixed else None,
+            Fraction(d) if mixed else None,
         )
         values = {"Km": Km, "E": float(np.exp(-T / tau)), "k": k, "b": b}
         exact_values = {key: Fraction(value) for key, value in values.items()}
-        rows = frame.rows(SampledForce(Fraction(Kf)), delay, exact_values)
+        rows = frame.rows(law, delay, exact_values)
         n = len(frame.states)
         x = dict(zip(frame.states, rng.normal(size=n), strict=True))
         theta, omega = x["delta [rad]"], x["omega [rad/s]"]
@@ -387,11 +394,11 @@ def test_position_and_force_control_agree_with_a_simulation_step_by_step():
 def test_an_admittance_beside_others_moves_its_reference_as_alone():
     """The same step in the coordinates r = e + theta, exactly, inputs and roundings included."""
     for inertia in (False, True):
-        law = _law("1.04") if inertia else SampledAdmittance(None, Fraction(3, 8), PERIOD)
-        alone = _frame(1, inertia=inertia)
-        beside = replace(alone, idle=Fraction(1, 2), takes_force=True)
+        law = _law("1.04") if inertia else Admittance.discrete(None, Fraction(3, 8), PERIOD)
+        alone = _frame(1, law)
+        beside = replace(_frame(1, law, _force(Fraction(1, 2)), POSITION), idle=Fraction(1, 2))
         n, m = len(alone.states), len(alone.roundings)
-        a, b = (frame.rows(law, 1, _nominal(43)) for frame in (alone, beside))
+        a, b = (frame.rows(law, 1, _nominal(43))[:-1] for frame in (alone, beside))
         names = [*beside.roundings]
         kept = [*range(n + 6), *(n + 6 + names.index(name) for name in alone.roundings)]
         assert [[*alone.roundings][i] for i in range(m)] == [
@@ -407,9 +414,9 @@ def test_an_admittance_beside_others_moves_its_reference_as_alone():
 
 def test_a_spring_beside_others_draws_as_alone():
     """The same map; its pull is a product of what the reference is, and no difference before."""
-    law = replace(_law("1.04"), Kt=Fraction(3, 2))
-    alone = replace(_frame(1), sprung=True)
-    beside = replace(alone, idle=Fraction(1, 2), takes_force=True)
+    law = DiscreteLaw(Admittance, {**_law("1.04").numbers, "Kt": Fraction(3, 2)})
+    alone = _frame(1, law)
+    beside = replace(_frame(1, law, _force(Fraction(1, 2))), idle=Fraction(1, 2))
     n = len(alone.states)
     a, b = ([row[:n] for row in f.rows(law, 1, _nominal(43))[:n]] for f in (alone, beside))
     a[0] = [p + q for p, q in zip(a[0], a[n - 1], strict=True)]
@@ -436,10 +443,10 @@ def test_force_control_in_single_precision_stays_within_the_roundings():
         e = reference - theta
         u = Kp * e + D * (e - before)
         low_pass = SampledLowPass(1, exactly(p), exactly(q)) if filtered else None
-        motion = SampledMotion(exactly(Kp), exactly(D))
-        frame = Frame(PERIOD, motion, False, 1, TAU, low_pass, integrates=False, takes_force=True)
+        step, law = StepFrame(exactly(Kp), exactly(D), low_pass), _force(exactly(Kf))
+        frame = Frame(PERIOD, step, (law,), 1, TAU)
         values = {"Km": KM, "E": Fraction(94, 100), "k": Fraction(0), "b": Fraction(0)}
-        rows, n = frame.rows(SampledForce(exactly(Kf)), 1, values), len(frame.states)
+        rows, n = frame.rows(law, 1, values)[:-1], len(frame.states)
         state = [Fraction(0), exactly(before), *([exactly(lag)] * filtered), true, exactly(theta)]
         state += [Fraction(0)] * (len(rows[0]) - n)
         exact = [sum(c * x for c, x in zip(row, state, strict=True)) for row in rows]
@@ -458,7 +465,7 @@ def test_force_control_in_single_precision_stays_within_the_roundings():
 
 def test_what_rounds_an_error_again_is_counted():
     """The command takes the rounded error, so a rounded reference changes what u rounds, too."""
-    frame = Frame(PERIOD, MOTION, False, 1, TAU, integrates=False, takes_force=True)
+    frame = _frame(1, _force(Fraction(1, 2)))
     assert [*frame.counts] == ["e", "Kp e", "D (e - e before)", "Kp F"]
     assert [*frame.roundings] == [*frame.counts, "u of Kp F"]
     shares = frame.roundings

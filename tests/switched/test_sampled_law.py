@@ -6,29 +6,36 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.certificates.verify import verify
-from nrs_design.controllers import step_law, step_parts
+from nrs_design.controllers import step_law
+from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
 from nrs_design.controllers.operations import Operation
-from nrs_design.controllers.sampled import SampledForce
 from nrs_design.errors import InternalError
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_law import Kinds, list_law, mode_of
+from nrs_design.switched.sampled_law import kinds_of, list_law
 from tests.support import ROOT
 
 SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
 CERTIFICATE = ROOT / "reports/soft-tissue-sampled.cert.json"
-PLAIN = Kinds(0, inert=True, sprung=False, moves=True, places=False, takes_force=False)
-MIXED = replace(PLAIN, places=True, takes_force=True)
+MOVING = Admittance.discrete(Fraction(1), Fraction(0), Fraction(1))
+FORCE = ProportionalForce(Fraction(1)).discretize(Fraction(1), "exact")
+POSITION = PositionControl().discretize(Fraction(1), "exact")
 
 
 @pytest.fixture
 def alter(monkeypatch):
-    """Put other operations in the place of those of a part of the law."""
+    """Put other operations in the place of those of the motion controller, or of an admittance."""
+    given, parts = step_law.motion_operations, Admittance.parts
 
-    def put(part, change):
-        given = getattr(step_parts, part)
-        monkeypatch.setattr(step_law, part, lambda *a, **b: change([*given(*a, **b)]))
+    def put(where, change):
+        if where == "motion":
+            monkeypatch.setattr(step_law, "motion_operations", lambda x: change([*given(x)]))
+        else:
+            monkeypatch.setattr(Admittance, "parts", lambda *a, **b: altered(parts(*a, **b)))
         list_law.cache_clear()
+
+        def altered(found):
+            return tuple(replace(part, after=tuple(change([*part.after]))) for part in found)
 
     yield put
     monkeypatch.undo()
@@ -49,8 +56,8 @@ ALTERED = {
     "as it is": ("motion", lambda found: found),
     "a sign": ("motion", one("command", kind="subtract")),
     "a coefficient": ("motion", one("proportional", left="Kd_over_T")),
-    "an order": ("admitted", velocity_first),
-    "a rounding": ("admitted", one("next_velocity", rounding="own", symbol="w")),
+    "an order": ("admittance", velocity_first),
+    "a rounding": ("admittance", one("next_velocity", rounding="own", symbol="w")),
 }
 
 
@@ -70,18 +77,19 @@ def test_a_certificate_is_rejected_where_the_law_was_altered(alter, what):
 
 def test_a_rounded_number_taken_somewhere_new_is_refused(alter):
     """What that adds to the roundings there would be left out of the bounds."""
-    alter("motion", lambda found: [*found, Operation("again", "multiply", "Kp", "error")])
-    list_law(PLAIN)
+    again = Operation("again", "multiply", "Kp", "error")
+    alter("motion", lambda found: [*found, again])
+    list_law(0, kinds_of([MOVING]))
     # Not used any further, it is nothing.
     alter("motion", one("derivative", right="error"))
     with pytest.raises(InternalError, match="second order of D e is not bounded"):
-        list_law(PLAIN)
+        list_law(0, kinds_of([MOVING]))
 
 
 def test_terms_are_counted_whatever_the_numbers():
     """With coefficients zero and one, too, of which products are exact."""
-    counts = list_law(MIXED).counts
-    assert {*counts} == {"impedance", "position", "force"}
+    counts = list_law(0, kinds_of([FORCE, MOVING, POSITION])).counts
+    assert [*counts] == ["impedance", "position", "force"]
     assert counts["force"]["error"] == {"e": 1, "Kp F": 5}
     assert counts["position"]["error"] == {"e": 1}
     assert counts["position"]["next_velocity"] == {"d vm": 1}
@@ -90,10 +98,14 @@ def test_terms_are_counted_whatever_the_numbers():
 
 
 def test_what_the_loop_has_not_is_no_state_of_it():
-    listed = list_law(replace(PLAIN, sprung=True))
+    sprung = Admittance.discrete(Fraction(1), Fraction(1), Fraction(1), Fraction(1))
+    listed = list_law(0, kinds_of([sprung]))
     assert {*listed.law.following} - {*listed.following} == {"commanded"}
     assert "T v" not in listed.all_counts
 
 
-def test_position_control_is_force_control_that_takes_none():
-    assert [mode_of(SampledForce(Fraction(n))) for n in (0, 1)] == ["position", "force"]
+def test_position_control_takes_no_force_but_through_a_filter():
+    for order in (0, 1):
+        listed = list_law(order, kinds_of([FORCE, POSITION]))
+        assert listed.takes_force(FORCE)
+        assert listed.takes_force(POSITION) == (order == 1)

@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.sampled import SampledMotion
+from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
-from nrs_design.simulation.single_precision import Choices, simulate_single_precision
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
 from tests.proof.graphs import shape_of
@@ -374,7 +374,7 @@ def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     assert "environment would pull" not in texts
     found = certify(system)
     assert found.verdict is Verdict.PROVED
-    assert found.evidence.roundings
+    assert found.evidence.covers_rounding
 
 
 def test_an_admittance_beside_others_leaves_its_states_idle(tmp_path):
@@ -476,7 +476,7 @@ def test_runs_that_retune_their_gains_keep_the_certified_bound(tmp_path):
     rng, runs, steps = np.random.default_rng(18), 200, 800
     values = [Fraction(float(v)) for v in np.linspace(1.2, 2.5, 14).astype(np.float32)]
     inertia = Fraction(np.float32(0.01).item())
-    laws = [Admittance(inertia, Bt).sampled(Fraction(1, 500), "exact") for Bt in values]
+    laws = {str(Bt): Admittance(inertia, Bt).discretize(Fraction(1, 500), "exact") for Bt in values}
     shape = (runs, steps)
     # Half of the runs keep to few gains and turn the command around in time with the loop.
     half_period = rng.integers(20, 120, (runs, 1))
@@ -491,6 +491,7 @@ def test_runs_that_retune_their_gains_keep_the_certified_bound(tmp_path):
         np.full(shape, 0.0351),
         np.radians(8.0) * turned,
     )
-    motion = SampledMotion(Fraction(np.float32(117359.43).item()), Fraction(1_030_000))
-    forces = simulate_single_precision(motion, laws, 0.002, choices, np.zeros(runs), losable=False)
+    motion = StepFrame(Fraction(np.float32(117359.43).item()), Fraction(1_030_000))
+    law = build_law(motion, laws)
+    forces = simulate_single_precision(law, 0.002, choices, np.zeros(runs), losable=False)
     assert bounds["point"] < np.abs(forces).max() <= bounds["ranged"]

@@ -5,11 +5,12 @@ from fractions import Fraction
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.controllers.sampled import SampledAdmittance, SampledMotion
+from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_step import short
 
-MOTION = SampledMotion(Fraction(117359), Fraction(1_030_000))
+MOTION = StepFrame(Fraction(117359), Fraction(1_030_000))
 
 
 @given(st.fractions(max_denominator=10**6).filter(bool))
@@ -27,12 +28,12 @@ def test_nothing_stays_nothing():
 
 def test_a_velocity_that_changes_its_sign_is_rounded_as_much():
     """Euler's method gives a negative a where Bt T > Mt."""
-    frame = Frame(Fraction(1, 500), MOTION, True, 0, Fraction("0.0351"))
     values = {"Km": Fraction(1, 2000), "E": Fraction(9, 10)}
-    a, row = Fraction(3, 7), len(frame.states) + [*frame.roundings].index("a vm")
-    sizes = []
+    a, sizes = Fraction(3, 7), []
     for sign in (1, -1):
-        law = SampledAdmittance(sign * a, Fraction(1), Fraction(1, 500))
+        law = Admittance.discrete(sign * a, Fraction(1), Fraction(1, 500))
+        frame = Frame(Fraction(1, 500), MOTION, (law,), 0, Fraction("0.0351"))
+        row = len(frame.states) + [*frame.roundings].index("a vm")
         sizes.append(frame.rows(law, 0, values)[row][frame.states.index("vm [rad/s]")])
     assert sizes[0] == -sizes[1]
     assert sizes[0] >= frame.roundings["a vm"] * a

@@ -7,7 +7,7 @@ from typing import Any
 from nrs_design.controllers.laws.force import ProportionalForce
 from nrs_design.controllers.laws.impedance import Admittance
 from nrs_design.controllers.laws.integral import IntegralForce
-from nrs_design.controllers.laws.law import AbstractCompliantLaw, AbstractLaw
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, AbstractLaw, DiscreteLaw
 from nrs_design.controllers.laws.motion import ProportionalDerivative
 from nrs_design.controllers.laws.parallel import ParallelForce
 from nrs_design.controllers.laws.position import PositionControl
@@ -29,6 +29,7 @@ __all__ = [
     "AbstractLaw",
     "Admittance",
     "CompliantLaw",
+    "DiscreteLaw",
     "IntegralForce",
     "ParallelForce",
     "PositionControl",

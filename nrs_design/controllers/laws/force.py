@@ -8,9 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
-from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
-from nrs_design.controllers.sampled import SampledForce
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, ForceControllerSpec
 
@@ -22,6 +20,7 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
     name: ClassVar[str] = "force"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)"})
     commands: ClassVar[Command] = ForceControllerSpec.commands
+    fixed: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "proportional_gain"})
     holds_hand: ClassVar[bool] = True
 
     Kp: Fraction  # In rad/(N m)
@@ -30,16 +29,14 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
         """Return ``-Kp F``: in contact with a spring ``A = Ap - Bp Kp k Cp`` (thesis 6.46)."""
         return combine((-self.Kp, force)), []
 
-    def sampled(self, period: Fraction, method: str) -> SampledForce:
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
         """Return the gain: the law has no memory."""
-        return SampledForce(self.Kp)
+        return DiscreteLaw(type(self), {"Kf": self.Kp} if self.Kp else {})
 
     def find_fault(self, given: ForceControllerSpec) -> str | None:
         """Say if the gain is negative, or another one than the spec fixes."""
-        fixed = given.proportional_gain
-        if self.Kp < 0 or (fixed is not None and self.Kp != to_float32(fixed.exact)):
-            return "gain Kp is not what the spec fixes"
-        return None
+        negative = "gain Kp is negative" if self.Kp < 0 else None
+        return AbstractCompliantLaw.find_fault(self, given) or negative
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:

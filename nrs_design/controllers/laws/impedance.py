@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
-from nrs_design.controllers.sampled import SampledAdmittance
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
+from nrs_design.controllers.operations import Operation, Value
+from nrs_design.controllers.parts import BEYOND, FORCE, HAND, StepGain, StepPart
+from nrs_design.controllers.step_analysis import UNIT
+from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
+
+ONE = Fraction(1)
+# Below it, single precision keeps fewer digits.
+_NORMAL = Fraction(1, 2**126)
 
 KEPT_VELOCITY = (
     "While a gain changes, the admittance keeps its velocity vm: the controller integrates "
@@ -92,21 +101,98 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         rate = combine((1 / self.Mt, force), (-self.Bt / self.Mt, vm))
         return combine((Fraction(-1), vm)), [rate]
 
-    def sampled(self, period: Fraction, method: str) -> SampledAdmittance:
-        """Discretize ``Mt v' + Bt v = F`` (thesis 6.8).
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
+        """Discretize ``Mt v' + Bt v = F`` (thesis 6.8) to ``v+ = a v + b F``.
 
         Exactly for a force that is held: ``a = exp(-Bt T/Mt)`` and ``b = (1 - a)/Bt``; or by
-        Euler's method: ``a = 1 - Bt T/Mt`` and ``b = T/Mt``. The spring's force counts as part of
-        the force.
+        Euler's method: ``a = 1 - Bt T/Mt`` and ``b = T/Mt``. Without inertia ``v = F/Bt``. The
+        spring's force counts as part of the force.
         """
-        T = to_float32(period)
         if self.Mt == 0:
-            return SampledAdmittance(None, to_float32(1 / self.Bt), T, self.Kt)
+            return self.discrete(None, to_float32(1 / self.Bt), to_float32(period), self.Kt)
         step = self.Bt * period / self.Mt
-        if method == "euler":
-            return SampledAdmittance(to_float32(1 - step), to_float32(period / self.Mt), T, self.Kt)
-        a, _ = exponential_between(-step)
-        return SampledAdmittance(to_float32(a), to_float32((1 - a) / self.Bt), T, self.Kt)
+        a = 1 - step if method == "euler" else exponential_between(-step)[0]
+        b = period / self.Mt if method == "euler" else (1 - a) / self.Bt
+        return self.discrete(to_float32(a), to_float32(b), to_float32(period), self.Kt)
+
+    @classmethod
+    def discrete(
+        cls, a: Fraction | None, b: Fraction, T: Fraction, Kt: Fraction = Fraction(0)
+    ) -> DiscreteLaw:
+        """Return ``v+ = a v + b F``, with which the reference moves on by ``-T v``.
+
+        Parameters
+        ----------
+        a : Fraction or None
+            Without unit; None for a law without inertia, ``v = b F``.
+        b : Fraction
+            In rad/(s N m).
+        T : Fraction
+            The period as the processor holds it, in s.
+        Kt : Fraction
+            In N m/rad; zero is no spring.
+        """
+        numbers = ({} if a is None else {"a": a}) | {"b": b, "T": T}
+        return DiscreteLaw(cls, numbers | ({"Kt": Kt} if Kt else {}))
+
+    @classmethod
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+        """Return ``xref = xref + T (v - vm)``; the reference of after the error is formed.
+
+        Beside controllers that are given a position, the reference is counted from that position;
+        while one of those is active, it and the velocity of the admittances decay.
+        """
+        return (_admittance(sprung="Kt" in used, inert="a" in used, beside=beside),)
+
+    def enclose(
+        self, gains: Mapping[str, Interval], period: Fraction, method: str
+    ) -> dict[str, Interval]:
+        """Return where a, ``c = b/(1 - a)`` and Kt lie; without inertia ``c = b``.
+
+        Exact or by Euler's method, a falls with Bt and rises with Mt, and so it does when it is
+        rounded: its ends are at corners. Each of a and b is rounded once, by at most 2^-24 of its
+        size, which moves c away from 1/Bt by less than eight times that share of it over
+        ``1 - a``, as long as all this is small.
+
+        Parameters
+        ----------
+        gains, period, method
+            As for `AbstractCompliantLaw.enclose`.
+
+        Returns
+        -------
+        dict of str to Interval
+            Without a and c where Mt and Bt are points.
+
+        Raises
+        ------
+        DesignError
+            If single precision loses a coefficient.
+        """
+        spring = {"Kt": gains["Kt"]} if "Kt" in gains else {}
+        Mt, Bt = gains["Mt"], gains["Bt"]
+        if Mt.low == Mt.high and Bt.low == Bt.high:
+            return spring
+        corners = product((Mt.low, Mt.high), (Bt.low, Bt.high))
+        ends = [Admittance(m, b).discretize(period, method).numbers for m, b in corners]
+        least, most = min(end["b"] for end in ends), max(end["b"] for end in ends)
+        kept = [end["a"] for end in ends if "a" in end]
+        if not kept:
+            return {"c": Interval(least, least, most)} | spring
+        low, high = min(kept), max(kept)
+        share = _share(low, high, least)
+        least, most = (1 - share) / Bt.high, (1 + share) / Bt.low
+        return {"a": Interval(low, low, high), "c": Interval(least, least, most)} | spring
+
+    @staticmethod
+    def numbers_at(
+        numbers: Mapping[str, Fraction], values: Mapping[str, Fraction]
+    ) -> Mapping[str, Fraction]:
+        """Return a, b and Kt at values of a, ``c = b/(1 - a)`` and Kt."""
+        found = {**numbers} | {name: values[name] for name in ("a", "Kt") if name in values}
+        if "c" in values:
+            found["b"] = values["c"] * (1 - found["a"] if "a" in found else 1)
+        return found
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:
@@ -122,3 +208,123 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
     def retuned_text(self) -> str:
         """Say what the controller keeps while its gains change."""
         return KEPT_VELOCITY if self.Mt else STATIC_LAW
+
+
+def lasting_gain(numbers: Mapping[str, Fraction]) -> Fraction:
+    """Return velocity over a lasting force without a spring, rad/(s N m): 1/Bt, but for rounding.
+
+    Parameters
+    ----------
+    numbers : mapping of str to Fraction
+        Of a discrete admittance.
+
+    Raises
+    ------
+    DesignError
+        If the step forgets nothing, so that the velocity grows as long as the force lasts.
+    """
+    a = numbers.get("a", Fraction(0))
+    if a == 1:
+        raise DesignError(
+            "the damping is lost in single precision: a step keeps all of the velocity",
+            remedy="raise Bt, lower Mt, or sample with a longer period",
+        )
+    return numbers["b"] / (1 - a)
+
+
+def _share(low: Fraction, high: Fraction, least: Fraction) -> Fraction:
+    """Return how far c is from 1/Bt at most, over its size, where a and b are at least or most."""
+    if high < 1 and least >= _NORMAL:
+        share = 8 * UNIT * max(-low, ONE) / (1 - high)
+        if share <= Fraction(1, 16):
+            return share
+    raise DesignError(
+        "somewhere in the ranges of its gains, single precision loses a coefficient of an "
+        "admittance",
+        remedy="narrow the ranges of Mt and Bt, or sample with another period",
+        at=("controllers",),
+    )
+
+
+_VELOCITY = Value(
+    "velocity", "vm", "rad/s", BEYOND, "velocity of the admittance", stored="vm [rad/s]"
+)
+_REFERENCE = Value(
+    "reference",
+    "xref",
+    "rad",
+    BEYOND,
+    "reference of the motion controller",
+    starts_at_angle=True,
+    stored="e [rad]",
+)
+_OFFSET = Value(
+    "offset",
+    "r",
+    "rad",
+    BEYOND,
+    "reference over the commanded position",
+    stored="reference [rad]",
+)
+_COMMANDED = Value(
+    "commanded", "xcom", "rad", BEYOND, "reference that the command alone gives", "none", True
+)
+
+
+def _admittance(*, sprung: bool, inert: bool, beside: bool) -> StepPart:
+    place, follows = (_OFFSET, "next_offset") if beside else (_REFERENCE, "next_reference")
+    commanded = sprung and not beside
+    following = {place.name: follows} | ({"velocity": "next_velocity"} if inert else {})
+    return StepPart(
+        "admittance",
+        tuple(_gains(sprung=sprung, inert=inert, beside=beside)),
+        (HAND,),
+        place,
+        (*([_VELOCITY] if inert else []), *([_COMMANDED] if commanded else [])),
+        (Operation("taken", "multiply", "takes_offset", "offset"),) if beside else (),
+        "taken" if beside else "",
+        "off" if beside else "",
+        tuple(_moving(sprung=sprung, inert=inert, beside=beside)),
+        following | ({"commanded": "next_commanded"} if commanded else {}),
+    )
+
+
+def _gains(*, sprung: bool, inert: bool, beside: bool) -> Iterator[StepGain]:
+    if beside:
+        yield StepGain("takes_offset", "", "1", ONE)
+        yield StepGain("d", "d", "1", ONE, "d")
+    if sprung:
+        yield StepGain("Kt", "Kt", "N*m/rad")
+    if inert:
+        # Of both states of an idle admittance, the same is left.
+        yield StepGain("a", "a", "1", idle="d")
+    yield StepGain("b", "b", "rad/(s*N*m)")
+    yield StepGain("T", "T", "s", common=True)
+
+
+def _moving(*, sprung: bool, inert: bool, beside: bool) -> Iterator[Operation]:
+    if sprung:
+        # At a sample the spring takes the offset of before the reference moves on.
+        if not beside:
+            yield Operation("offset", "subtract", "reference", "commanded", "term", "r")
+        yield Operation("pull", "multiply", "Kt", "offset")
+        yield Operation("felt", "add", FORCE, "pull")
+    felt = "felt" if sprung else FORCE
+    if inert:
+        yield Operation("kept", "multiply", "a", "velocity")
+        yield Operation("pushed", "multiply", "b", felt)
+        yield Operation("next_velocity", "add", "kept", "pushed")
+    else:
+        yield Operation("velocity", "multiply", "b", felt, "own", "vm")
+    # The reference moves on with the velocity of before this sample, where it is a state.
+    yield Operation("wanted", "saturate", "velocity_limit", "velocity_command")
+    yield Operation("relative", "subtract", "wanted", "velocity")
+    yield Operation("moved", "multiply", "T", "relative")
+    if beside:
+        yield Operation("left", "multiply", "d", "offset")
+        yield Operation("next_offset", "add", "left", "moved", "angle")
+        return
+    yield Operation("next_reference", "add", "reference", "moved", "angle")
+    if sprung:
+        yield Operation("advanced", "multiply", "T", "wanted")
+        yield Operation("next_commanded", "add", "commanded", "advanced", "angle")

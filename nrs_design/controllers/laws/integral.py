@@ -9,17 +9,41 @@ direction.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
-from nrs_design.controllers.sampled import SampledForce
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
+from nrs_design.controllers.operations import Operation, Value
+from nrs_design.controllers.parts import BEYOND, PROPORTIONAL, StepGain, StepPart
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.spec.controllers import Command, IntegralControllerSpec
+
+# The integral w of the force error is in the reference of every mode. It goes on where the force is
+# controlled with it, w = w + Ki_T (Fd - F), and bleeds in all other modes, w = g w.
+INTEGRAL = StepPart(
+    "integral",
+    (
+        StepGain("Ki_T", "Ki_T", "rad/(N*m)"),
+        StepGain("bled", "g", "1", fixed=Fraction(1), idle="g"),
+    ),
+    states=(
+        Value(
+            "integral", "w", "rad", BEYOND, "integral of the force error", stored="integral [rad]"
+        ),
+    ),
+    adds="integral",
+    total="aimed",
+    after=(
+        Operation("bleeding", "multiply", "bled", "integral"),
+        Operation("gathered", "multiply", "Ki_T", "lack"),
+        Operation("next_integral", "add", "bleeding", "gathered"),
+    ),
+    following={"integral": "next_integral"},
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +53,9 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
     name: ClassVar[str] = "pi-force"
     units: ClassVar[Mapping[str, str]] = MappingProxyType({"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)"})
     commands: ClassVar[Command] = IntegralControllerSpec.commands
+    fixed: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"Kp": "proportional_gain", "Ki": "integral_gain"}
+    )
     holds_hand: ClassVar[bool] = True
     bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
 
@@ -50,20 +77,21 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         (w,) = states
         return combine((Fraction(1), w), (-self.Kp, force)), [combine((-self.Ki, force))]
 
-    def sampled(self, period: Fraction, method: str) -> SampledForce:
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
         """Integrate by Euler's method, ``w+ = w + Ki T (Fd - F)``, with Ki T rounded once."""
-        return SampledForce(self.Kp, to_float32(self.Ki * period))
+        numbers = {"Kf": self.Kp, "Ki_T": to_float32(self.Ki * period)}
+        return DiscreteLaw(type(self), {name: number for name, number in numbers.items() if number})
+
+    @classmethod
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+        """Return the correction by the force error, and that by its integral."""
+        return PROPORTIONAL, INTEGRAL
 
     def find_fault(self, given: IntegralControllerSpec) -> str | None:
         """Say if the gains are not positive, or others than the spec fixes."""
         if self.Kp <= 0 or self.Ki <= 0:
             return "gains Kp and Ki are not positive"
-        Kp, Ki = given.proportional_gain, given.integral_gain
-        if Kp is not None and self.Kp != to_float32(Kp.exact):
-            return "gain Kp is not what the spec fixes"
-        if Ki is not None and self.Ki != to_float32(Ki.exact):
-            return "gain Ki is not what the spec fixes"
-        return None
+        return AbstractCompliantLaw.find_fault(self, given)
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> str:

@@ -1,18 +1,24 @@
 """What all control laws have in common.
 
 All gains are exact rationals that are single-precision numbers, so that a proof, a simulation
-and an export speak about the same values.
+and an export speak about the same values. A law is a list of operations with numbers
+(`AbstractCompliantLaw.parts`, `AbstractCompliantLaw.discretize`), and beside it the limit for short
+periods (`AbstractCompliantLaw.respond`).
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, fields
 from fractions import Fraction
-from typing import ClassVar, Generic, Self, TypeVar
+from types import MappingProxyType
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
-from nrs_design.controllers.sampled import SampledLaw
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.parts import PROPORTIONAL, StepPart
+from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
 
@@ -51,6 +57,8 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     commands: ClassVar[Command]
     # Whether the velocity command of the hand waits while the law is active (thesis 6.3.3).
     holds_hand: ClassVar[bool] = False
+    # Gains that a spec may fix, and the fields of the controller that do.
+    fixed: ClassVar[Mapping[str, str]] = MappingProxyType({})
     # Whether its one state stays in the position command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
 
@@ -89,8 +97,15 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
             Those named in `states`.
         """
 
-    def sampled(self, period: Fraction, method: str) -> SampledLaw | None:
-        """Return what a processor computes once a period in s, or None where that is not modelled.
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw | None:
+        """Return the numbers that a processor holds, or None where there is no program.
+
+        Parameters
+        ----------
+        period : Fraction
+            In s.
+        method : {"exact", "euler"}
+            How the states of the law are discretized.
 
         Raises
         ------
@@ -100,6 +115,49 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return None
 
     @classmethod
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+        """Return the operations of the law: by default, those of a position controller.
+
+        Parameters
+        ----------
+        used : collection of str
+            Names of the numbers that laws of the program have.
+        beside : bool
+            Whether some controllers of the program are given a position.
+        """
+        return (PROPORTIONAL,)
+
+    def enclose(
+        self, gains: Mapping[str, Interval], period: Fraction, method: str
+    ) -> dict[str, Interval]:
+        """Return where what the discrete law is affine in lies while gains are in intervals.
+
+        Parameters
+        ----------
+        gains : mapping
+            Intervals of the gains by name.
+        period, method
+            As for `discretize`.
+
+        Raises
+        ------
+        DesignError
+            If that is not known, or single precision loses a coefficient.
+        """
+        raise DesignError(
+            f"ranges of the gains of a {self.name} controller are not modelled in the sampled loop",
+            remedy="leave the ranges out",
+            at=("controllers",),
+        )
+
+    @staticmethod
+    def numbers_at(
+        numbers: Mapping[str, Fraction], values: Mapping[str, Fraction]
+    ) -> Mapping[str, Fraction]:
+        """Return the numbers of a discrete law at values of what `enclose` encloses."""
+        return numbers
+
+    @classmethod
     def gains_in(cls, given: S) -> tuple[str, ...]:
         """Return the names of the gains that a controller of a spec has; by default all."""
         return tuple(cls.units)
@@ -107,11 +165,17 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     def find_fault(self, given: S) -> str | None:
         """Say which gain is not one that the spec allows, beyond bounds and ranges; or None.
 
-        By default, a gain that the spec neither bounds nor ranges is not allowed: a law with gains
-        that the spec gives in another way says here which ones those are.
+        A gain of `fixed` is the one that the spec fixes, if it does; any other is one that the spec
+        bounds or ranges.
         """
-        free = next((gain for gain in self.gains if gain not in given.gains()), None)
-        return None if free is None else f"gain {free} has no bounds in the spec"
+        for gain, value in self.gains.items():
+            if gain in self.fixed:
+                said = getattr(given, self.fixed[gain])
+                if said is not None and value != to_float32(said.exact):
+                    return f"gain {gain} is not what the spec fixes"
+            elif gain not in given.gains():
+                return f"gain {gain} has no bounds in the spec"
+        return None
 
     @classmethod
     @abstractmethod
@@ -128,3 +192,28 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     def retuned_text(self) -> str:
         """Say what the controller keeps while its gains change."""
         return "While a gain changes, the controller keeps its states."
+
+
+@dataclass(frozen=True, slots=True)
+class DiscreteLaw:
+    """A law as a processor computes it once a period: its operations, with their numbers."""
+
+    law: type[AbstractCompliantLaw[Any]]
+    # Single-precision numbers by the names of `StepGain`, or what they are at a corner of a range;
+    # those that are missing are zero.
+    numbers: Mapping[str, Fraction]
+
+    def __hash__(self) -> int:
+        """Return the same number for equal laws."""
+        return hash((self.law, *self.numbers.items()))
+
+    @property
+    def coefficients(self) -> dict[str, Fraction]:
+        """The numbers by the symbols that formulas have for them."""
+        parts = self.law.parts(self.numbers, beside=False)
+        symbols = {gain.name: gain.symbol for part in parts for gain in part.gains}
+        return {symbols[name]: number for name, number in self.numbers.items()}
+
+    def at(self, values: Mapping[str, Fraction]) -> DiscreteLaw:
+        """Return the law at values of what `AbstractCompliantLaw.enclose` encloses."""
+        return DiscreteLaw(self.law, self.law.numbers_at(self.numbers, values))

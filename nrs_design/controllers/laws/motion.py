@@ -10,7 +10,6 @@ from typing import ClassVar
 
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractLaw
-from nrs_design.controllers.sampled import SampledMotion
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +32,12 @@ class ProportionalDerivative(AbstractLaw):
         """The z of ``Kd (s + z)``, in 1/s."""
         return self.Kp / self.Kd
 
-    def sampled(self, period: Fraction) -> SampledMotion:
-        """Return what a processor computes once a period in s.
+    def over(self, period: Fraction) -> Fraction:
+        """Return Kd over a period in s: what multiplies the change of the error in a sample.
 
         Raises
         ------
         DesignError
-            If a coefficient is beyond single precision.
+            If it is beyond single precision.
         """
-        return SampledMotion(self.Kp, to_float32(self.Kd / period))
+        return to_float32(self.Kd / period)

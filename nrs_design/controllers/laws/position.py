@@ -8,8 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import ClassVar
 
-from nrs_design.controllers.laws.law import AbstractCompliantLaw, Response
-from nrs_design.controllers.sampled import SampledForce
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.models.linear_form import LinearForm, zero
 from nrs_design.spec.controllers import Command, PositionControllerSpec
 
@@ -26,9 +25,9 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
         """Return no correction."""
         return zero(len(force)), []
 
-    def sampled(self, period: Fraction, method: str) -> SampledForce:
-        """Return the law that takes no force."""
-        return SampledForce(Fraction(0))
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
+        """Return the law without numbers: it takes no force."""
+        return DiscreteLaw(type(self), {})
 
     @classmethod
     def contact_text(cls, *, alone: bool) -> None:

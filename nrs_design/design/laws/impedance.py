@@ -12,7 +12,6 @@ from nrs_design.controllers.controller_design import Controller, ImpedanceOptimu
 from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.controllers.laws import Admittance
-from nrs_design.controllers.sampled import SampledAdmittance
 from nrs_design.design.constrained import best_rounding, meets, optimize_with_goals
 from nrs_design.design.creep import Creep, creep_of, with_creep
 from nrs_design.design.doubts import doubt_bounds
@@ -40,10 +39,10 @@ from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.cut_loop import ContinuousAxis
 
 
@@ -262,13 +261,13 @@ def _sampled_bands(
     ranged = any(r.low != r.high for r in _gain_ranges(given, controller).values())
     if ranged or task.plant.actuator_ranges is not None or task.spec.coupling is not None:
         return ()
-    law = controller.law.sampled(sampling.period.exact, sampling.admittance)
-    assert isinstance(law, SampledAdmittance), "that of an admittance"
+    law = controller.law.discretize(sampling.period.exact, sampling.admittance)
+    assert law is not None, "an admittance has a program"
     oldest = sampling.delay[1] + 1
     return sampled_bands(
         task.plant.actuator,
         task.pd,
-        law,
+        law.numbers,
         sampling.period.exact,
         range(sampling.delay[0], oldest),
     )

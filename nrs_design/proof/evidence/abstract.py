@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.bounds import at_least
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence.fields import find_unreadable
+from nrs_design.proof.evidence.fields import find_unreadable, read_object, written
 from nrs_design.proof.exact import (
     IntegerMatrix,
     is_positive_definite,
@@ -38,6 +38,10 @@ GROWN_ALONE = (
 # The same in a few words, beside a verdict that leaves the loss of contact open.
 IN_KEPT_CONTACT = "in kept contact"
 AT_ANY_DEFLECTION = "where contact is lost and made at any deflection"
+
+
+# What a certificate says of a statement beside its numbers.
+_OF_A_STATEMENT = frozenset({"kind", "claim", "block"})
 
 
 class Shows(StrEnum):
@@ -240,20 +244,33 @@ class AbstractEvidence(ABC):
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """Say in words what is shown, for the motions that this kind of evidence speaks about."""
 
-    @abstractmethod
     def to_fields(self) -> dict[str, Any]:
         """Return its numbers for the certificate file."""
+        fields: dict[str, Any] = written(self)
+        return fields
 
     @classmethod
-    @abstractmethod
     def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
         """Read its numbers from a certificate file.
 
         Raises
         ------
         KeyError, TypeError, ValueError
-            If a field is missing or malformed.
+            If a field is missing, malformed or unknown, or no sentence about the system can be made
+            of them.
         """
+        own = {key: value for key, value in fields.items() if key not in _OF_A_STATEMENT}
+        evidence = read_object(cls, own)
+        if (unsayable := evidence.find_unsayable(system)) is not None:
+            raise ValueError(unsayable)
+        return evidence
+
+    def find_unsayable(self, system: SwitchedSystem) -> str | None:
+        """Say why no claim about the system can be put into words, or None.
+
+        What a claim says is compared before what it rests on is checked.
+        """
+        return None
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether the argument covers these switching signals.

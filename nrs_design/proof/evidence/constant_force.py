@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.fields import Matrix, matrix_fields, read_dyadic, read_integer
-from nrs_design.proof.evidence.function import is_square
+from nrs_design.proof.evidence.fields import Matrix
+from nrs_design.proof.evidence.function import find_odd_form
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, with_crossing
 from nrs_design.proof.mode import Time
@@ -70,8 +70,8 @@ class ConstantForce(AbstractEvidence):
             return "the deflection acts on its own rate in a mode in contact"
         if _motions(mode.A for mode in system.modes) != _motions(m.A for m in contact.free):
             return "without the deflection, the modes in contact are not those of free motion"
-        if not is_square(self.Q, system.order):
-            return f"Q is not a {system.order} x {system.order} matrix"
+        if (odd := find_odd_form(self.Q, self.denominator_log2, system.order)) is not None:
+            return odd
         return None if self.slope > 0 else "the slope is not positive"
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
@@ -103,15 +103,6 @@ class ConstantForce(AbstractEvidence):
             "range, this is the loop driven by F - Fd in place of F, for every constant Fd > 0, "
             "and F settles at Fd. No rate is claimed."
         )
-
-    def to_fields(self) -> dict[str, Any]:
-        """Return Q and the slope."""
-        return {"Q": matrix_fields(self.Q, self.denominator_log2), "slope": self.slope}
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read Q and the slope."""
-        return cls(*read_dyadic(fields["Q"]), read_integer(fields["slope"]))
 
 
 def _motions(matrices: Iterator[RationalMatrix]) -> set[tuple[tuple[Fraction, ...], ...]]:

@@ -1,24 +1,129 @@
-"""Numbers in certificate files: integers and ratios of integers, never floats."""
+"""Numbers in certificate files: integers and ratios of integers, never floats.
+
+A dataclass is written field by field, and read by the types of its fields. A field that holds its
+default is left out; one that the class does not have is refused.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
-from typing import Any
+from functools import cache
+from types import NoneType, UnionType
+from typing import Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
-from nrs_design.proof.exact import is_too_large
+from nrs_design.proof.exact import bit_length, is_too_large
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.text import quoted
 
 Matrix = tuple[tuple[int, ...], ...]
+T = TypeVar("T")
 
 # Python reads and writes integers of at most 4300 decimal digits, `read_ratio` of at most 2000.
 MAX_INTEGER_BITS = 14_000
 MAX_RATIO_BITS = 6_640
 MAX_ENTRIES = 100_000
+
+
+def written(value: Any) -> Any:
+    """Return a value of a dataclass as JSON holds it.
+
+    A matrix that is the only one of an object stands among its other fields.
+
+    Raises
+    ------
+    ValueError
+        If a number of a matrix has more digits than a file holds.
+    """
+    if isinstance(value, RationalMatrix):
+        return _matrix_fields(value)
+    if isinstance(value, tuple):
+        return [written(item) for item in value]
+    if isinstance(value, Fraction):
+        return str(value)
+    if not is_dataclass(value):
+        return value
+    result: dict[str, Any] = {}
+    for field in fields(value):
+        item = getattr(value, field.name)
+        if isinstance(item, RationalMatrix):
+            result |= _matrix_fields(item)
+        elif item != field.default:
+            result[field.name] = written(item)
+    return result
+
+
+def read_object(kind: type[T], value: object) -> T:
+    """Read a dataclass that `written` has written.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If a field is missing, malformed or unknown.
+    """
+    if not isinstance(value, Mapping):
+        raise TypeError(f"expected an object, not {quoted(str(value))}")
+    found: dict[str, Any] = {}
+    known: set[str] = set()
+    for name, (hint, default, signed) in _hints(cast(Hashable, kind)).items():
+        if hint is RationalMatrix:
+            found[name] = _read_matrix(value)
+            known |= {"numerators", "denominator"}
+        elif name in value or default is MISSING:
+            read = read_signed if signed else _read
+            found[name] = read(hint, value[name])
+            known.add(name)
+    if unknown := value.keys() - known:
+        raise ValueError(f"unknown field {quoted(min(map(str, unknown)))}")
+    return kind(**found)
+
+
+@cache
+def _hints(kind: Hashable) -> dict[str, tuple[Any, Any, bool]]:
+    """Return the type of every field, its default, and whether its number has a sign."""
+    hints = get_type_hints(kind)
+    assert is_dataclass(kind)
+    return {
+        field.name: (hints[field.name], field.default, bool(field.metadata))
+        for field in fields(kind)
+    }
+
+
+def _read(hint: Any, value: object) -> Any:
+    if hint in _PLAIN:
+        return _PLAIN[hint](value)
+    if get_origin(hint) is UnionType:
+        # None, the default of such a field, is never written.
+        (inner,) = (part for part in get_args(hint) if part is not NoneType)
+        return _read(inner, value)
+    if get_origin(hint) is not tuple:
+        return read_object(hint, value)
+    first, *others = get_args(hint)
+    items = read_list(value)
+    if others == [...]:
+        return tuple(_read(first, item) for item in items)
+    return tuple(_read(part, item) for part, item in zip((first, *others), items, strict=True))
+
+
+def _matrix_fields(A: RationalMatrix) -> dict[str, Any]:
+    if max(bit_length(A.numerators), A.denominator.bit_length()) > MAX_INTEGER_BITS:
+        raise ValueError("a number of a mode or a reset has more digits than a certificate holds")
+    return {"numerators": [list(row) for row in A.numerators], "denominator": A.denominator}
+
+
+def _read_matrix(value: Any) -> RationalMatrix:
+    rows = tuple(
+        tuple(read_integer(entry) for entry in read_list(row))
+        for row in read_list(value["numerators"])
+    )
+    denominator = read_integer(value["denominator"])
+    if denominator <= 0 or not rows or not rows[0] or len(set(map(len, rows))) != 1:
+        raise ValueError("a matrix has rows of different lengths, or no positive denominator")
+    return RationalMatrix(rows, denominator)
 
 
 def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
@@ -36,7 +141,7 @@ def read_dyadic(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
 
 def read_integers(value: Any) -> Matrix:
     """Read a matrix of integers."""
-    matrix = tuple(tuple(read_integer(entry) for entry in row) for row in value)
+    matrix = tuple(tuple(read_integer(entry) for entry in read_list(row)) for row in value)
     if is_too_large(matrix):
         raise ValueError("a matrix is too large to check")
     return matrix
@@ -72,6 +177,37 @@ def read_ratio(value: object) -> Fraction:
     if not re.fullmatch(r"[0-9]{1,2000}(/[0-9]{1,2000})?", text):
         raise ValueError(f"{quoted(text)} is not a ratio of integers")
     return Fraction(text)
+
+
+def read_signed(hint: object, value: object) -> Fraction:
+    """Read a ratio of integers with a sign, such as -3/8."""
+    text = read_text(value)
+    return -read_ratio(text[1:]) if text.startswith("-") else read_ratio(text)
+
+
+def read_truth(value: object) -> bool:
+    """Read a truth value."""
+    if not isinstance(value, bool):
+        raise TypeError(f"expected true or false, not {quoted(str(value))}")
+    return value
+
+
+def read_list(value: object) -> list[Any]:
+    """Read a list."""
+    if not isinstance(value, list):
+        raise TypeError(f"expected a list, not {quoted(str(value))}")
+    return value
+
+
+_PLAIN: Mapping[Any, Callable[[object], Any]] = {
+    str: read_text,
+    int: read_integer,
+    bool: read_truth,
+    Fraction: read_ratio,
+    Matrix: read_integers,
+    RationalMatrix: _read_matrix,
+    Time: lambda value: Time(read_text(value)),
+}
 
 
 def find_unreadable(value: object) -> str | None:

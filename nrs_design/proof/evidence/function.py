@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -34,6 +35,25 @@ class AbstractFunction(AbstractEvidence):
         if self.rate <= 0 or (time is Time.DISCRETE and self.rate >= 1):
             return "the claimed rate is not one of exponential decay"
         return None
+
+
+def find_odd_form(Q: IntegerMatrix, denominator_log2: int, order: int) -> str | None:
+    """Say why a form does not have its shape, or None.
+
+    Parameters
+    ----------
+    Q : integer matrix
+        Its numerators.
+    denominator_log2 : int
+        They are over two to this power.
+    order : int
+        Number of states.
+    """
+    if not is_square(Q, order):
+        return f"Q is not a {order} x {order} matrix"
+    if not 0 <= denominator_log2 <= MAX_INTEGER_BITS:
+        return f"the denominator of Q is not two to a power up to {MAX_INTEGER_BITS}"
+    return None
 
 
 def is_square(M: IntegerMatrix, n: int) -> bool:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import lcm
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from nrs_design.proof.bounds import at_least, nearly
 from nrs_design.proof.clock import keeps_turns
 from nrs_design.proof.constant import system_at, value_text
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.fields import read_integer, read_ratio, read_text
 from nrs_design.proof.evidence.growth import Steps, grows_in_contact, has_growing_trace
 from nrs_design.proof.exact import IntegerMatrix, TooLargeError, common_denominator
 from nrs_design.proof.matrix import RationalMatrix
@@ -306,33 +305,13 @@ class GrowingSequence(AbstractEvidence):
             f"says, and {law} is unstable with contact that may be lost."
         )
 
-    def to_fields(self) -> dict[str, Any]:
-        """Return the steps and what shows the growth along them."""
-        every = {
-            "steps": [[name, str(time)] for name, time in self.steps],
-            "doublings": self.doublings,
-            "edges": list(self.edges) or None,
-            "factor": None if self.factor is None else [str(number) for number in self.factor],
-            "share": None if self.share is None else str(self.share),
-        }
-        return {key: value for key, value in every.items() if value is not None}
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read the steps and what shows the growth along them."""
-        steps = tuple((read_text(name), read_ratio(time)) for name, time in fields["steps"])
-        edges = tuple(read_integer(edge) for edge in fields.get("edges", ()))
-        if not steps or (edges and len(edges) != len(steps)):
-            raise ValueError("there are no steps, or there is not one edge for each of them")
-        doublings = read_integer(fields["doublings"]) if "doublings" in fields else None
-        factor = None
-        if "factor" in fields:
-            low, high = map(read_ratio, fields["factor"])
-            factor = low, high
-        share = read_ratio(fields["share"]) if "share" in fields else None
-        if share is not None and not (_is_share(share) and system.switching.fixed_ends):
-            raise ValueError("the share is out of bounds, or no parameter is constant")
-        return cls(steps, doublings, edges, factor, share)
+    def find_unsayable(self, system: SwitchedSystem) -> str | None:
+        """Say what keeps the steps from being put into words, or None."""
+        if not self.steps or (self.edges and len(self.edges) != len(self.steps)):
+            return "there are no steps, or there is not one edge for each of them"
+        if self.share is not None and not (_is_share(self.share) and system.switching.fixed_ends):
+            return "the share is out of bounds, or no parameter is constant"
+        return None
 
 
 def average(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> RationalMatrix:

@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
 from nrs_design.proof.evidence.fields import (
-    MAX_INTEGER_BITS,
     Matrix,
-    matrix_fields,
-    read_dyadic,
-    read_integer,
-    read_ratio,
-    read_roundings,
-    read_text,
-    rounding_fields,
 )
-from nrs_design.proof.evidence.function import is_square
+from nrs_design.proof.evidence.function import find_odd_form
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
 from nrs_design.proof.mode import Time
@@ -95,12 +87,10 @@ class InvariantEllipsoid(AbstractEvidence):
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check names, shapes, and the signs of shares, level and multipliers."""
-        if (unknown := self._find_unknown(system)) is not None:
+        if (unknown := self.find_unsayable(system)) is not None:
             return unknown
-        if not is_square(self.Q, system.order):
-            return f"Q is not a {system.order} x {system.order} matrix"
-        if not 0 <= self.denominator_log2 <= MAX_INTEGER_BITS:
-            return f"the denominator of Q is not two to a power up to {MAX_INTEGER_BITS}"
+        if (odd := find_odd_form(self.Q, self.denominator_log2, system.order)) is not None:
+            return odd
         if (odd := find_odd_multipliers(self.multipliers, system)) is not None:
             return odd
         if (odd := find_odd_roundings(self.roundings, system)) is not None:
@@ -122,7 +112,8 @@ class InvariantEllipsoid(AbstractEvidence):
             return "the system does not say how many axes are disturbed"
         return None
 
-    def _find_unknown(self, system: SwitchedSystem) -> str | None:
+    def find_unsayable(self, system: SwitchedSystem) -> str | None:
+        """Say which of its names the system does not have, or None."""
         known = {channel.name for channel in system.channels}
         if not self.channels or len(set(self.channels)) < len(self.channels):
             return "it names no disturbance, or one of them twice"
@@ -217,38 +208,6 @@ class InvariantEllipsoid(AbstractEvidence):
             f" That the limit of {limit} is kept is not shown; it is, in proportion, for "
             f"{', '.join(smaller)}."
         )
-
-    def to_fields(self) -> dict[str, Any]:
-        """Return the names, Q, shares, level and multipliers."""
-        return {
-            "channels": list(self.channels),
-            "output": self.output,
-            "Q": matrix_fields(self.Q, self.denominator_log2),
-            "shares": [str(share) for share in self.shares],
-            "level": str(self.level),
-            "multipliers": list(self.multipliers),
-            **rounding_fields(self.roundings),
-            **({"taus": list(self.taus)} if self.taus else {}),
-        }
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read the names, which must be those of the system, and the numbers."""
-        Q, denominator_log2 = read_dyadic(fields["Q"])
-        evidence = cls(
-            tuple(read_text(name) for name in fields["channels"]),
-            read_text(fields["output"]),
-            Q,
-            denominator_log2,
-            tuple(read_ratio(share) for share in fields["shares"]),
-            read_ratio(fields["level"]),
-            tuple(read_integer(entry) for entry in fields["multipliers"]),
-            read_roundings(fields),
-            tuple(read_integer(tau) for tau in fields.get("taus", [])),
-        )
-        if (unknown := evidence._find_unknown(system)) is not None:
-            raise ValueError(unknown)
-        return evidence
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from operator import mul
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.evidence.fields import Matrix, read_integers, read_text
+from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.exact import IntegerMatrix, add, common_denominator
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
@@ -74,15 +74,6 @@ class NoCommonQuadratic(AbstractEvidence):
             f"No positive definite Q satisfies {condition} for all modes: a common quadratic "
             "Lyapunov function does not exist. This alone says nothing about stability."
         )
-
-    def to_fields(self) -> dict[str, Any]:
-        """Return the factors by mode."""
-        return {"factors": [[name, [list(row) for row in L]] for name, L in self.factors]}
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read the factors."""
-        return cls(tuple((read_text(name), read_integers(L)) for name, L in fields["factors"]))
 
 
 def _term(mode: Mode, L: Matrix, time: Time) -> list[list[int]]:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from nrs_design.proof.evidence.fields import (
     Matrix,
-    matrix_fields,
     rate_words,
-    read_dyadic,
-    read_ratio,
 )
-from nrs_design.proof.evidence.function import AbstractFunction, is_square
+from nrs_design.proof.evidence.function import AbstractFunction, find_odd_form
 from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease, scaled
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -51,9 +48,8 @@ class ParameterQuadratic(AbstractFunction):
         paired = sorted(name for pair in system.switching.fixed_ends for name in pair)
         if paired != sorted(mode.name for mode in system.modes):
             return "the modes are not the ends of one constant parameter"
-        if not is_square(self.low, system.order) or not is_square(self.high, system.order):
-            return f"Q is not a {system.order} x {system.order} matrix"
-        return self.find_rate_misfit(system.time)
+        odd = (find_odd_form(Q, self.denominator_log2, system.order) for Q in (self.low, self.high))
+        return next(filter(None, odd), None) or self.find_rate_misfit(system.time)
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
         """Yield both functions, and the three conditions of every pair."""
@@ -90,20 +86,3 @@ class ParameterQuadratic(AbstractFunction):
             f"|x(0)| with {rate_words(self.rate, system.time)}, in a norm "
             "|x| = sqrt(x' Q x) with Q affine in the parameter."
         )
-
-    def to_fields(self) -> dict[str, Any]:
-        """Return both ends of Q and the rate."""
-        return {
-            "Q_low": matrix_fields(self.low, self.denominator_log2),
-            "Q_high": matrix_fields(self.high, self.denominator_log2),
-            "rate": str(self.rate),
-        }
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read both ends of Q and the rate."""
-        low, exponent = read_dyadic(fields["Q_low"])
-        high, other = read_dyadic(fields["Q_high"])
-        if exponent != other:
-            raise ValueError("the two ends of Q do not share one denominator")
-        return cls(low, high, exponent, read_ratio(fields["rate"]))

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import (
     MAX_INTEGER_BITS,
     Matrix,
-    matrix_fields,
     rate_words,
-    read_dyadic,
-    read_ratio,
 )
-from nrs_design.proof.evidence.function import is_square
+from nrs_design.proof.evidence.function import find_odd_form
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply
 from nrs_design.proof.mode import Time
@@ -81,11 +78,10 @@ class SaturatedEllipsoid(AbstractEvidence):
             return "saturation is covered in continuous time only"
         if system.contact is not None and system.contact.pulls:
             return "the environment could pull, which is not covered where signals saturate"
-        if not is_square(self.Q, system.order):
-            return f"Q is not a {system.order} x {system.order} matrix"
-        logarithms = self.denominator_log2, self.H_denominator_log2
-        if not all(0 <= log2 <= MAX_INTEGER_BITS for log2 in logarithms):
-            return "the denominator of Q or of H is out of range"
+        if (odd := find_odd_form(self.Q, self.denominator_log2, system.order)) is not None:
+            return odd
+        if not 0 <= self.H_denominator_log2 <= MAX_INTEGER_BITS:
+            return "the denominator of H is out of range"
         rows = len(system.saturation.signals)
         if len(self.H) != rows or any(len(row) != system.order for row in self.H):
             return f"H has not {rows} rows of {system.order} entries"
@@ -146,20 +142,6 @@ class SaturatedEllipsoid(AbstractEvidence):
             f"to {rounded_down(self.level, start.unit)}, and all else zero."
         )
 
-    def to_fields(self) -> dict[str, Any]:
-        """Return Q, H, the rate and the level."""
-        return {
-            "Q": matrix_fields(self.Q, self.denominator_log2),
-            "H": matrix_fields(self.H, self.H_denominator_log2),
-            "rate": str(self.rate),
-            "level": str(self.level),
-        }
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read Q, H, the rate and the level; they say nothing where nothing saturates."""
-        if system.saturation is None:
-            raise ValueError(NOTHING_SATURATES)
-        rate, level = read_ratio(fields["rate"]), read_ratio(fields["level"])
-        Q, H = read_dyadic(fields["Q"]), read_dyadic(fields["H"])
-        return cls(*Q, rate, *H, level)
+    def find_unsayable(self, system: SwitchedSystem) -> str | None:
+        """Say that it says nothing where nothing saturates."""
+        return NOTHING_SATURATES if system.saturation is None else None

@@ -12,8 +12,10 @@ from nrs_design.reporting.document import Illustration, Paragraph, Section, Tabl
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import simulated
-from nrs_design.reporting.figures.bound import draw_bound
+from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
 from nrs_design.reporting.formatting import number
+from nrs_design.simulation.greedy import all_modes
+from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.worst_case import WorstRun, worst_against
 from nrs_design.simulation.worst_outputs import output_values
 
@@ -92,19 +94,19 @@ class BoundPage(AbstractPage):
         return "all disturbances at once" if every else ", ".join(item.name for item in acting)
 
     def _illustration(self, run: WorstRun) -> Illustration:
-        system, bound = self.system, self._bound
-        output = bound.output
+        system, output, level = self.system, self._bound.output, float(self._bound.level)
+        signal = BoundedSignal(
+            f"{output.name.capitalize()} [{output.unit}]",
+            output_values(system, output, run.states),
+            None if output.limit is None else float(output.limit),
+            np.full(len(run.time), level),
+        )
+        names = [mode.name for mode in all_modes(system).modes]
         unit = "steps" if self.is_discrete and system.sample_time is None else "s"
+        response = SwitchedRun(run.time, run.states, run.mode)
         return Illustration(
             f"bound-{self._disturbance}-{output.name}".replace(" ", "-"),
             f"{output.name.capitalize()} under {self._disturbance}",
             _RUN,
-            draw_bound(
-                run.time,
-                output_values(system, output, run.states),
-                float(bound.level),
-                None if output.limit is None else float(output.limit),
-                f"{output.name.capitalize()} [{output.unit}]",
-                unit,
-            ),
+            draw_bounded_run(response, [signal], names, unit),
         )

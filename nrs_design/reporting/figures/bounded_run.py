@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.reporting.figures.run import draw_modes, groups_of
 from nrs_design.reporting.style import (
     BLUE,
     GREEN,
     MUTED,
     VERMILLION,
-    color,
     legend,
     new_figure,
     row_labels,
@@ -45,7 +45,7 @@ class BoundedSignal:
 
 @styled
 def draw_bounded_run(
-    response: SwitchedRun, panels: Sequence[BoundedSignal], names: Sequence[str]
+    response: SwitchedRun, panels: Sequence[BoundedSignal], names: Sequence[str], unit: str = "s"
 ) -> Figure:
     """Draw all panels over one time axis, and below them the mode that is active.
 
@@ -57,31 +57,19 @@ def draw_bounded_run(
         At least one.
     names : sequence of str
         Of all modes.
+    unit : str
+        Of the time.
     """
-    active_modes = list(dict.fromkeys(response.mode.tolist()))
-    used = active_modes[:_ROWS]
-    labels, height = row_labels([names[mode] for mode in used])
-    rows = height * len(used)
+    groups = groups_of(response, names, _ROWS)
+    labels, height = row_labels([group.name for group in groups])
+    rows = height * len(groups)
     figure = new_figure(1.9 * len(panels) + 0.8 + rows)
     ratios = [*([1.9] * len(panels)), rows]
     *above, below = figure.subplots(len(panels) + 1, 1, sharex=True, height_ratios=ratios)
     for axes, panel in zip(above, panels, strict=True):
         _draw_panel(axes, response.time, panel)
-    for row, mode in enumerate(used):
-        active = response.mode == mode
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], active.astype(int), [0]])))
-        spans = [
-            (response.time[a], response.time[b] - response.time[a]) for a, b in edges.reshape(-1, 2)
-        ]
-        label = names[mode]
-        below.broken_barh(spans, (row - 0.35, 0.7), color=color(row), linewidth=0, label=label)
-    below.set_yticks(range(len(used)), labels, fontsize=9)
-    below.set_ylim(len(used) - 0.4, -0.6)
-    more = len(active_modes) - len(used)
-    title = f"Active mode (gaps: {more} more)" if more else "Active mode"
-    below.set_title(title, loc="left", fontsize=9.5)
-    below.grid(visible=False, axis="y")
-    below.set_xlabel("Time [s]")
+    draw_modes(below, response, groups, labels)
+    below.set_xlabel(f"Time [{unit}]")
     legend(figure, above[0], 2)
     return figure
 

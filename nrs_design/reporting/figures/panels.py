@@ -45,9 +45,10 @@ _PRINTED: dict[str, Any] = {
     "mew": 1.8,
 }
 _LIMIT: dict[str, Any] = {"color": GREEN, "linestyle": ":", "lw": 1.5}
+_BOUND: dict[str, Any] = {"color": VERMILLION, "linestyle": "--", "lw": 1.4}
 _INSTANT: dict[str, Any] = {"color": MUTED, "linestyle": (0, (1, 2)), "lw": 1.2}
 # Pale, so that a page's light or dark shows through.
-_SHADES, _PALE = (SKY, ORANGE, GREEN, PURPLE), 0.16
+_SHADES, _PALE = (SKY, ORANGE, GREEN, PURPLE, BLUE, VERMILLION), 0.16
 # Width of all panels in letters; a stay that is narrower than its name goes without.
 _LETTERS = 56
 
@@ -76,6 +77,8 @@ class Panel:
     ticks: tuple[float, ...] = ()  # Where the axis has numbers; by default matplotlib says
     # Quantity and unit of a second scale at the right, and what one unit is there.
     other: tuple[str, float] | None = None
+    bounds: tuple[float, ...] = ()  # Horizontal lines that nothing crosses
+    bound: str = "certified bound"  # What they are
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,6 +135,8 @@ def _draw_panel(axes: Axes, panel: Panel, column: PanelColumn, handles: dict[str
             handles.setdefault(curve.label, line)
     for level in panel.limits:
         handles.setdefault(panel.limit, axes.axhline(level, **_LIMIT))
+    for level in panel.bounds:
+        handles.setdefault(panel.bound, axes.axhline(level, **_BOUND))
     if panel.ticks:
         axes.set_yticks(panel.ticks)
     for instant in column.instants:

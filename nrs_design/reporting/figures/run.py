@@ -47,8 +47,9 @@ def draw_run(
     bound: tuple[str, Array] | None,
     system: SwitchedSystem,
     label: str,
+    deflection: str = "",
 ) -> Figure:
-    """Draw a norm over time, its proved bound, and below them the mode that is active.
+    """Draw a norm over time, its proved bound, the deflection, and the mode that is active.
 
     Parameters
     ----------
@@ -62,12 +63,15 @@ def draw_run(
         Names of the modes, and the time axis.
     label : str
         Which norm it is.
+    deflection : str
+        Name of the last state, where that is a deflection that shows when contact is lost.
     """
-    groups = _groups(response, system)
+    groups = groups_of(response, _names(system))
     labels, height = row_labels([group.name for group in groups])
     rows = height * len(groups)
-    figure = new_figure(3.6 + rows)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, rows])
+    heights = [2.6, *([1.4] if deflection else []), rows]
+    figure = new_figure(1.0 + sum(heights))
+    above, *between, below = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     discrete = system.time is Time.DISCRETE
     shape = {"marker": "o", "markersize": 2.5} if discrete and len(norm) <= 80 else {}
     above.semilogy(
@@ -76,12 +80,27 @@ def draw_run(
     if bound is not None:
         above.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
     above.set_ylabel(label)
+    for axes in between:
+        _draw_deflection(axes, response, deflection)
     if discrete:
         below.locator_params(axis="x", integer=True)
-    _draw_modes(below, response, groups, labels)
+    draw_modes(below, response, groups, labels)
     below.set_xlabel("Time [steps]" if discrete else "Time [s]")
     legend(figure, above)
     return figure
+
+
+def _draw_deflection(axes: Axes, response: SwitchedRun, name: str) -> None:
+    """Draw the deflection over its largest value, shaded while there is no contact."""
+    depth = response.state[:, -1]
+    axes.plot(response.time, depth / np.abs(depth).max(), color=BLUE, label=name)
+    axes.axhline(0.0, color=INK, linewidth=0.8)
+    free, place = (depth <= 0).tolist(), axes.get_xaxis_transform()
+    axes.fill_between(
+        response.time, 0, 1, where=free, transform=place, color=MUTED, alpha=0.25, linewidth=0
+    )
+    axes.set_ylabel("Deflection over\nits largest value [1]")
+    axes.set_title(f"{name}; shaded: no contact", loc="left", fontsize=9.5)
 
 
 @styled
@@ -101,7 +120,7 @@ def draw_mode_levels(
         the start.
     """
     figure, axes = new_axes(4.6)
-    groups = _groups(response, system)
+    groups = groups_of(response, _names(system))
     start = float(norms[system.modes[int(response.mode[0])].name](response.state[0]))
     _draw_paths(axes, response, system, groups)
     named = [group for group in groups if len(group.modes) == 1]
@@ -138,13 +157,13 @@ def draw_phase_plane(
     figure, axes = new_axes(4.4)
     if norm is not None:
         _draw_levels(axes, norm, float(norm(response.state[0])), levels)
-    _draw_paths(axes, response, system, _groups(response, system))
+    _draw_paths(axes, response, system, groups_of(response, _names(system)))
     _finish_plane(figure, axes, response, system)
     return figure
 
 
 @dataclass(frozen=True)
-class _Group:
+class Group:
     """Modes that are drawn alike: one, or all that there is no room for."""
 
     name: str
@@ -152,19 +171,33 @@ class _Group:
     tint: str
 
 
-def _groups(response: SwitchedRun, system: SwitchedSystem) -> list[_Group]:
-    """Return the modes of a run in the order of their first use, the last ones together."""
+def groups_of(response: SwitchedRun, names: Sequence[str], most: int = _ROWS) -> list[Group]:
+    """Return the modes of a run in the order of their first use, the last ones together.
+
+    Parameters
+    ----------
+    response : SwitchedRun
+        The run.
+    names : sequence of str
+        Of all modes.
+    most : int
+        How many rows there may be.
+    """
     used = list(dict.fromkeys(response.mode.tolist()))
-    single = used if len(used) <= _ROWS else used[: _ROWS - 1]
-    groups = [_Group(system.modes[m].name, (m,), color(i)) for i, m in enumerate(single)]
+    single = used if len(used) <= most else used[: most - 1]
+    groups = [Group(names[m], (m,), color(i)) for i, m in enumerate(single)]
     if len(used) > len(single):
         rest = tuple(used[len(single) :])
-        groups.append(_Group(f"{len(rest)} other modes", rest, MUTED))
+        groups.append(Group(f"{len(rest)} other modes", rest, MUTED))
     return groups
 
 
+def _names(system: SwitchedSystem) -> list[str]:
+    return [mode.name for mode in system.modes]
+
+
 def _draw_paths(
-    axes: Axes, response: SwitchedRun, system: SwitchedSystem, groups: Sequence[_Group]
+    axes: Axes, response: SwitchedRun, system: SwitchedSystem, groups: Sequence[Group]
 ) -> None:
     # In discrete time only the points are states; the lines lead from one to the next.
     shape = "o" if system.time is Time.DISCRETE else "None"
@@ -195,10 +228,22 @@ def _axis_label(states: tuple[str, ...], index: int) -> str:
     return f"State {name}" if "[" in name else f"State {name} [no unit given]"
 
 
-def _draw_modes(
-    axes: Axes, response: SwitchedRun, groups: Sequence[_Group], labels: Sequence[str]
+def draw_modes(
+    axes: Axes, response: SwitchedRun, groups: Sequence[Group], labels: Sequence[str]
 ) -> None:
-    """Draw one bar for each time that a mode is active, one row per mode."""
+    """Draw one bar for each time that a mode is active, one row for each group of modes.
+
+    Parameters
+    ----------
+    axes : Axes
+        To draw in.
+    response : SwitchedRun
+        The run.
+    groups : sequence of Group
+        Of its modes.
+    labels : sequence of str
+        Of the rows.
+    """
     edges = np.flatnonzero(np.diff(response.mode)) + 1
     starts = np.concatenate([[0], edges])
     ends = np.concatenate([edges, [len(response.mode)]])
@@ -208,7 +253,8 @@ def _draw_modes(
             for a, b in zip(starts, ends, strict=True)
             if response.mode[a] in group.modes
         ]
-        axes.broken_barh(spans, (row - 0.35, 0.7), color=group.tint, linewidth=0)
+        place = (row - 0.35, 0.7)
+        axes.broken_barh(spans, place, color=group.tint, linewidth=0, label=group.name)
     axes.set_yticks(range(len(groups)), labels, fontsize=9)
     axes.set_ylim(len(groups) - 0.4, -0.6)
     axes.set_title("Active mode", loc="left", fontsize=9.5)

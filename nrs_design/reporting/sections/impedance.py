@@ -8,25 +8,43 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from nrs_design.design.measures import (
     COST_MEANING,
+    IMPEDANCE_ERROR,
     LIMIT_MEANING,
     MARGINS,
     MEANING,
     ONE_AXIS,
     PASSIVITY_NOT_COMPUTED,
+    SENSITIVITY_PEAK,
     Measure,
 )
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
-from nrs_design.reporting.figures.impedance import draw_displayed_impedance, draw_sensitivity
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
+from nrs_design.reporting.style import (
+    INK,
+    MUTED,
+    color,
+    curve,
+    legend,
+    marker,
+    new_axes,
+    styled,
+)
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
     from nrs_design.design.analysis import ImpedanceAnalysis
+    from nrs_design.design.loops import Loops
     from nrs_design.design.passivity import PassiveBand
     from nrs_design.design.sampled_passivity import SampledBand
+    from nrs_design.design.transfer import FloatArray
     from nrs_design.pipeline import Designed
 
 # More controllers than these make a table too wide for a page, or a figure too full.
@@ -165,7 +183,7 @@ def _figures(drawn: Sequence[ImpedanceAnalysis], rest: str) -> tuple[Illustratio
         "is proved at its nominal values (solid; a sampled law with a spring has no curve), and "
         "the desired one (dashed); the dotted line is the bandwidth of the motion. Shaded: what "
         f"the goal allows up to there, or what is usual.{rest}",
-        draw_displayed_impedance(drawn),
+        _draw_displayed_impedance(drawn),
     )
     sensitivity = Illustration(
         "sensitivity",
@@ -173,7 +191,7 @@ def _figures(drawn: Sequence[ImpedanceAnalysis], rest: str) -> tuple[Illustratio
         "Magnitude of 1/(1 + L) with the open loop L, at the corner of the ranges where its peak "
         "is largest; the marker is that peak Ms. A value above 1 (gray line) amplifies "
         f"disturbances of that frequency.{rest}",
-        draw_sensitivity(drawn),
+        _draw_sensitivity(drawn),
     )
     return displayed, sensitivity
 
@@ -241,3 +259,105 @@ def by_controller(
         rows = tuple(zip(labels, *columns[part], strict=True))
         tables.append(Table(title, ("", *names[part]), rows))
     return tables
+
+
+_POINTS = 400
+
+
+@styled
+def _draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
+    """Draw the magnitude of the displayed impedance beside the desired one."""
+    figure, axes = new_axes(3.9)
+    omega = _frequencies(items)
+    for index, item in enumerate(items):
+        nominal = item.requirement.nominal[0]
+        shown = item.requirement.displayed(nominal, item.Mt, item.Bt, omega)
+        if shown is not None:
+            look = curve(index, len(items), len(omega))
+            axes.loglog(omega, np.abs(shown), label=f"{item.name}, displayed", **look)
+    for desired, names in _asked_for(items).items():
+        index = next(i for i, item in enumerate(items) if item.name == names[0])
+        axes.axhline(
+            desired,
+            color=color(index) if len(names) == 1 else INK,
+            linestyle=(0, (5, 3)),
+            linewidth=1.3,
+            label=f"{' and '.join(names)}, desired" if len(names) < len(items) else "desired",
+        )
+    low = min(axes.get_ylim()[0], *(float(item.problem.desired) for item in items))
+    for index, item in enumerate(items):
+        factor, desired = band_factor(item), float(item.problem.desired)
+        axes.fill_between(
+            [omega[0], item.problem.bandwidth],
+            desired / factor,
+            desired * factor,
+            color=color(index),
+            alpha=0.2,
+            linewidth=0,
+            label=f"{item.name}, within a factor of {factor:.3g}",
+        )
+    axes.set_ylim(low, None)
+    _finish(axes, items, "Impedance magnitude [N·m·s/rad]")
+    legend(figure, axes)
+    return figure
+
+
+@styled
+def _draw_sensitivity(items: Sequence[ImpedanceAnalysis]) -> Figure:
+    """Draw the magnitude of the sensitivity where its peak Ms is worst, a curve a controller."""
+    figure, axes = new_axes(3.9)
+    omega = _frequencies(items)
+    for index, item in enumerate(items):
+        worst, loops = item.worst(SENSITIVITY_PEAK), _worst_loops(item)
+        magnitude = np.abs(1 / (1 + loops.response(omega)[0]))
+        peak, at = worst.value, float(loops.peak_frequency()[0])
+        label = f"{item.name}, Ms = {worst.measure.text(peak)}"
+        axes.loglog(omega, magnitude, label=label, **curve(index, len(items), len(omega)))
+        if math.isfinite(at) and math.isfinite(peak):
+            axes.plot(
+                at, peak, marker(index), color=color(index), markeredgecolor=INK, markersize=8
+            )
+    axes.axhline(1.0, color=MUTED, linewidth=1.0)
+    _finish(axes, items, "Sensitivity magnitude |L| [1]")
+    legend(figure, axes)
+    return figure
+
+
+def _worst_loops(item: ImpedanceAnalysis) -> Loops:
+    """Return the open loop at the corner where Ms is worst."""
+    corner = item.requirement.corner(item.worst(SENSITIVITY_PEAK).where)
+    return item.requirement.loops(corner, np.array([item.Mt]), np.array([item.Bt]))
+
+
+def band_factor(item: ImpedanceAnalysis) -> float:
+    """Return by which factor the displayed impedance may be off: the goal, or what is usual."""
+    goals = (f.goal for f in item.achieved if f.measure is IMPEDANCE_ERROR and f.goal)
+    return next(goals, IMPEDANCE_ERROR.doubtful or 2.0)
+
+
+def _asked_for(items: Sequence[ImpedanceAnalysis]) -> dict[float, list[str]]:
+    """Return the controllers that ask for each impedance: lines that coincide are one line."""
+    found: dict[float, list[str]] = {}
+    for item in items:
+        found.setdefault(float(item.problem.desired), []).append(item.name)
+    return found
+
+
+def _frequencies(items: Sequence[ImpedanceAnalysis]) -> FloatArray:
+    """Return frequencies in rad/s from far below the bandwidth to beyond it and every peak."""
+    bandwidth = items[0].problem.bandwidth
+    peaks = [float(_worst_loops(item).peak_frequency()[0]) for item in items]
+    highest = 10 * max([bandwidth, *(peak for peak in peaks if math.isfinite(peak))])
+    period = _worst_loops(items[0]).period
+    return np.geomspace(
+        bandwidth / 100, min(highest, math.pi / (period or math.pi / highest)), _POINTS
+    )
+
+
+def _finish(axes: Axes, items: Sequence[ImpedanceAnalysis], ylabel: str) -> None:
+    bandwidth = items[0].problem.bandwidth
+    label = f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz"
+    axes.axvline(bandwidth, color=MUTED, linewidth=1.4, linestyle=":", label=label)
+    axes.set_xlabel("Frequency [rad/s]")
+    axes.set_ylabel(ylabel)
+    axes.set_xlim(bandwidth / 100, None)

@@ -13,7 +13,7 @@ from typing import Any
 
 from nrs_design.controllers.float32 import float32_not_above, to_float32
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
-from nrs_design.controllers.step_parts import BEYOND
+from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.trace import Trace
 from nrs_design.robot.controllers.computed_torque import ComputedTorque
 from nrs_design.robot.controllers.independent_joint import IndependentJoint

@@ -19,20 +19,20 @@ def test_the_force_turns_the_command_back():
 
 
 @pytest.mark.parametrize(
-    ("given", "gain", "fits"),
+    ("given", "gain", "fault"),
     [
-        (FIXED, SHIPPED, True),
+        (FIXED, SHIPPED, None),
         # What ships is a single-precision number: the decimal itself is another one.
-        (FIXED, Fraction("0.02"), False),
-        (FIXED, 2 * SHIPPED, False),
-        (CHOSEN, SHIPPED, True),
-        (CHOSEN, Fraction(0), True),
-        (CHOSEN, -SHIPPED, False),
+        (FIXED, Fraction("0.02"), "not what the spec fixes"),
+        (FIXED, 2 * SHIPPED, "not what the spec fixes"),
+        (CHOSEN, SHIPPED, None),
+        (CHOSEN, Fraction(0), None),
+        (CHOSEN, -SHIPPED, "negative"),
     ],
 )
-def test_gains_that_the_spec_allows(given, gain, fits):
-    fault = ProportionalForce(gain).find_fault(given)
-    assert fault is None if fits else fault == "gain Kp is not what the spec fixes"
+def test_gains_that_the_spec_allows(given, gain, fault):
+    found = ProportionalForce(gain).find_fault(given)
+    assert found == (fault and f"gain Kp is {fault}")
 
 
 def test_contact_is_said_to_be_kept():

@@ -5,7 +5,9 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.controllers.laws import AbstractCompliantLaw, Admittance
+from nrs_design.controllers.laws import AbstractCompliantLaw, Admittance, ProportionalForce
+from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.spec import PositionControllerSpec
 
 
@@ -29,11 +31,17 @@ def test_a_gain_that_neither_spec_nor_law_limits_is_not_allowed():
     assert Unbounded(Fraction(1)).find_fault(given) == "gain K has no bounds in the spec"
 
 
-def test_by_default_a_law_has_no_states_and_is_not_sampled():
+def test_by_default_a_law_has_no_states_and_has_no_program():
     law = Unbounded(Fraction(1))
     assert law.states == law.state_words == ()
     assert law.inverse == frozenset()
-    assert law.sampled(Fraction(1, 500), "exact") is None
+    assert law.discretize(Fraction(1, 500), "exact") is None
+
+
+def test_ranges_of_gains_are_refused_where_nothing_encloses_the_numbers():
+    gain = {"K": Interval.point(Fraction(1))}
+    with pytest.raises(DesignError, match="are not modelled in the sampled loop"):
+        ProportionalForce(Fraction(1)).enclose(gain, Fraction(1, 500), "exact")
 
 
 def test_gains_are_taken_by_name():

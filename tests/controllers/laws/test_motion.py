@@ -14,3 +14,9 @@ def test_zero_of_the_thesis():
 def test_without_damping_there_is_no_zero():
     with pytest.raises(ZeroDivisionError):
         _ = ProportionalDerivative(Fraction(1), Fraction(0)).zero
+
+
+def test_the_backward_difference_of_the_thesis_robot():
+    """Kd = 2060 rpm s/rad over 2 ms is a single-precision number by itself."""
+    law = ProportionalDerivative(Fraction(117359), Fraction(2060))
+    assert law.over(Fraction(1, 500)) == 1_030_000

@@ -925,7 +925,7 @@ def test_words_and_fields_of_contact():
     fields = BOUNCE.to_fields()
     assert fields == {"steps": [["m0", "1"], ["free", "1"]], "factor": ["2427/1250", "19417/10000"]}
     assert GrowingSequence.from_fields(fields, system) == BOUNCE
-    with pytest.raises(ValueError, match="unpack"):
+    with pytest.raises(ValueError, match="zip"):
         GrowingSequence.from_fields({**fields, "factor": ["2"]}, system)
 
 

@@ -152,12 +152,11 @@ def test_forms_by_hand():
     assert between == factor * 2 * slow
 
 
-def test_ends_over_two_denominators_are_not_read():
+def test_a_denominator_out_of_range_is_refused():
     system, evidence = genuine("parameter-quadratic")
-    fields = evidence.to_fields()
-    fields["Q_high"] = {**fields["Q_high"], "denominator_log2": evidence.denominator_log2 + 1}
-    with pytest.raises(ValueError, match="do not share one denominator"):
-        ParameterQuadratic.from_fields(fields, system)
+    for log2 in (-1, 10**6):
+        odd = replace(evidence, denominator_log2=log2)
+        assert "the denominator of Q" in odd.find_fault(system)
 
 
 def test_the_claim_counts_the_modes_of_a_value():

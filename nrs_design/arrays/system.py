@@ -1,0 +1,208 @@
+"""A spec from matrices that live in a program: the same spec that a file would give."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from nrs_design.arrays.exact import is_state_space, read_number, read_rows, time_of
+from nrs_design.errors import SpecError
+from nrs_design.proof.text import exact_text
+from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
+from nrs_design.spec.document import parse_document
+from nrs_design.spec.meaning import hash_meaning
+from nrs_design.spec.places import file_faults
+
+Document = dict[str, Any]
+_NAME = re.compile(r"(?<![\w.])[a-zA-Z]")
+
+
+def spec_of_matrices(
+    modes: Sequence[object] | Mapping[str, object],
+    *,
+    name: str,
+    time: str | None = None,
+    dwell_time: object = None,
+    longest_dwell_time: object = None,
+    transitions: Sequence[tuple[str, str]] | None = None,
+    resets: Mapping[tuple[str, str], object] | None = None,
+    parameters: Mapping[str, object] | None = None,
+) -> LoadedSpec:
+    """Return the spec of a switched system whose matrices are given; see `nrs_design.certify`.
+
+    Parameters
+    ----------
+    modes, name, time, dwell_time, longest_dwell_time, transitions, resets, parameters
+        As for `nrs_design.certify`.
+
+    Raises
+    ------
+    SpecError
+        If anything about it is wrong, in the words of a spec.
+    """
+    named = name_modes(modes)
+    axis = time_of(list(named.values()), time)
+    unit = "s" if axis == "continuous" else "steps"
+    times = {"dwell_time": dwell_time, "longest_dwell_time": longest_dwell_time}
+    uncertain = bool(parameters)
+    document: Document = {
+        "kind": "switched-system",
+        "name": name,
+        "time": str(axis),
+        "modes": [
+            {"name": str(label), "A": _entries(A, str(label), uncertain)}
+            for label, A in named.items()
+        ],
+        "switching": _switching(times, transitions, unit),
+    }
+    if parameters:
+        document["parameters"] = {key: _parameter(value) for key, value in parameters.items()}
+    if resets:
+        document["resets"] = list(_resets(resets))
+    return _validated(document, name)
+
+
+def name_modes(modes: Sequence[object] | Mapping[str, object]) -> dict[str, object]:
+    """Return modes by name: m1, m2, ... where they have no names.
+
+    Raises
+    ------
+    SpecError
+        If there are none, or something else stands for a list of them.
+    """
+    if isinstance(modes, str | Path):
+        remedy = "nrs_design.load(path).certify() is for the file of a spec"
+        raise SpecError("the modes are a text, not a list of matrices", remedy=remedy)
+    if isinstance(modes, Mapping):
+        named = dict(modes)
+    elif is_state_space(modes) or _depth(modes) == 2:
+        raise SpecError("the modes are one matrix", remedy="put it into a list: [A]")
+    elif not isinstance(modes, Iterable):
+        raise SpecError("the modes are not a list of matrices", remedy="write [A1, A2]")
+    else:
+        named = {f"m{index + 1}": mode for index, mode in enumerate(modes)}
+    if not named:
+        raise SpecError("no modes are given", remedy="give at least one matrix")
+    return named
+
+
+def _entries(matrix: object, label: str, uncertain: bool) -> list[list[str]]:
+    """Return entries as the texts of a spec; with parameters, texts may be expressions."""
+    if uncertain and isinstance(matrix, list | tuple) and not is_state_space(matrix):
+        return [[_entry(entry, label) for entry in row] for row in matrix]
+    try:
+        return _texts(read_rows(matrix, f"mode {label}"))
+    except SpecError as error:
+        if uncertain or not _holds_a_name(matrix):
+            raise
+        raise SpecError(
+            f"mode {label}: {error.message}",
+            remedy="name what is uncertain: parameters={'k': (lowest, highest)}",
+        ) from None
+
+
+def _holds_a_name(matrix: object) -> bool:
+    """Tell whether an entry is a text in which a letter begins a name, as parameters do."""
+    rows = matrix if isinstance(matrix, list | tuple) else ()
+    entries = (entry for row in rows if isinstance(row, list | tuple) for entry in row)
+    return any(isinstance(entry, str) and _NAME.search(entry) for entry in entries)
+
+
+def _entry(entry: object, label: str) -> str:
+    return entry if isinstance(entry, str) else _text(read_number(entry, f"mode {label}"))
+
+
+def _texts(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:
+    return [[_text(entry) for entry in row] for row in rows]
+
+
+def _text(number: Fraction) -> str:
+    """Write a number in full: a decimal only where that is exact."""
+    return exact_text(number)
+
+
+def _resets(resets: Mapping[tuple[str, str], object]) -> Iterator[Document]:
+    """Yield what a spec says of resets."""
+    known = isinstance(resets, Mapping)
+    if not known or any(not isinstance(key, tuple) or len(key) != 2 for key in resets):
+        raise SpecError(
+            "a reset is named by two modes", remedy="write resets={('from', 'to'): matrix}"
+        )
+    for (source, target), maps in resets.items():
+        for G in _several(maps):
+            rows = _texts(read_rows(G, f"the reset {source}-{target}"))
+            yield {"from": str(source), "to": str(target), "map": rows}
+
+
+def _several(maps: object) -> list[object]:
+    """Return the matrices of several resets between two modes; mostly, it is one."""
+    if isinstance(maps, list | tuple) and maps and _depth(maps[0]) == 2:
+        return list(maps)
+    return [maps]
+
+
+def _depth(held: object) -> int:
+    """Return how deep lists or arrays are nested: 1 for a row, 2 for a matrix."""
+    dimensions = getattr(held, "ndim", None)
+    if dimensions is not None:
+        return int(dimensions)
+    return 1 + _depth(held[0]) if isinstance(held, list | tuple) and held else 0
+
+
+def _switching(
+    times: Mapping[str, object], transitions: Sequence[tuple[str, str]] | None, unit: str
+) -> object:
+    rules: Document = {
+        key: _dwell_times(value, key, unit) for key, value in times.items() if value is not None
+    }
+    if transitions is not None:
+        # A text is no pair, though it has letters to unpack: what is wrong with it is said later.
+        rules["transitions"] = [
+            pair if isinstance(pair, str) else [*map(str, pair)] for pair in transitions
+        ]
+    return rules or "arbitrary"
+
+
+def _dwell_times(value: object, key: str, unit: str) -> object:
+    """Return one time as the text of a spec, or one for each of some modes."""
+    if isinstance(value, Mapping):
+        return {str(name): _dwell_times(time, key, unit) for name, time in value.items()}
+    is_text = isinstance(value, str) and " " in value
+    return value if is_text else f"{_text(read_number(value, key))} {unit}"
+
+
+def _parameter(value: object) -> Document:
+    """Return what a spec says of a parameter that is given as such, or by its two ends."""
+    if isinstance(value, Mapping):
+        return {
+            key: [_text(read_number(end)) for end in entry]
+            if key == "range"
+            else (entry if key == "varies" else _text(read_number(entry)))
+            for key, entry in value.items()
+        }
+    if not isinstance(value, Sequence) or isinstance(value, str) or len(value) != 2:
+        raise SpecError(
+            "a parameter is given by two ends", remedy="write parameters={'k': (lowest, highest)}"
+        )
+    low, high = (read_number(end) for end in value)
+    return {"nominal": _text((low + high) / 2), "range": [_text(low), _text(high)]}
+
+
+def _validated(document: Document, name: str) -> LoadedSpec:
+    """Validate a document; JSON is YAML, so its text is a spec file, too."""
+    text = json.dumps(document, indent=1) + "\n"
+    try:
+        spec = SwitchedSystemSpec.model_validate(document)
+    except ValidationError as error:
+        found = file_faults(error, SwitchedSystemSpec, parse_document(text))
+        # Lines of a file that nobody has seen would mislead.
+        faults = tuple(replace(fault, line=None, column=None) for fault in found)
+        raise SpecError.of(faults, None) from None
+    return LoadedSpec(Path(f"{name}.nrs.yaml"), hash_meaning(document), text, spec)

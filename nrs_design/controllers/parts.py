@@ -1,0 +1,73 @@
+"""What a control law adds to a step: states, numbers, and operations around the motion loop.
+
+A program lists the parts of all its laws once. A law without a part gives its numbers as zero
+there, or as what a sample leaves of idle states: products with zero and one are exact, so what is
+absent in a mode rounds nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from nrs_design.controllers.operations import Operation, Value
+
+# Where a spec says nothing: no robot gets there, and nothing overflows.
+BEYOND = Fraction(1_000_000)
+# The operand that stands for the force: the sample, or the last lag of its filter.
+FORCE = "force"
+# What the hand commands, the position that is commanded, and the wanted force.
+HAND = Value("velocity_command", "v", "rad/s", BEYOND, "velocity that the hand commands")
+POSITION = Value("position", "X", "rad", BEYOND, "commanded position", "angle")
+WANTED = Value("wanted_torque", "Fd", "N*m", BEYOND, "wanted torque of the contact")
+
+
+@dataclass(frozen=True, slots=True)
+class StepGain:
+    """A number of a part, by mode."""
+
+    # As the exported code, and as formulas call it.
+    name: str
+    symbol: str
+    unit: str
+    # What all laws with the part hold; None where each has a number of its own.
+    fixed: Fraction | None = None
+    # Symbol of what a sample leaves of a state while laws without the part are active; empty where
+    # these have zero.
+    idle: str = ""
+    # Whether all laws with the part hold the same number.
+    common: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class StepPart:
+    """Operations that laws share."""
+
+    name: str
+    gains: tuple[StepGain, ...] = ()
+    inputs: tuple[Value, ...] = ()
+    # The reference that the part moves, where it has one, and all other states.
+    place: Value | None = None
+    states: tuple[Value, ...] = ()
+    # Before the error of the motion loop, and the result that is added to the commanded position;
+    # the sum with the results of the parts before this one is called `total`.
+    before: tuple[Operation, ...] = ()
+    adds: str = ""
+    total: str = ""
+    # After the command, and the result that follows each state.
+    after: tuple[Operation, ...] = ()
+    following: Mapping[str, str] = field(default_factory=dict)
+
+
+# Position and force control share their place in a program: a correction of the commanded position.
+PROPORTIONAL = StepPart(
+    "proportional",
+    (StepGain("Kf", "Kp", "rad/(N*m)"),),
+    (POSITION, WANTED),
+    before=(
+        Operation("lack", "subtract", "wanted_torque", FORCE),
+        Operation("correction", "multiply", "Kf", "lack"),
+    ),
+    adds="correction",
+)

@@ -1,0 +1,278 @@
+"""Which columns of a file belong together."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from pathlib import Path
+
+from nrs_design.errors import DataError
+from nrs_design.identification.tables.names import (
+    UNITS,
+    Name,
+    read_name,
+    read_stamp,
+    standard_name,
+    stated_unit,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a file: where it is, and what turns it into SI."""
+
+    index: int  # Counted from 0
+    name: str  # In the file
+    factor: float  # SI value over number in the file
+    unit: str  # The unit that its values have then
+
+
+def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
+    """Read ``OURS=THEIRS`` entries of the option ``--map``.
+
+    Returns
+    -------
+    dict
+        From the name in the file to ours.
+
+    Raises
+    ------
+    DataError
+        If an entry is malformed, names no column of ours, or is there twice.
+    """
+    mapping: dict[str, str] = {}
+    for entry in entries:
+        ours, equals, theirs = (part.strip() for part in entry.partition("="))
+        if not (ours and equals and theirs):
+            raise DataError(f"--map {entry!r} is not a pair", remedy="write --map force_N=Fz")
+        _split(ours, None, f"--map {entry!r}: ")
+        if theirs in mapping or ours in mapping.values():
+            raise DataError(f"--map {entry!r}: the column is mapped twice", remedy="keep one")
+        mapping[theirs] = ours
+    return mapping
+
+
+def find_columns(
+    header: Sequence[str],
+    layouts: Sequence[tuple[str, ...]],
+    mapping: Mapping[str, str],
+    path: Path,
+    line: int | None,
+    optional: tuple[str, ...] = (),
+) -> tuple[tuple[str, ...], dict[str, dict[str, Column]]]:
+    """Find the columns of the first layout that a header has in full.
+
+    Parameters
+    ----------
+    header : sequence of str
+        Names in the file.
+    layouts : sequence of tuple of str
+        Quantities that belong together; the first one may be shared by all groups. What the user
+        has mapped decides between layouts, then their order.
+    mapping : mapping of str to str
+        From a name in the file to ours.
+    path, line
+        Of the header, for errors.
+    optional : tuple of str
+        Quantities that are taken where they are there.
+
+    Returns
+    -------
+    layout : tuple of str
+        The one that was found.
+    groups : dict of str to dict of str to Column
+        The columns of every group by quantity; the group without suffix is called ``""``.
+
+    Raises
+    ------
+    DataError
+        If a column is missing, is there twice, or has a wrong unit.
+    """
+    _check_mapped(mapping, header, path, line)
+    wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
+    named = {_split(ours, path, "", line).quantity for ours in mapping.values()}
+    found, faults = _grouped(header, wanted, named, mapping, path, line)
+    for quantity, error in faults:
+        # What was mapped, or would be judged, must not fall away in silence.
+        if quantity in optional:
+            raise error
+    for layout in sorted(layouts, key=lambda quantities: len(named - set(quantities))):
+        groups = _complete(found, layout, optional)
+        if groups:
+            return layout, groups
+    raise faults[0][1] if faults else _missing(found, header, layouts, path, line)
+
+
+def _check_mapped(
+    mapping: Mapping[str, str], header: Sequence[str], path: Path, line: int | None
+) -> None:
+    for theirs in mapping:
+        if theirs not in header:
+            near = difflib.get_close_matches(theirs, header, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else f"it has {_listed(header)}"
+            raise DataError(
+                f"there is no column {theirs!r} to map", path=path, line=line, remedy=hint
+            )
+    for theirs, ours in mapping.items():
+        check_stated(theirs, stated_unit(theirs, _split(ours, path, "", line).quantity), ours, path)
+
+
+def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
+    """Refuse to map a column to another unit than it says it has.
+
+    Parameters
+    ----------
+    theirs : str
+        The name in the file.
+    unit : str or None
+        What it says, as we write it.
+    ours : str
+        The name that it is mapped to.
+    path : Path
+        For errors.
+    """
+    name = _split(ours, path, "")
+    if unit in (None, name.unit) or name.unit in ("", "1", "any"):
+        return
+    if unit in UNITS[name.quantity]:
+        right = "_".join(filter(None, (name.quantity, unit, name.group)))
+        remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
+    else:
+        remedy = f"map another column; if this is one in {name.unit}, correct its name"
+    raise DataError(
+        f"--map '{ours}={theirs}': the column {theirs!r} says {unit}, and {ours} is in {name.unit}",
+        path=path,
+        remedy=remedy,
+    )
+
+
+def _grouped(
+    header: Sequence[str],
+    wanted: AbstractSet[str],
+    named: AbstractSet[str],
+    mapping: Mapping[str, str],
+    path: Path,
+    line: int | None,
+) -> tuple[dict[str, dict[str, Column]], list[tuple[str, DataError]]]:
+    """Sort the columns of the wanted quantities; also return those whose unit is not known.
+
+    Quantities that are named by a mapping come from no other column.
+    """
+    found: dict[str, dict[str, Column]] = {}
+    faults: list[tuple[str, DataError]] = []
+    full = {
+        (name.group, name.quantity)
+        for text in header
+        if (name := read_name(mapping.get(text, text))) and not name.loose
+    }
+    for index, text in enumerate(header):
+        ours = mapping.get(text)
+        name = read_name(text if ours is None else ours)
+        # Who maps a quantity means this column, and no other that may be called like it.
+        if name is None or name.quantity not in wanted or (ours is None and name.quantity in named):
+            continue
+        if name.loose and (name.group, name.quantity) in full:
+            continue
+        if not name.known:
+            faults.append((name.quantity, _unknown_unit(name, text, "", path, line)))
+            continue
+        if name.quantity in found.setdefault(name.group, {}):
+            first = found[name.group][name.quantity].name
+            raise DataError(
+                f"the {name.quantity} is there twice ({first!r} and {text!r})",
+                path=path,
+                line=line,
+                remedy="rename one of them, tell groups apart by a suffix such as _1, or choose "
+                f"with --map {standard_name(name.quantity)}=NAME",
+            )
+        found[name.group][name.quantity] = Column(index, text, name.factor, name.read_as)
+    if "time" in wanted and not any("time" in group for group in found.values()):
+        _add_stamp(header, found)
+    return found, faults
+
+
+def _add_stamp(header: Sequence[str], found: dict[str, dict[str, Column]]) -> None:
+    """Take the first time stamp of a bag for the time."""
+    for index, text in enumerate(header):
+        name = read_stamp(text)
+        if name is not None:
+            found.setdefault("", {})["time"] = Column(index, text, name.factor, name.read_as)
+            return
+
+
+def _complete(
+    found: dict[str, dict[str, Column]], layout: tuple[str, ...], optional: tuple[str, ...]
+) -> dict[str, dict[str, Column]]:
+    shared = {layout[0]: found.get("", {}).get(layout[0])}
+    groups: dict[str, dict[str, Column]] = {}
+    for group, columns in found.items():
+        available = {key: column for key, column in shared.items() if column} | columns
+        if set(layout) <= set(available):
+            taken = (*layout, *(key for key in optional if key in available))
+            groups[group] = {quantity: available[quantity] for quantity in taken}
+    return groups
+
+
+def _split(text: str, path: Path | None, prefix: str, line: int | None = None) -> Name:
+    """Take a name of ours apart, and check its unit."""
+    name = read_name(text)
+    if name is None:
+        raise DataError(
+            f"{prefix}{text!r} is no column of ours",
+            path=path,
+            line=line,
+            remedy=f"these are {', '.join(map(standard_name, UNITS))}",
+        )
+    if not name.known:
+        raise _unknown_unit(name, text, prefix, path, line)
+    return name
+
+
+def _unknown_unit(
+    name: Name, text: str, prefix: str, path: Path | None, line: int | None
+) -> DataError:
+    fault = f"has the unit {name.unit!r}" if name.unit else "has no unit"
+    units = " or ".join(f"{name.quantity}_{key}" for key in UNITS[name.quantity])
+    return DataError(
+        f"{prefix}the column {text!r} {fault}",
+        path=path,
+        line=line,
+        remedy=f"expected {units}; --map gives a column another name",
+    )
+
+
+def _missing(
+    found: dict[str, dict[str, Column]],
+    header: Sequence[str],
+    layouts: Sequence[tuple[str, ...]],
+    path: Path,
+    line: int | None,
+) -> DataError:
+    present = {quantity for columns in found.values() for quantity in columns}
+    nearest = min(layouts, key=lambda layout: len(set(layout) - present))
+    missing = [_called(quantity) for quantity in nearest if quantity not in present]
+    expected = " or ".join(", ".join(map(_called, layout)) for layout in layouts)
+    example = missing[0] if missing else "force_N"
+    quantity = example.rpartition("_")[0]
+    others = [f"{quantity}_{key}" for key in UNITS.get(quantity, ())]
+    named = " or ".join(name for name in others if name != example)
+    units = f" ({named} for another unit)" if named else ""
+    return DataError(
+        f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
+        path=path,
+        line=line,
+        remedy=f"expected {expected}; name foreign columns with --map {example}=NAME{units}",
+    )
+
+
+def _called(quantity: str) -> str:
+    """Return what a user calls a column: two are named by options."""
+    options = {"input": "the column of --command", "output": "the column of --measured"}
+    return options.get(quantity) or standard_name(quantity)
+
+
+def _listed(header: Sequence[str]) -> str:
+    names = [name if len(name) <= 30 else name[:27] + "..." for name in header[:12]]
+    return ", ".join(names) + (f" and {len(header) - 12} more" if len(header) > 12 else "")

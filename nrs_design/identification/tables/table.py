@@ -1,0 +1,266 @@
+"""Reading the columns of a file, whatever its format."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import BinaryIO, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.errors import DataError
+from nrs_design.files import open_regular
+from nrs_design.identification.tables.arrays import ARRAYS, check_kind, read_arrays, read_sheet
+from nrs_design.identification.tables.columns import Column, find_columns
+from nrs_design.identification.tables.header import BLOCK, SYNTHETIC, read_header
+from nrs_design.identification.tables.names import UNITS, standard_name
+from nrs_design.identification.tables.text import MAX_ROWS, Parser, read_blocks
+from nrs_design.spec.quantity import LARGEST
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+SHEET = ".xlsx"
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where data come from."""
+
+    path: Path  # The file, as it was named
+    sha256: str  # Hash of its bytes, in hexadecimal
+    # Whether the comments at its top say that the record is synthetic, not measured.
+    synthetic: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasurementTable:
+    """The columns of one file, in SI."""
+
+    source: Source  # The file
+    layout: tuple[str, ...]  # Quantities that were found
+    groups: dict[str, dict[str, Array]]  # Values by group and quantity, shape (n,) each
+    columns: dict[str, dict[str, Column]]  # Where they come from, and their units
+    labels: tuple[str, ...]  # Words of the column of modes; its values are their indices
+    first_line: int | None  # Line of the first row, for messages; None where the file has no lines
+
+    def fail(self, message: str, row: int, remedy: str) -> NoReturn:
+        """Raise an error about a row, counted from 0.
+
+        Parameters
+        ----------
+        message : str
+            What is wrong.
+        row : int
+            Counted from 0.
+        remedy : str
+            What to do about it.
+        """
+        line = None if self.first_line is None else self.first_line + row
+        where = f" (row {row + 1})" if line is None else ""
+        raise DataError(message + where, path=self.source.path, line=line, remedy=remedy)
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is looked for in a file."""
+
+    # Quantities that belong together, see `names.UNITS`; the first that is there is taken.
+    layouts: Sequence[tuple[str, ...]]
+    mapping: Mapping[str, str]  # From a name in the file to ours
+    optional: tuple[str, ...] = ()  # Quantities that are taken where they are there
+
+
+def read_table(
+    path: Path,
+    layouts: Sequence[tuple[str, ...]],
+    mapping: Mapping[str, str],
+    progress: Progress = lambda fraction: None,
+    optional: tuple[str, ...] = (),
+) -> MeasurementTable:
+    """Read the columns of one of several layouts.
+
+    Parameters
+    ----------
+    path : Path
+        Text with a line of names and rows of numbers; or ``.mat``, ``.npz``, ``.parquet``,
+        ``.xlsx``.
+    layouts, mapping, optional
+        See `Wanted`.
+    progress : callable
+        Told the fraction that has been read.
+
+    Raises
+    ------
+    DataError
+        With the line, if the file cannot be read, a column is missing, or a value is no number.
+    """
+    wanted = Wanted(layouts, mapping, optional)
+    try:
+        size = max(path.stat().st_size, 1)
+        if path.is_dir():
+            raise DataError("is a folder", path=path, remedy="name files of data")
+        with open_regular(path) as file:
+            check_kind(file, path)
+            table = _read(file, path, wanted, lambda done: progress(min(done / size, 1.0)))
+    except OSError as error:
+        raise DataError(
+            f"cannot be read ({error.strerror})", path=path, remedy="check the name"
+        ) from error
+    _check_sizes(table)
+    return table
+
+
+def _check_sizes(table: MeasurementTable) -> None:
+    """Refuse values whose squares, or the squares of those, leave the floats."""
+    for group, columns in table.groups.items():
+        for quantity, values in columns.items():
+            column = table.columns[group][quantity]
+            bad = np.flatnonzero(np.abs(values) > LARGEST)
+            if len(bad):
+                size = f"{values[bad[0]] / column.factor:.4g}"
+                message = f"{column.name} is {size}: no sensor has such a value"
+                table.fail(message, int(bad[0]), "cut the record before it, or correct the value")
+
+
+def _read(file: BinaryIO, path: Path, wanted: Wanted, progress: Progress) -> MeasurementTable:
+    kind = path.suffix.lower()
+    if kind in ARRAYS:
+        table = _read_arrays(file, path, wanted)
+    elif kind == SHEET:
+        table = _read_sheet(file, path, wanted)
+    else:
+        table = _read_text(file, path, wanted, None, progress)
+    progress(float(path.stat().st_size))
+    return table
+
+
+def _read_sheet(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
+    digest = _digest(file)
+    text, sheets = read_sheet(file, path)
+    try:
+        return _read_text(BytesIO(text), path, wanted, digest, lambda done: None)
+    except DataError as error:
+        if len(sheets) == 1:
+            raise
+        others = f"; {sheets[0]!r} is read, the first of {len(sheets)} sheets: put the data there"
+        (fault,) = error.faults
+        remedy = (fault.remedy or "") + others
+        raise DataError(fault.message, path=path, line=fault.line, remedy=remedy) from error
+
+
+def _read_arrays(file: BinaryIO, path: Path, wanted: Wanted) -> MeasurementTable:
+    digest = _digest(file)
+    arrays, words = read_arrays(file, path)
+    names = list(arrays)
+    layout, groups = find_columns(
+        names, wanted.layouts, wanted.mapping, path, None, wanted.optional
+    )
+    labels: list[str] = []
+    data = {
+        group: {
+            key: _in_si(_values(arrays[column.name], column, path, labels), column)
+            for key, column in found.items()
+        }
+        for group, found in groups.items()
+    }
+    lengths = {len(values) for columns in data.values() for values in columns.values()}
+    if len(lengths) > 1:
+        raise DataError(
+            f"its columns have different lengths: {', '.join(map(str, sorted(lengths)))}",
+            path=path,
+            remedy="save columns of one record, as long as its time",
+        )
+    synthetic = any(SYNTHETIC in text.lower() for text in (*names, *words))
+    return MeasurementTable(
+        Source(path, digest, synthetic), layout, data, groups, tuple(labels), None
+    )
+
+
+def _in_si(values: Array, column: Column) -> Array:
+    """Convert a column; what leaves the floats by that is refused with the other sizes."""
+    with np.errstate(over="ignore"):
+        return np.asarray(values * column.factor)
+
+
+def _digest(file: BinaryIO) -> str:
+    """Return the hash of a file, and stay at its beginning."""
+    digest = hashlib.sha256()
+    while chunk := file.read(BLOCK):
+        digest.update(chunk)
+    file.seek(0)
+    return digest.hexdigest()
+
+
+def _values(array: NDArray[np.generic], column: Column, path: Path, labels: list[str]) -> Array:
+    flat = array.reshape(-1)
+    if array.ndim > 1 and flat.size != max(array.shape):
+        shape = " x ".join(map(str, array.shape))
+        raise DataError(
+            f"{column.name} is {shape}, not one column",
+            path=path,
+            remedy="save each column under a name of its own, such as force_N",
+        )
+    if column.unit == "":
+        words = [str(word).strip() for word in flat.tolist()]
+        labels += dict.fromkeys(words)
+        return np.array([labels.index(word) for word in words], float)
+    if flat.dtype.kind not in "iuf":
+        # Times and dates of NumPy are counts of a unit that their type alone knows.
+        is_time = flat.dtype.kind in "mM"
+        raise DataError(
+            f"{column.name} does not hold real numbers" + is_time * ", but times or dates",
+            path=path,
+            remedy="save it in seconds" if is_time else "save it as numbers",
+        )
+    if len(flat) > MAX_ROWS:
+        raise _too_long(path)
+    values = flat.astype(float)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if len(bad):
+        raise DataError(
+            f"{column.name} is {values[bad[0]]} (row {bad[0] + 1})",
+            path=path,
+            remedy="cut the record so that all values are finite",
+        )
+    return values
+
+
+def _read_text(
+    file: BinaryIO, path: Path, wanted: Wanted, digest: str | None, progress: Progress
+) -> MeasurementTable:
+    hashed = hashlib.sha256()
+    example = ",".join(
+        key if "any" in UNITS[key] else standard_name(key) for key in wanted.layouts[0]
+    )
+    header = read_header(file, path, wanted.mapping, hashed.update, example)
+    layout, groups = find_columns(
+        header.names, wanted.layouts, wanted.mapping, path, header.line, wanted.optional
+    )
+    columns = sorted({column for group in groups.values() for column in group.values()},
+                     key=lambda column: column.index)  # fmt: skip
+    parser = Parser(path, header, columns)
+    parts: list[Array] = []
+    rows = 0
+    for block in read_blocks(file, path, header.rest, hashed.update):
+        parts.append(parser.parse(block, header.line + 1 + rows))
+        rows += len(parts[-1])
+        progress(float(file.tell()))
+        if rows > MAX_ROWS:
+            raise _too_long(path)
+    values = np.concatenate(parts) if parts else np.empty((0, len(columns)))
+    at = {column: i for i, column in enumerate(columns)}
+    data = {
+        name: {key: _in_si(values[:, at[column]], column) for key, column in group.items()}
+        for name, group in groups.items()
+    }
+    source = Source(path, digest or hashed.hexdigest(), header.synthetic)
+    return MeasurementTable(source, layout, data, groups, tuple(parser.labels), header.line + 1)
+
+
+def _too_long(path: Path) -> DataError:
+    return DataError(f"has more than {MAX_ROWS} rows", path=path, remedy="record at a lower rate")

@@ -1,0 +1,45 @@
+"""A nominal value and the range that it may move in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TypeVar
+
+Number = TypeVar("Number", float, Fraction)
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A nominal value and the closed range that it may move in, all exact."""
+
+    nominal: Fraction
+    low: Fraction
+    high: Fraction
+
+    @classmethod
+    def point(cls, value: Fraction) -> Interval:
+        """Return the interval that holds one value."""
+        return cls(value, value, value)
+
+    @property
+    def ends(self) -> tuple[tuple[str, Fraction], ...]:
+        """The labelled ends; a point has one end without a label."""
+        if self.low == self.high:
+            return (("", self.low),)
+        return (("min", self.low), ("max", self.high))
+
+    @property
+    def middle(self) -> Fraction:
+        """The value halfway between the ends."""
+        return (self.low + self.high) / 2
+
+    def scaled(self, scale: Fraction) -> Interval:
+        """Return the interval stretched about its nominal value; with 0, that value only."""
+        ends = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
+        return Interval(self.nominal, *ends)
+
+
+def turn(value: Number, radius: Number) -> Number:
+    """Convert a linear stiffness, damping or mass to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
+    return value * radius**2

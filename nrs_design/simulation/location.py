@@ -1,0 +1,84 @@
+"""A location of the hybrid loop: controller in force, contacts, and the guards that end it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from nrs_design.simulation.flow import Flow
+from nrs_design.simulation.loop import Loop, LoopMode
+from nrs_design.simulation.scenario import Array
+
+# A depth, a torque and a velocity are on the other side of a threshold when they are so far beyond
+# it, in rad, N m and rad/s: contact neither chatters from rounding, nor does the logic.
+TOLERANCE = 1e-12
+# Points of a run, at least.
+POINTS = 2000
+
+
+@dataclass(frozen=True)
+class Location:
+    """A controller in force and what is touched: the loop, and the signals that may end it."""
+
+    index: int  # In the order in which locations are entered
+    controller: str  # In force
+    mode: LoopMode  # The loop
+    # Watches the depths below all surfaces, the pushes of those that it is in and that have
+    # damping, and then the bounds of conditions.
+    flow: Flow
+    damped: tuple[int, ...]  # Indices of the surfaces whose pushes are watched
+    pushes: Array  # Shape (surfaces, n). Rows of all pushes.
+    # Of which switch and condition it is the lower (0) or the upper (1) bound.
+    bounds: tuple[tuple[int, int, int], ...]
+
+
+def make_location(
+    loop: Loop,
+    controller: str,
+    inside: Sequence[bool],
+    touched: tuple[int, ...],
+    direction: int,
+    index: int,
+) -> Location:
+    """Return the loop under a controller in contact, with the signals that may end it.
+
+    Parameters
+    ----------
+    loop : Loop
+        With its scenario.
+    controller : str
+        In force.
+    inside : sequence of bool
+        For every surface, whether the robot is below it.
+    touched : tuple of int
+        Indices of the surfaces that push.
+    direction : int
+        Sign of the surface that was touched last.
+    index : int
+        In the order in which locations are entered.
+    """
+    scenario = loop.scenario
+    mode, one = loop.mode(controller, touched), loop.row("one")
+    each = range(len(scenario.surfaces))
+    pushes = np.array([loop.push(j, mode) for j in each]).reshape(-1, len(one))
+    damped = tuple(j for j in each if inside[j] and loop.is_damped(j))
+    rows = [*(loop.depth(j, mode) for j in each), *(pushes[j] for j in damped)]
+    bounds = []
+    for i, switch in enumerate(scenario.control.switches):
+        for k, condition in enumerate(switch.conditions):
+            if switch.source != controller:
+                continue
+            signal = loop.signal(condition.signal, mode, direction)
+            if np.isfinite(condition.low):
+                rows.append(signal - condition.low * one)
+                bounds.append((i, k, 0))
+            if np.isfinite(condition.high):
+                rows.append(condition.high * one - signal)
+                bounds.append((i, k, 1))
+    # A flow ends where a signal is clearly across, so that it counts so then.
+    across = np.full(len(rows), 2 * TOLERANCE)
+    step = scenario.duration / POINTS
+    flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)
+    return Location(index, controller, mode, flow, damped, pushes, tuple(bounds))

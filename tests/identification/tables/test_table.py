@@ -1,0 +1,156 @@
+"""Reading CSV: what is refused, and with which row."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from nrs_design.errors import DataError
+from nrs_design.identification.tables import table as tables
+from nrs_design.identification.tables import text as module
+from nrs_design.identification.tables.columns import parse_mapping
+from nrs_design.identification.tables.table import read_table
+
+LAYOUTS = (("time", "deflection", "force"), ("time", "angle", "torque"))
+HEADER = "time_s,deflection_m,force_N\n"
+GOOD = HEADER + "".join(f"{0.1 * i:.1f},{0.001 * i:.3f},{i}\n" for i in range(5))
+
+
+def read(tmp_path, text, entries=()):
+    path = tmp_path / "data.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_table(path, LAYOUTS, parse_mapping(entries))
+
+
+def test_values_units_and_hash(tmp_path):
+    text = "# synthetic\ntime_ms,force_mN,note,deflection_mm\n10,1500,7,2\n20,1e3,7,3\r\n30,0,7,-4"
+    found = read(tmp_path, text)
+    group = found.groups[""]
+    assert group["time"] == pytest.approx([0.01, 0.02, 0.03])
+    assert group["force"] == pytest.approx([1.5, 1.0, 0.0])
+    assert group["deflection"] == pytest.approx([2e-3, 3e-3, -4e-3])
+    assert found.source.synthetic
+    assert found.source.sha256 == hashlib.sha256(text.encode()).hexdigest()
+
+
+def test_measured_unless_it_says_otherwise(tmp_path):
+    assert not read(tmp_path, GOOD).source.synthetic
+
+
+def test_a_line_end_within_the_header(tmp_path):
+    with pytest.raises(DataError, match="header line that is no CSV"):
+        read(tmp_path, GOOD.replace("deflection", "defl\rection"))
+
+
+def test_foreign_names(tmp_path):
+    text = GOOD.replace("force_N", "Fz (raw)").replace("time_s", "t")
+    found = read(tmp_path, text, ["force_N=Fz (raw)", "time_s = t"])
+    assert found.groups[""]["force"].tolist() == [0, 1, 2, 3, 4]
+
+
+def test_blocks_do_not_show(tmp_path, monkeypatch):
+    rng = np.random.default_rng(0)
+    values = rng.normal(size=(200, 3))
+    text = HEADER + "".join(",".join(map(repr, row)) + "\n" for row in values.tolist())
+    whole = read(tmp_path, text).groups[""]
+    monkeypatch.setattr(module, "BLOCK", 97)
+    parts = read(tmp_path, text).groups[""]
+    assert all((whole[key] == parts[key]).all() for key in whole)
+    assert np.column_stack(list(whole.values())).tolist() == values.tolist()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "message"),
+    [
+        ("0.2,0.002,2", "0.2,nan,2", 4, "deflection_m is nan"),
+        ("0.2,0.002,2", "0.2,0.002,-inf", 4, "force_N is -inf"),
+        ("0.2,0.002,2", "0.2,,2", 4, "deflection_m is missing"),
+        ("0.2,0.002,2", "0.2,0.002", 4, "the row has 2 values, the header 3"),
+        ("0.2,0.002,2", "0.2,0.002,2,9", 4, "the row has 4 values"),
+        ("0.2,0.002,2", "", 4, "the row is empty"),
+        ("0.2,0.002,2", "0.2,abc,2", 4, "deflection_m is 'abc', not a number"),
+        ("0.2,0.002,2", "0.2,1_0,2", 4, "not a number"),
+        ("0.2,0.002,2", "0.2,٣,2", 4, "not a number"),
+        ("0.4,0.004,4\n", "0.4,0.004,", 6, "force_N is missing"),
+        ("force_N", "force_dyn", 1, "has the unit 'dyn'"),
+        ("force_N", "force", 1, "has no unit"),
+        ("force_N", "torque_Nm", 1, "the columns force_N are missing"),
+        ("force_N", "angle_rad", 1, "missing"),
+        ("deflection_m", "force_mN", 1, "the force is there twice"),
+        (HEADER, "", 1, "begins with numbers"),
+    ],
+)
+def test_one_message_with_the_row(tmp_path, old, new, line, message):
+    with pytest.raises(DataError, match=message) as caught:
+        read(tmp_path, GOOD.replace(old, new))
+    assert caught.value.line == line
+    assert caught.value.path is not None
+    assert caught.value.remedy
+
+
+def test_the_row_is_right_in_later_blocks(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "BLOCK", 64)
+    rows = "".join(f"{i},{i},{i}\n" for i in range(300))
+    with pytest.raises(DataError, match="time_s is 'x'") as caught:
+        read(tmp_path, HEADER + rows + "x,1,1\n")
+    assert caught.value.line == 302
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "no header line"),
+        (b"# only\n# comments\n", "no header line"),
+        (b"\xff\xfe\x00", "UTF-16 text"),
+        (b"time_s,deflection_m,force_N\n" + b"1" * (3 << 20), "line of over 1 MiB"),
+    ],
+)
+def test_files_that_are_no_csv(tmp_path, content, message):
+    with pytest.raises(DataError, match=message):
+        read(tmp_path, content)
+
+
+def test_files_that_cannot_be_read(tmp_path):
+    with pytest.raises(DataError, match="cannot be read"):
+        read_table(tmp_path / "missing.csv", LAYOUTS, {})
+    with pytest.raises(DataError, match="is a folder"):
+        read_table(tmp_path, LAYOUTS, {})
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ("force_N", "is not a pair"),
+        ("force_N=", "is not a pair"),
+        ("weight_kg=w", "no column of ours"),
+        ("force_dyn=Fz", "has the unit 'dyn'"),
+    ],
+)
+def test_wrong_mappings(entry, message):
+    with pytest.raises(DataError, match=message):
+        parse_mapping([entry])
+
+
+def test_a_column_is_mapped_once():
+    with pytest.raises(DataError, match="mapped twice"):
+        parse_mapping(["force_N=a", "force_N=b"])
+
+
+def test_mapping_of_a_column_that_is_not_there(tmp_path):
+    with pytest.raises(DataError, match="no column 'forceN'") as caught:
+        read(tmp_path, GOOD, ["torque_Nm=forceN"])
+    assert "did you mean 'force_N'" in caught.value.remedy
+
+
+def test_too_many_rows(tmp_path, monkeypatch):
+    monkeypatch.setattr(tables, "MAX_ROWS", 3)
+    with pytest.raises(DataError, match="more than 3 rows"):
+        read(tmp_path, GOOD)
+
+
+def test_progress_ends_at_one(tmp_path):
+    path = tmp_path / "data.csv"
+    path.write_text(GOOD)
+    seen = []
+    read_table(path, LAYOUTS, {}, seen.append)
+    assert seen[-1] == 1.0

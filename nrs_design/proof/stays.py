@@ -67,7 +67,14 @@ class EnclosedStep:
     def form(self, before: IntegerMatrix, after: IntegerMatrix, rate: Fraction) -> IntegerMatrix:
         """Return integers below ``F - E' G E`` for all its lengths, times a positive number.
 
-        E is the exponential of the mode plus `rate`, in 1/s, and then the switch, in balls.
+        E is the exponential of the mode plus the rate, and then the switch, in balls.
+
+        Parameters
+        ----------
+        before, after : integer matrix
+            The F and G.
+        rate : Fraction
+            The alpha in 1/s.
         """
         from nrs_design.proof.enclosure import balls, exponential, lower_integers, precision
 

@@ -187,7 +187,15 @@ def map_step(
 
 
 def flow_step(where: str, mode: str, place: str, A: RationalMatrix) -> Step:
-    """Return a flow that nothing acts on."""
+    """Return a flow that nothing acts on.
+
+    Parameters
+    ----------
+    where, mode, place
+        As of `Step`.
+    A : RationalMatrix, shape (n, n)
+        Of the derivative.
+    """
     n, over = len(A.numerators), A.denominator
     return Step(where, mode, place, place, n, (1,) * n, A.numerators, over, is_flow=True)
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import FormsOnGraph
-from nrs_design.proof.evidence.graph import Edge, Multiplier, Node
+from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.steps import CONTACT, FREE, LOST
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions, separating_coordinates
@@ -199,7 +199,7 @@ class ConewiseModeProgram:
             lambdas = numerators(every, log2 - 2 * int(d[-1]))
             # The function of a state is that of the mode that takes the next step.
             nodes = [Node(CONTACT, Q) for _, Q in sets[0]] + [Node(FREE, R) for _, R in sets[1]]
-            edges = (Edge(k, name, None) for k, (name, _) in enumerate((*sets[0], *sets[1])))
+            edges = (Arc(k, name, None) for k, (name, _) in enumerate((*sets[0], *sets[1])))
             lost = (Multiplier(LOST, k, value) for k, value in enumerate(lambdas, len(sets[0])))
             yield FormsOnGraph(
                 tuple(nodes), max(log2, 0), claim, multipliers=tuple(lost), edges=tuple(edges)

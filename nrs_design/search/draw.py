@@ -15,7 +15,17 @@ Integers = Sequence[int]
 
 
 def undeflected(Q: Matrix, order: int, degree: int = 1) -> Matrix:
-    """Return a form where the last state is zero: the block of the monomials without it."""
+    """Return a form where the last state is zero: the block of the monomials without it.
+
+    Parameters
+    ----------
+    Q : tuple of tuple of int
+        The form.
+    order : int
+        Number of states.
+    degree : int
+        Of the monomials.
+    """
     kept = [k for k, term in enumerate(monomials(order, degree)) if not term[-1]]
     return tuple(tuple(Q[i][j] for j in kept) for i in kept)
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.evidence.graph import Edge, Multiplier, Node
+from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.stays import Stays
 from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING
 from nrs_design.search.draw import in_turns, one_form
@@ -54,7 +54,7 @@ def conewise_modes(
 ) -> FormsOnGraph:
     """The function of a state is that of the mode that takes the next step."""
     nodes = [Node(CONTACT, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
-    edges = (Edge(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
+    edges = (Arc(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
     lost = (Multiplier(LOST, k, m) for k, m in enumerate(multipliers, len(touching)))
     return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(lost), edges=tuple(edges))
 

@@ -21,7 +21,7 @@ from nrs_design.proof.evidence.fields import (
     read_text,
 )
 from nrs_design.proof.evidence.function import AbstractFunction, is_square
-from nrs_design.proof.evidence.sentence import free_bound, ruled_bound
+from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.exact import (
     MAX_WORK,
     IntegerMatrix,
@@ -64,7 +64,7 @@ class Node(NamedTuple):
     form: Matrix  # Integer numerators
 
 
-class Edge(NamedTuple):
+class Arc(NamedTuple):
     """Steps from node to node, by their numbers; None stands for every node, or every mode."""
 
     source: int | None
@@ -81,7 +81,7 @@ class Multiplier(NamedTuple):
 
 
 # From every node to every node that a step may lead to.
-ALL = (Edge(None, None, None),)
+ALL = (Arc(None, None, None),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class FormsOnGraph(AbstractFunction):
     multipliers: tuple[Multiplier, ...] = ()
     # For every edge in order: integers N with z' N z = 0 for all x, added to its form; d > 1 only.
     vanishing: tuple[Matrix, ...] = ()
-    edges: tuple[Edge, ...] = ALL
+    edges: tuple[Arc, ...] = ALL
     # Places are modes, and this says how stays are followed; None: places are contact and free
     # motion, at each step of a round where modes take turns.
     stays: Stays | None = None
@@ -372,7 +372,19 @@ class FormsOnGraph(AbstractFunction):
     def inequality(
         self, step: AnyStep, a: int, b: int, system: SwitchedSystem, multiply: Product = multiply
     ) -> IntegerMatrix:
-        """Return the inequality of an edge."""
+        """Return the inequality of an edge.
+
+        Parameters
+        ----------
+        step : Step or EnclosedStep
+            Of the system.
+        a, b : int
+            The nodes before and after it.
+        system : SwitchedSystem
+            That moves.
+        multiply : callable
+            How matrices are multiplied; only a search has reason to ask for another way.
+        """
         if isinstance(step, EnclosedStep):
             return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
         before, after = self._restricted(a, step.states, system), self._after(step, b, system)
@@ -396,11 +408,11 @@ class FormsOnGraph(AbstractFunction):
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the bound on every solution, and in which norm."""
         if self.stays is not None:
-            return ruled_bound(system, self.rate)
+            return ruled_sentence(system, self.rate)
         each = Counter(node.place for node in self.nodes)
         count, once = max(each.values()), self.bounds_at_once
         lost = self.covers_lost_contact
-        return free_bound(system, self.rate, self.degree, count, lost=lost, once=once)
+        return free_sentence(system, self.rate, self.degree, count, lost=lost, once=once)
 
     def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
         """Repeat what belongs to a mode for its equals."""
@@ -468,7 +480,7 @@ class FormsOnGraph(AbstractFunction):
             for fact, target, value in fields.get("multipliers", [])
         )
         edges = tuple(
-            Edge(_optional(a), None if mode is None else read_text(mode), _optional(b))
+            Arc(_optional(a), None if mode is None else read_text(mode), _optional(b))
             for a, mode, b in fields.get("edges", ALL)
         )
         vanishing = tuple(read_integers(N) for N in fields.get("vanishing", []))
@@ -537,7 +549,19 @@ def steps_together(
 def steps_by_mode(
     system: SwitchedSystem, stays: Stays, rate: Fraction, degree: int
 ) -> tuple[AnyStep, ...]:
-    """TRUSTED: return the steps of a system with the modes as places."""
+    """TRUSTED: return the steps of a system with the modes as places.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules of switching.
+    stays : Stays
+        How stays are followed.
+    rate : Fraction
+        That maps are to keep; it decides in which units they are counted.
+    degree : int
+        Of the monomials.
+    """
 
     def grain(steps: int) -> int:
         return grain_of(rate ** (2 * steps)) if degree == 1 else 1
@@ -546,7 +570,17 @@ def steps_by_mode(
 
 
 def lifted(step: Step, degree: int, rate: Fraction) -> Step:
-    """TRUSTED: return a step without facts as one of the monomials of a degree."""
+    """TRUSTED: return a step without facts as one of the monomials of a degree.
+
+    Parameters
+    ----------
+    step : Step
+        Of the state.
+    degree : int
+        The d.
+    rate : Fraction
+        That maps are to keep; it decides in which units they are counted.
+    """
     if step.is_flow:
         rows, unit, over = derivative_lift(step.rows, degree), 1, step.over
     else:

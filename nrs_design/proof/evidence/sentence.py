@@ -14,7 +14,7 @@ from nrs_design.proof.text import counted
 MAX_NAMED = 8
 
 
-def ruled_bound(system: SwitchedSystem, rate: Fraction) -> str:
+def ruled_sentence(system: SwitchedSystem, rate: Fraction) -> str:
     """State a bound, up to a constant factor, on every solution that keeps the rules."""
     continuous = system.time is Time.CONTINUOUS
     law, bound = ("x' = A x", "exp(-alpha t)") if continuous else ("x+ = A x", "rho^t")
@@ -25,7 +25,7 @@ def ruled_bound(system: SwitchedSystem, rate: Fraction) -> str:
     )
 
 
-def free_bound(
+def free_sentence(
     system: SwitchedSystem, rate: Fraction, degree: int, count: int, *, lost: bool, once: bool
 ) -> str:
     """State a bound on every solution under arbitrary switching.

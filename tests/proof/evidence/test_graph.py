@@ -14,7 +14,7 @@ from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import Shows, read_evidence
 from nrs_design.proof.evidence import graph as graph_module
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
-from nrs_design.proof.evidence.graph import ALL, Edge, FormsOnGraph, Multiplier, Node
+from nrs_design.proof.evidence.graph import ALL, Arc, FormsOnGraph, Multiplier, Node
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
@@ -929,7 +929,7 @@ class TestGraph:
             Node("modes", form) for form in (((51, 49), (49, 51)), ((51, -49), (-49, 51)))
         )
         drawn = FormsOnGraph(nodes, 0, Fraction(999, 1000))
-        memory = (Edge(None, "m0", 0), Edge(None, "m1", 1))
+        memory = (Arc(None, "m0", 0), Arc(None, "m1", 1))
         remembering = replace(drawn, edges=memory)
         assert remembering.edges != ALL
         fault = remembering.find_fault(system)
@@ -938,14 +938,14 @@ class TestGraph:
         assert not remembering.covers_mixtures
         assert "some constant c" in remembering.claim(system)
         # A word that ends in m0 has no edge for m1 if m1 only follows itself.
-        narrow = replace(remembering, edges=(Edge(None, "m0", 0), Edge(1, "m1", 1)))
+        narrow = replace(remembering, edges=(Arc(None, "m0", 0), Arc(1, "m1", 1)))
         assert narrow.find_fault(DRAWN) is not None
 
     def test_a_set_of_nodes_counts_and_not_every_node(self):
         """Each step leaves from some node of every set that a run may be at: words are followed."""
         nodes = (Node("modes", ((1,),)), Node("modes", ((2,),)))
-        rate, both = Fraction(9, 10), (Edge(0, "m0", 0), Edge(0, "m0", 1), Edge(1, "m1", 0))
-        graph = FormsOnGraph(nodes, 0, rate, edges=(*both, Edge(0, "m1", 1)))
+        rate, both = Fraction(9, 10), (Arc(0, "m0", 0), Arc(0, "m0", 1), Arc(1, "m1", 0))
+        graph = FormsOnGraph(nodes, 0, rate, edges=(*both, Arc(0, "m1", 1)))
         assert graph.find_fault(DRAWN) is None
         # After m1, which leads to node 0 alone, m1 has no edge.
         stuck = FormsOnGraph(nodes, 0, rate, edges=both)
@@ -955,7 +955,7 @@ class TestGraph:
     def test_too_many_sets_are_refused(self, monkeypatch):
         monkeypatch.setattr(graph_module, "MAX_SETS", 1)
         nodes = (Node("modes", ((1,),)), Node("modes", ((1,),)))
-        edges = (Edge(None, "m0", 0), Edge(None, "m1", 1))
+        edges = (Arc(None, "m0", 0), Arc(None, "m1", 1))
         graph = FormsOnGraph(nodes, 0, Fraction(9, 10), edges=edges)
         assert graph.find_fault(DRAWN) == "the graph has too many sets of nodes"
 

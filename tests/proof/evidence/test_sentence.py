@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence.sentence import free_bound, ruled_bound
+from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Stay, Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, one_form
@@ -54,26 +54,26 @@ def test_lost_contact_is_said_with_its_modes_and_its_rate_in_seconds():
     free = (*system.contact.free, Mode("g", matrix([[-1, 0], [1, 0]])))
     two = replace(system, modes=system.modes[:1], contact=Contact(free))
     assert "among 1 mode in contact and 2 modes of free motion" in evidence.claim(two)
-    flowing = free_bound(bouncing(), HALF, 1, 1, lost=True, once=True)
+    flowing = free_sentence(bouncing(), HALF, 1, 1, lost=True, once=True)
     assert flowing.startswith("Every solution, with contact lost")
-    each = free_bound(system, HALF, 1, 3, lost=True, once=True)
+    each = free_sentence(system, HALF, 1, 3, lost=True, once=True)
     assert "|w| is the largest of all sqrt(w' Q w) there" in each
 
 
 def test_axes_are_added_up():
     system = leaning(replace(bouncing(), contact=None), "1/8")
-    said = free_bound(system, HALF, 1, 1, lost=False, once=True)
+    said = free_sentence(system, HALF, 1, 1, lost=False, once=True)
     assert "(acceleration), which are taken on trust, each by itself in any of its modes" in said
     assert said.endswith(
         "where w_i is the state of an axis, and |w|^2 = sum of w_i' Q w_i over the axes."
     )
-    lost = free_bound(leaning(bouncing(), "1/8"), HALF, 1, 1, lost=True, once=True)
+    lost = free_sentence(leaning(bouncing(), "1/8"), HALF, 1, 1, lost=True, once=True)
     assert "w_i holds the states of an axis other than the deflection" in lost
 
 
 def test_a_constant_in_front_is_said():
     system = family([["1/2"]], [["1/2"]], time=Time.DISCRETE)
-    said = free_bound(system, HALF, 1, 2, lost=False, once=False)
+    said = free_sentence(system, HALF, 1, 2, lost=False, once=False)
     assert "|x(t)| <= c rho^t |x(0)|" in said
     assert said.endswith("and with some constant c that is the same for all signals.")
 
@@ -110,6 +110,6 @@ def test_words_for_the_signals(switching, time, words):
     system = family([[-1]], [[-1]], time=time, switching=switching)
     law = "x' = A x" if time is Time.CONTINUOUS else "x+ = A x"
     bound = "exp(-alpha t)" if time is Time.CONTINUOUS else "rho^t"
-    said = ruled_bound(system, HALF)
+    said = ruled_sentence(system, HALF)
     assert f"Every solution of {law} under the declared switching ({words})" in said
     assert f"satisfies |x(t)| <= c {bound} |x(0)|" in said

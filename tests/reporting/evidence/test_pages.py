@@ -47,13 +47,16 @@ def test_outside_proof_and_search_only_the_table_names_a_kind():
 
 # Pages of growth differ by what shows it.
 GROWING = ("mode", "average", "period", "contact", "value")
-SHORT = sorted(TEXTS - LONG - {"growing-sequence"})
+SHORT = sorted(TEXTS - LONG - {"growing-sequence", "graph"})
 
 
 @pytest.mark.parametrize(
     "example",
     [
         *SHORT,
+        "common-quadratic",
+        "common-polynomial",
+        pytest.param("mode-polynomial", marks=pytest.mark.slow),
         *(f"growing-sequence, {shape}" for shape in GROWING),
         *(pytest.param(kind, marks=pytest.mark.slow) for kind in sorted(LONG)),
     ],

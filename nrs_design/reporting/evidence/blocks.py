@@ -1,4 +1,4 @@
-"""A block triangular family: its structure, and what is shown for each block."""
+"""A block triangular family: its structure, and the evidence for each block."""
 
 from __future__ import annotations
 
@@ -67,10 +67,7 @@ _RUN = (
 
 @dataclass(frozen=True)
 class BlocksPage(AbstractPage):
-    """The blocks, and in few words what is shown of each.
-
-    What refutes a block is said and drawn as its own page says it.
-    """
+    """The blocks with their evidence; a refuted block has the text and run of its own page."""
 
     page_of: Callable[[SwitchedSystem, AbstractEvidence], AbstractPage]  # of what a block shows
 
@@ -134,7 +131,7 @@ class BlocksPage(AbstractPage):
         return self.page_of(self.system, self.offer.parts[0][1])
 
     def _parts(self) -> Iterator[tuple[int, SwitchedSystem, AbstractEvidence]]:
-        """Yield the number of a block, its family, and what is shown of it."""
+        """Yield the number of a block, its family, and its evidence."""
         for index, part in self.offer.parts:
             yield index, diagonal_block(self.system, self.offer.blocks[index]), part
 

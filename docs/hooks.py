@@ -11,8 +11,7 @@ from itertools import count
 from pathlib import Path
 
 from making.assumptions import assumptions_table
-from making.combinations import pairs
-from making.combinations_page import combinations_tables
+from making.combinations import combinations_table
 from making.commands import commands_page
 from making.cost import cost_figures
 from making.faults import refuse
@@ -84,7 +83,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         if match[1] == "floors":
             return drawing(ROOT / "nrs_design", markdown)
         if match[1] == "combinations":
-            return combinations_tables(pairs())
+            return combinations_table()
         if match[1] == "assumptions":
             return assumptions_table()
         assert match[1] == "misprints"

@@ -81,7 +81,7 @@ HELD = {"type", "model", "linear_model", "kind", "law", "command"}
 # What an assumption is about may have no place in a spec; a file of no kind that is known begins
 # with nothing.
 ALLOWED = {
-    ("nrs_design.tables.arrays", "get"),
+    ("nrs_design.identification.tables.arrays", "get"),
 }
 # Kinds of specs have nothing in common that could be asked for instead. A command refuses those
 # that it is not about, or does nothing for them.

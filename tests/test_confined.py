@@ -16,8 +16,7 @@ from nrs_design import confined
 from nrs_design.arrays.files import unpack_npz
 from nrs_design.confined import encoded, read_confined
 from nrs_design.errors import DataError
-from nrs_design.exporters.deployed_archive import read_archive, unpack_archive
-from nrs_design.foreign import read_npz, unpack_sheet
+from nrs_design.identification.foreign import read_npz, unpack_sheet
 from tests import foreign_readers
 from tests.support import ROOT
 
@@ -160,7 +159,7 @@ def described(*values):
 
 
 @LINUX
-@pytest.mark.parametrize("reader", [read_npz, unpack_sheet, unpack_npz, unpack_archive])
+@pytest.mark.parametrize("reader", [read_npz, unpack_sheet, unpack_npz])
 @pytest.mark.parametrize(
     "answer",
     [b'{"value": 5}\n', described(), described(5, 5), described({"a": 3j}, {"b": [1j]})],
@@ -168,12 +167,6 @@ def described(*values):
 def test_an_answer_of_another_type_is_one_message(pretend, reader, answer):
     with pytest.raises(DataError, match="hostile"):
         pretend(answer, partial(read_confined, reader, ()))
-
-
-@LINUX
-def test_an_archive_without_its_documents_is_none_of_ours(pretend):
-    answer = described({"modelDescription.xml": b""}, {})
-    assert pretend(answer, lambda file, path: read_archive(path)) is None
 
 
 @LINUX

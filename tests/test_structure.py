@@ -37,6 +37,8 @@ REACHED = {
     # What a scenario moves may be all links, or MuJoCo.
     ("nrs_design.pipeline.scenarios", "robot", "pipeline"),
     ("nrs_design.simulation.bodies", "robot", "simulation.bodies"),
+    # A recorded command is a record.
+    ("nrs_design.simulation.build_scenario", "identification", "tables.table"),
 }
 STAGES = {"models", "design", "switched", "search"}
 # What a command may use of a stage: its door, or a module of nouns and words.

@@ -17,8 +17,8 @@ from nrs_design.errors import SpecError
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import LoadedSpec, SwitchedSystemSpec
 from nrs_design.spec.document import parse_document
-from nrs_design.spec.faults import file_faults
 from nrs_design.spec.meaning import hash_meaning
+from nrs_design.spec.places import file_faults
 
 Document = dict[str, Any]
 _NAME = re.compile(r"(?<![\w.])[a-zA-Z]")

@@ -272,6 +272,7 @@ def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -
 
 def _print_gains(certificate: Certificate, spec: Spec) -> None:
     from nrs_design.certificates.units import gain_units
+    from nrs_design.spec import InteractionDesignSpec
 
     units = gain_units(certificate)
     for name, gains in certificate.gains.items():
@@ -280,7 +281,7 @@ def _print_gains(certificate: Certificate, spec: Spec) -> None:
             say(f"  {name}: {', '.join(said)}")
             for gain, low, high in _ranges(spec, name):
                 say(f"  {name}: {gain} anywhere in [{low}, {high}]")
-    if spec.kind == "interaction-design" and spec.sampling is not None:
+    if isinstance(spec, InteractionDesignSpec) and spec.sampling is not None:
         _print_sampled_derivative(certificate, spec.sampling.period.exact)
 
 

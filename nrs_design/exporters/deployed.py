@@ -17,7 +17,6 @@ from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters import monitor
 from nrs_design.exporters.build import build_record
-from nrs_design.exporters.deployed_archive import Archive, read_archive
 from nrs_design.exporters.deployed_c import code_differences, macro_differences
 from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.export import Export
@@ -70,7 +69,7 @@ def find_differences(
         raise _something_else(file)
     export = _exported(spec, certificate, file)
     if file.suffix == ".fmu":
-        return [*model_differences(_archive(file), export)]
+        return [*model_differences(_read(file), export)]
     text = _text(file)
     if "_monitor_t" in text:
         return [*_of_monitor(text, export, file)]
@@ -135,13 +134,6 @@ def _read(file: Path) -> bytes:
     if len(content) > LARGEST_BYTES:
         raise NrsDesignError("is larger than any export", path=file, remedy="export it again")
     return content
-
-
-def _archive(file: Path) -> Archive | None:
-    try:
-        return read_archive(file)
-    except OSError as error:
-        raise NrsDesignError(f"cannot be read ({error.strerror})", path=file) from error
 
 
 def _text(file: Path) -> str:

@@ -12,7 +12,7 @@ from nrs_design.pipeline.design import Designed
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec.touched import FREE
+from nrs_design.spec.interaction_parts import FREE
 from nrs_design.switched.joint import Joint
 
 if TYPE_CHECKING:

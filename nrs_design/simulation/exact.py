@@ -17,6 +17,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.progress import Progress, silent
 from nrs_design.simulation.flow import CHUNK, Flow
+from nrs_design.simulation.location import TOLERANCE, Location, make_location
 from nrs_design.simulation.loop import Loop
 from nrs_design.simulation.run import (
     ERRORS_LEFT_OUT,
@@ -29,7 +30,6 @@ from nrs_design.simulation.run import (
 )
 from nrs_design.simulation.scenario import Array, Errors, Scenario
 from nrs_design.simulation.time_response import Signal, TimeResponse
-from nrs_design.simulation.way import TOLERANCE, Way, make_way
 from nrs_design.spec import InteractionDesignSpec
 
 # Steps after which it is told how far the run is.
@@ -83,12 +83,12 @@ def simulate_exactly(
 
 @dataclass
 class _Engine:
-    """A run that is under way."""
+    """A run of the hybrid loop, up to now."""
 
     loop: Loop
     max_steps: int
     tell: Progress
-    ways: dict[tuple[object, ...], Way] = field(default_factory=dict)
+    locations: dict[tuple[object, ...], Location] = field(default_factory=dict)
     switches: list[tuple[float, str]] = field(default_factory=list)
     contacts: list[tuple[float, str, bool]] = field(default_factory=list)
     steps: int = 0
@@ -110,11 +110,11 @@ class _Engine:
         self.damped = any(map(self.loop.is_damped, range(len(signs))))
         self.met: dict[tuple[int, int, int], bool] = {}
         self.sides: dict[tuple[bool, ...], Array] = {}
-        self.way = self._way()
-        # States so far, with the time of the first, the step between them, and index of the way.
+        self.location = self._enter()
+        # States so far, with the time of the first, the step between them, and the location.
         self.kept: list[tuple[float, float, int, Array]] = []
 
-    def _touched(self) -> tuple[int, ...]:
+    def _in_contact(self) -> tuple[int, ...]:
         """Return the indices of the surfaces that push."""
         both = zip(self.inside, self.pushing, strict=True)
         return tuple(j for j, (inside, pushing) in enumerate(both) if inside and pushing)
@@ -187,26 +187,26 @@ class _Engine:
             self.z[-3:-1] = piece.value, piece.slope
         self._settle()
 
-    def _way(self) -> Way:
-        """Return the way that the loop is in now."""
+    def _enter(self) -> Location:
+        """Return the location that the loop is in now."""
         key = (self.controller, *self.inside, *self.pushing, self.direction)
-        if key not in self.ways:
-            self.ways[key] = make_way(
+        if key not in self.locations:
+            self.locations[key] = make_location(
                 self.loop,
                 self.controller,
                 self.inside,
-                self._touched(),
+                self._in_contact(),
                 self.direction,
-                len(self.ways),
+                len(self.locations),
             )
-        return self.ways[key]
+        return self.locations[key]
 
-    def _sides(self, way: Way) -> Array:
-        """Return on which side every signal of a way counts as being."""
+    def _sides(self, location: Location) -> Array:
+        """Return on which side every guard counts as being."""
         flags = (
             *self.inside,
-            *(self.pushing[j] for j in way.damped),
-            *(self.met.get(bound, False) for bound in way.bounds),
+            *(self.pushing[j] for j in location.damped),
+            *(self.met.get(bound, False) for bound in location.bounds),
         )
         if flags not in self.sides:
             self.sides[flags] = np.where(flags, 1.0, -1.0)
@@ -214,8 +214,8 @@ class _Engine:
 
     def _advance(self, limit: float) -> bool:
         """Follow the flow up to the first event, or to a limit; tell whether there was an event."""
-        flow = self.way.flow
-        sides = self._sides(self.way)
+        flow = self.location.flow
+        sides = self._sides(self.location)
         while self.t < limit and self.stopped is None:
             whole = min(CHUNK, int((limit - self.t) / flow.h))
             states = flow.chunk(self.z, whole)
@@ -267,10 +267,10 @@ class _Engine:
 
     def _change_contact(self) -> bool:
         """Update what is touched; tell whether that changed."""
-        way, before = self.way, self._touched()
+        location, before = self.location, self._in_contact()
         was = (list(self.inside), list(self.pushing))
-        depths = (way.flow.signals @ self.z).tolist()
-        pushes = (way.pushes @ self.z).tolist() if way.pushes.size else []
+        depths = (location.flow.signals @ self.z).tolist()
+        pushes = (location.pushes @ self.z).tolist() if location.pushes.size else []
         for j in range(len(self.inside)):
             self.inside[j] = _side(depths[j], self.inside[j])
             # Outside, a push is not asked for: contact begins with it.
@@ -279,26 +279,26 @@ class _Engine:
             )
         if was == (self.inside, self.pushing):
             return False
-        after = self._touched()
+        after = self._in_contact()
         for j in sorted(set(before) ^ set(after)):
             surface = self.loop.scenario.surfaces[j]
             self.contacts.append((self.t, surface.environment, j in after))
             if j in after:
                 self.direction = surface.sign
-        self.way = self._way()
+        self.location = self._enter()
         return True
 
     def _change_controller(self) -> bool:
         """Make the first switch that is due; tell whether there was one."""
-        way, control = self.way, self.loop.scenario.control
+        location, control = self.location, self.loop.scenario.control
         if not control.switches:
             return False
-        values = (way.flow.signals @ self.z)[len(self.inside) + len(way.damped) :]
-        for bound, value in zip(way.bounds, values.tolist(), strict=True):
+        values = (location.flow.signals @ self.z)[len(self.inside) + len(location.damped) :]
+        for bound, value in zip(location.bounds, values.tolist(), strict=True):
             self.met[bound] = _side(value, self.met.get(bound, False))
         if self.t < self.since + control.stays.get(self.controller, 0.0):
             return False
-        unmet = {i for i, k, end in way.bounds if not self.met[i, k, end]}
+        unmet = {i for i, k, end in location.bounds if not self.met[i, k, end]}
         for i, switch in enumerate(control.switches):
             if switch.source == self.controller and i not in unmet:
                 self._record(self.z[None])
@@ -310,7 +310,7 @@ class _Engine:
         """Let another controller take over, and set what the spec says is set then."""
         if target == self.controller:
             return
-        mode, idle = self.way.mode, self.loop.spec.idle_states
+        mode, idle = self.location.mode, self.loop.spec.idle_states
         places, laws = self.places, self.laws
         if self.offset != "none":
             taken = mode.reference if self.offset == "reference" else mode.angle
@@ -324,26 +324,26 @@ class _Engine:
             self.z[places["offset"]] = 0.0
         self.controller, self.since, self.met = target, self.t, {}
         self.switches.append((self.t, target))
-        self.way = self._way()
+        self.location = self._enter()
 
     def _record(self, states: Array, step: float = 0.0) -> None:
-        """Keep states from now on, a step apart, and the way that gives their outputs."""
-        self.kept.append((self.t, step, self.way.index, states))
+        """Keep states from now on, a step apart, and the location that gives their outputs."""
+        self.kept.append((self.t, step, self.location.index, states))
 
     def _response(self) -> TimeResponse:
         loop = self.loop
-        starts, steps, ways, parts = zip(*self.kept, strict=True)
+        starts, steps, entered, parts = zip(*self.kept, strict=True)
         counts = np.array([len(part) for part in parts])
         number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
         times = np.repeat(starts, counts) + np.repeat(steps, counts) * number
-        which, states = np.repeat(ways, counts), np.concatenate(parts)
+        which, states = np.repeat(entered, counts), np.concatenate(parts)
         rows, mode = np.empty((len(times), 4)), np.empty(len(times), np.int64)
         names = [c.name for c in loop.design.controllers]
-        for way in self.ways.values():
-            own, m = np.flatnonzero(which == way.index), way.mode
+        for location in self.locations.values():
+            own, m = np.flatnonzero(which == location.index), location.mode
             outputs = np.stack([m.angle, m.velocity, m.torque, m.reference], axis=1)
             rows[own] = states[own] @ outputs
-            mode[own] = names.index(way.controller)
+            mode[own] = names.index(location.controller)
         angle, velocity, torque, reference = rows.T
         states = states.T.copy()
         surfaces = loop.scenario.surfaces

@@ -143,8 +143,8 @@ def _legs(system: SwitchedSystem, steps: Steps, edges: Sequence[int]) -> list[_L
         pieces = int(time) if discrete else min(max(_SMOOTH, math.ceil(time / fine)), most)
         piece = A if discrete else expm(A * (time / pieces))
         resets = maps.get((system.modes[mode].name, system.modes[successor].name))
-        way = edges[k] if edges else 0
-        last = piece if resets is None else np.array(resets[way].floats()) @ piece
+        edge = edges[k] if edges else 0
+        last = piece if resets is None else np.array(resets[edge].floats()) @ piece
         legs.append(_Leg(mode, piece, last, pieces, time))
     return legs
 

@@ -8,8 +8,8 @@ from typing import Protocol
 
 from nrs_design.errors import PoseError
 from nrs_design.progress import Progress
-from nrs_design.simulation.fate import Fate
 from nrs_design.simulation.run import Run
+from nrs_design.simulation.sample_inputs import SampleInputs
 from nrs_design.simulation.sampled_axis import SampledAxis
 
 # Samples after which it is told how far the run is.
@@ -79,10 +79,10 @@ def run_axes(
     first = axes[0]
     wanted = math.floor(first.scenario.duration / first.T + 1e-9) + 1
     count = min(wanted, max_steps)
-    fates = [Fate.of(axis.scenario, first.T, axis.delay, count) for axis in axes]
-    instants = [*fates[0].times.tolist(), float(fates[0].times[-1]) + first.T]
+    inputs = [SampleInputs.of(axis.scenario, first.T, axis.delay, count) for axis in axes]
+    instants = [*inputs[0].times.tolist(), float(inputs[0].times[-1]) + first.T]
     rows = [
-        list(zip(f.hand.tolist(), f.noise.tolist(), f.ages.tolist(), strict=True)) for f in fates
+        list(zip(f.hand.tolist(), f.noise.tolist(), f.ages.tolist(), strict=True)) for f in inputs
     ]
     stopped = None
     if count < wanted:
@@ -97,4 +97,4 @@ def run_axes(
             break
         if k % _OFTEN == 0:
             tell(f"{t:.3g} s")
-    return tuple(axis.finish(engine, fate, stopped) for axis, fate in zip(axes, fates, strict=True))
+    return tuple(axis.finish(engine, one, stopped) for axis, one in zip(axes, inputs, strict=True))

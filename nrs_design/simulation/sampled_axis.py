@@ -18,9 +18,9 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.fate import Fate
 from nrs_design.simulation.motor import Motor
 from nrs_design.simulation.run import Run
+from nrs_design.simulation.sample_inputs import SampleInputs
 from nrs_design.simulation.scenario import (
     COMMAND,
     DEPTH,
@@ -104,14 +104,14 @@ class SampledAxis:
             if switch.source == source
         ]
 
-    def finish(self, engine: str, fate: Fate, stopped: str | None) -> Run:
+    def finish(self, engine: str, inputs: SampleInputs, stopped: str | None) -> Run:
         """Return the run up to now.
 
         Parameters
         ----------
         engine : str
             What moved it.
-        fate : Fate
+        inputs : SampleInputs
             What it was given.
         stopped : str or None
             Why it ends before its time.
@@ -119,7 +119,7 @@ class SampledAxis:
         return Run(
             self.scenario.name,
             engine,
-            self._response(fate),
+            self._response(inputs),
             tuple(self.switches),
             tuple(self.tissue.contacts),
             len(self.rows),
@@ -217,15 +217,15 @@ class SampledAxis:
             self.theta, self.omega = self.motor.after(self.theta, self.omega, drive, part)
             self.tissue.creep(before, self.tissue.depths(self.theta), part)
 
-    def _response(self, fate: Fate) -> TimeResponse:
+    def _response(self, inputs: SampleInputs) -> TimeResponse:
         law, last = self.program.law, len(_OUTPUTS) + 2
         rows = np.array(self.rows, dtype=float).T
         count = len(self.rows)
         return TimeResponse(
-            fate.times[:count],
+            inputs.times[:count],
             rows[1:last],
             rows[last:],
-            fate.hand[None, :count],
+            inputs.hand[None, :count],
             (*_OUTPUTS, Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
             _INPUTS,

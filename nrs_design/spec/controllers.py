@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Annotated, ClassVar, Literal, get_args
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import (
     AfterValidator,
     ConfigDict,
     Discriminator,
     Field,
-    field_validator,
-    model_validator,
 )
 
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
@@ -90,6 +89,38 @@ _TOUCHED = (
 )
 
 
+def exclusive(one: str, other: str) -> tuple[Row[Any], ...]:
+    """Return the check that at most one of two keys is given."""
+    return (
+        Row(
+            other,
+            lambda s: getattr(s, one) is not None and getattr(s, other) is not None,
+            f"{one} and {other} exclude each other",
+            "keep one of them",
+        ),
+    )
+
+
+def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
+    """Return the checks that just one of two keys is given.
+
+    Parameters
+    ----------
+    ways : dict of str to str
+        How each key is written.
+    """
+    one, other = ways
+    return (
+        Row(
+            "",
+            lambda s: getattr(s, one) is None and getattr(s, other) is None,
+            f"neither {one} nor {other} is given",
+            f"add `{ways[one]}` or `{ways[other]}`",
+        ),
+        *exclusive(one, other),
+    )
+
+
 class CostWeights(SpecModel):
     """Weights of the two parts of the impedance cost (thesis 6.7)."""
 
@@ -100,11 +131,14 @@ class CostWeights(SpecModel):
         default=Fraction(1, 2), description="weight of the mean sensitivity, >= 0, no unit"
     )
 
-    @model_validator(mode="after")
-    def _check_not_both_zero(self) -> CostWeights:
-        if self.displayed == 0 and self.sensitivity == 0:
-            raise fault("both weights are zero", "give at least one a positive weight")
-        return self
+    checks = (
+        Row(
+            "",
+            lambda s: s.displayed == 0 and s.sensitivity == 0,
+            "both weights are zero",
+            "give at least one a positive weight",
+        ),
+    )
 
 
 class AbstractControllerSpec(SpecModel):
@@ -124,6 +158,11 @@ class AbstractControllerSpec(SpecModel):
     def own_offset(self) -> Offset | None:
         """Where it takes an offset of its command from; None where there is no such offset."""
         return None
+
+    @property
+    def sprung(self) -> bool:
+        """Whether a spring draws it back to its position reference."""
+        return "Kt" in self.gains()
 
     @property
     def displayed(self) -> Quantity | Fraction | None:
@@ -184,26 +223,15 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         ratio = self.desired_impedance_ratio
         return self.desired_impedance or (Fraction(1) if ratio is None else ratio)
 
-    @field_validator("Kt")
-    @classmethod
-    def _check_given(cls, spring: GainSpec | None) -> GainSpec | None:
-        if spring is not None and not spring.fixed:
-            raise fault(
-                "the design chooses Mt and Bt only",
-                "give nominal instead of min and max",
-                "min",
-            )
-        return spring
-
-    @model_validator(mode="after")
-    def _check_one_target(self) -> ImpedanceControllerSpec:
-        if self.desired_impedance is not None and self.desired_impedance_ratio is not None:
-            raise fault(
-                "desired_impedance and desired_impedance_ratio exclude each other",
-                "keep one of them",
-                "desired_impedance_ratio",
-            )
-        return self
+    checks = (
+        Row(
+            "Kt.min",
+            lambda s: s.Kt is not None and not s.Kt.fixed,
+            "the design chooses Mt and Bt only",
+            "give nominal instead of min and max",
+        ),
+        *exclusive("desired_impedance", "desired_impedance_ratio"),
+    )
 
 
 class ForceControllerSpec(AbstractControllerSpec):
@@ -242,20 +270,12 @@ class ForceControllerSpec(AbstractControllerSpec):
         """As `offset` says."""
         return self.offset
 
-    @model_validator(mode="after")
-    def _check_one_gain(self) -> ForceControllerSpec:
-        if self.proportional_gain is None and self.damping_ratio is None:
-            raise fault(
-                "neither proportional_gain nor damping_ratio is given",
-                "add `proportional_gain: 0.02 rad/(N*m)` or `damping_ratio: 0.741`",
-            )
-        if self.proportional_gain is not None and self.damping_ratio is not None:
-            raise fault(
-                "proportional_gain and damping_ratio exclude each other",
-                "keep one of them",
-                "damping_ratio",
-            )
-        return self
+    checks = exactly_one(
+        {
+            "proportional_gain": "proportional_gain: 0.02 rad/(N*m)",
+            "damping_ratio": "damping_ratio: 0.741",
+        }
+    )
 
 
 class IntegralControllerSpec(AbstractControllerSpec):
@@ -301,19 +321,15 @@ class IntegralControllerSpec(AbstractControllerSpec):
     )
     goals: GoalsSpec | None = Field(default=None, description=_GOALS)
 
-    @model_validator(mode="after")
-    def _check_gains(self) -> IntegralControllerSpec:
-        if (self.proportional_gain is None) == (self.damping_ratio is None):
-            raise fault(
-                "exactly one of proportional_gain and damping_ratio is needed",
-                "write `proportional_gain: 0.02 rad/(N*m)`, or `damping_ratio: 0.707`",
-            )
-        if (self.integral_gain is None) == (self.settling_time is None):
-            raise fault(
-                "exactly one of integral_gain and settling_time is needed",
-                "write `integral_gain: 0.5 rad/(N*m*s)`, or `settling_time: 0.3 s`",
-            )
-        return self
+    checks = (
+        *ForceControllerSpec.checks,
+        *exactly_one(
+            {
+                "integral_gain": "integral_gain: 0.5 rad/(N*m*s)",
+                "settling_time": "settling_time: 0.3 s",
+            }
+        ),
+    )
 
 
 class ParallelControllerSpec(AbstractControllerSpec):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr
 
-from nrs_design.spec.faults import fault
+from nrs_design.spec.check import Row
 from nrs_design.spec.fields import AxisCount, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import is_less
@@ -71,83 +71,52 @@ class CouplingSpec(SpecModel):
         copy._bounds = bounds
         return copy
 
-    @model_validator(mode="after")
-    def _check(self) -> CouplingSpec:
-        if self.robot is not None:
-            self._check_computed()
-            return self
-        if self.gravity_compensated is not None:
-            raise fault(
-                "gravity_compensated is for the bounds of a robot",
-                "add robot, or remove gravity_compensated",
-                "gravity_compensated",
-            )
-        if self.inertia is None:
-            raise fault(
-                "neither robot nor inertia is given",
-                "write `robot: arm.nrs.yaml`, or `inertia: [0.003 kg*m^2, 0.3 kg*m^2]`",
-            )
-        low, high = self.inertia
-        if is_less(high, low):
-            raise fault(
-                f"the range of inertia ends at {high.text!r}, below its start {low.text!r}",
-                "write [lowest, highest]",
-                "inertia",
-            )
-        if (self.coriolis is None) != (self.speed is None):
-            missing = "speed" if self.speed is None else "coriolis"
-            raise fault(
-                "coriolis and speed belong together: Coriolis torques grow with the speed",
-                f"add {missing}, or remove the other",
-                missing,
-            )
-        return self
+    def _doubly(self) -> str | None:
+        """Return what is declared although it is computed from the robot."""
+        keys = ("inertia", "coriolis", "gravity_gradient", "axes") if self.robot is not None else ()
+        return next((key for key in keys if getattr(self, key) is not None), None)
 
-    def _check_computed(self) -> None:
-        """Refuse to declare what is computed."""
-        for key in ("inertia", "coriolis", "gravity_gradient", "axes"):
-            if getattr(self, key) is not None:
-                raise fault(
-                    f"{key} is that of the robot, and declared as well",
-                    f"remove {key} or robot",
-                    key,
-                )
+    def _reversed(self) -> tuple[str, str] | None:
+        """Return the ends of the range of inertia, if the highest is below the lowest."""
+        if self.inertia is None or not is_less(self.inertia[1], self.inertia[0]):
+            return None
+        return self.inertia[1].text, self.inertia[0].text
 
+    def _half(self) -> str | None:
+        """Which of two that belong together is missing."""
+        if self.inertia is None or (self.coriolis is None) == (self.speed is None):
+            return None
+        return "speed" if self.speed is None else "coriolis"
 
-def check_coupling(
-    coupling: CouplingSpec | None, *, loaded: bool, disturbed: bool, deflection: bool
-) -> None:
-    """Refuse a coupling of axes beside what it is not modelled with.
-
-    Parameters
-    ----------
-    coupling : CouplingSpec or None
-        Where the spec has one.
-    loaded : bool
-        Whether the actuator has a load_inertia.
-    disturbed : bool
-        Whether the spec has disturbances.
-    deflection : bool
-        Whether the coordinates are those of the deflection.
-    """
-    if coupling is None:
-        return
-    if disturbed and coupling.robot is None and coupling.axes is None:
-        raise fault(
-            "a bound under disturbances depends on the number of axes, which is not given",
-            "add `axes: 3`, or remove disturbances",
-            "coupling",
-            "axes",
-        )
-    if not loaded:
-        raise fault(
-            "axes act on each other against the inertia of the drives, which is not given",
-            "add `load_inertia: 1.213 kg*m^2` to actuator, or remove coupling",
-            "coupling",
-        )
-    if not deflection:
-        raise fault(
-            "axes that act on each other are not modelled in force coordinates",
-            "use `coordinates: deflection`, or remove coupling",
-            "coupling",
-        )
+    checks = (
+        Row(
+            "{0}",
+            _doubly,
+            "{0} is that of the robot, and declared as well",
+            "remove {0} or robot",
+        ),
+        Row(
+            "gravity_compensated",
+            lambda s: s.robot is None and s.gravity_compensated,
+            "gravity_compensated is for the bounds of a robot",
+            "add robot, or remove gravity_compensated",
+        ),
+        Row(
+            "",
+            lambda s: s.robot is None and s.inertia is None and s.gravity_compensated is None,
+            "neither robot nor inertia is given",
+            "write `robot: arm.nrs.yaml`, or `inertia: [0.003 kg*m^2, 0.3 kg*m^2]`",
+        ),
+        Row(
+            "inertia",
+            _reversed,
+            "the range of inertia ends at {0!r}, below its start {1!r}",
+            "write [lowest, highest]",
+        ),
+        Row(
+            "{0}",
+            _half,
+            "coriolis and speed belong together: Coriolis torques grow with the speed",
+            "add {0}, or remove the other",
+        ),
+    )

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Annotated, ClassVar, Literal, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import Discriminator, Field
 
 from nrs_design.spec import kinds
-from nrs_design.spec.faults import fault
+from nrs_design.spec.check import Row, each
+from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.preload import RangedExponent, power_box
@@ -42,6 +43,8 @@ _COVERS = (
     "all specimens) or prediction (the next record), each with 95 %"
 )
 
+_LENGTHS = "write lengths with a lever_arm, and angles without one"
+
 Number = TypeVar("Number", float, Fraction)
 
 
@@ -67,11 +70,29 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         "hold small motions there",
     )
 
-    @model_validator(mode="after")
-    def _check_lever_arm(self) -> Self:
+    def _quantities(self) -> Iterator[tuple[Location, tuple[RangedQuantity, Quantity | None]]]:
         for name, quantity in self.parameters().items():
-            _check_arm(quantity, name, self.lever_arm)
-        return self
+            yield (name,), (quantity, self.lever_arm)
+
+    checks: ClassVar[tuple[Row[Any], ...]] = (
+        *IdentifiedRangesSpec.checks,
+        *each(
+            _quantities,
+            Row[Any](
+                "",
+                lambda x: x[1] is None and is_translational(x[0].nominal) and x[0].nominal.text,
+                "{0!r} is linear, and there is no lever_arm",
+                "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or "
+                "write the rotational value at the pivot",
+            ),
+            Row[Any](
+                "",
+                lambda x: x[1] and not is_translational(x[0].nominal) and x[0].nominal.text,
+                "{0!r} is rotational, and a lever_arm is given",
+                "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
+            ),
+        ),
+    )
 
     @property
     def fixed(self) -> bool:
@@ -251,27 +272,36 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         "proof holds"
     )
 
-    @model_validator(mode="after")
-    def _check_preload(self) -> Self:
-        low, high = self.preload
+    def _of_other_kind(self) -> tuple[str, str, str] | None:
+        """Return a deflection that is a length without a lever arm, or an angle with one."""
         of_length = kinds.LENGTH.accepts(self.about.dimension)
-        if of_length != (self.lever_arm is not None):
-            raise fault(
-                f"{self.about.text!r} is {'a length' if of_length else 'an angle'}, and "
-                f"{'there is no lever_arm' if of_length else 'a lever_arm is given'}",
-                "write lengths with a lever_arm, and angles without one",
-                "about",
-            )
-        scales = {(q.dimension, q.pi_power) for q in (self.about, low, high)}
-        if len(scales) > 1:
-            raise fault("about and preload have different units", "use one unit", "preload")
-        if not low.rational_part <= self.about.rational_part <= high.rational_part:
-            raise fault(
-                f"about {self.about.text!r} is not within the preload [{low.text}, {high.text}]",
-                "write [lowest, highest] around it",
-                "preload",
-            )
-        return self
+        if of_length == (self.lever_arm is not None):
+            return None
+        found = "a length", "there is no lever_arm"
+        return self.about.text, *(found if of_length else ("an angle", "a lever_arm is given"))
+
+    def _off_preload(self) -> tuple[str, str, str] | None:
+        """Return `about` and the ends of a preload in the same unit that does not hold it."""
+        low, high = self.preload
+        if self._units() or low.rational_part <= self.about.rational_part <= high.rational_part:
+            return None
+        return self.about.text, low.text, high.text
+
+    def _units(self) -> bool:
+        """Return whether `about` and the preload have different units."""
+        return len({(q.dimension, q.pi_power) for q in (self.about, *self.preload)}) > 1
+
+    checks = (
+        *AbstractEnvironmentSpec.checks,
+        Row("about", _of_other_kind, "{0!r} is {1}, and {2}", _LENGTHS),
+        Row("preload", _units, "about and preload have different units", "use one unit"),
+        Row(
+            "preload",
+            _off_preload,
+            "about {0!r} is not within the preload [{1}, {2}]",
+            "write [lowest, highest] around it",
+        ),
+    )
 
     @property
     def preload_range(self) -> tuple[Quantity, Quantity]:
@@ -349,19 +379,3 @@ def is_translational(quantity: Quantity) -> bool:
     """Whether a stiffness, damping or mass is one at the contact point (N/m, N*s/m, kg)."""
     linear = kinds.LINEAR_STIFFNESS, kinds.LINEAR_DAMPING, kinds.MASS
     return any(kind.accepts(quantity.dimension) for kind in linear)
-
-
-def _check_arm(quantity: RangedQuantity, name: str, arm: Quantity | None) -> None:
-    if is_translational(quantity.nominal) and arm is None:
-        raise fault(
-            f"{quantity.nominal.text!r} is linear, and there is no lever_arm",
-            "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or write "
-            "the rotational value at the pivot",
-            name,
-        )
-    if arm is not None and not is_translational(quantity.nominal):
-        raise fault(
-            f"{quantity.nominal.text!r} is rotational, and a lever_arm is given",
-            "remove lever_arm, or write the linear value (N/m, N*s/m, kg)",
-            name,
-        )

@@ -58,13 +58,14 @@ class EstimatorSpec(SpecModel):
         """There are none that a program could follow."""
         return
 
-    def check_names(self, controllers: Mapping[str, ControllerSpec]) -> None:
-        """Accept any names: it has none of its own."""
+    def lost_names(self, controllers: Mapping[str, object]) -> tuple[str, ...]:
+        """Return none: it names no controller."""
+        return ()
 
     def rules_among(
         self, controllers: Mapping[str, ControllerSpec], environments: Mapping[str, EnvironmentSpec]
     ) -> SwitchingSpec:
-        """Return the rules that it keeps among them; as `rules_of` says."""
+        """Return the rules that it keeps among them, or report why it keeps none."""
         return decide(self, controllers, environments).rules()
 
 

@@ -1,57 +1,22 @@
-"""From what validation reports to faults with their place in the file and the remedy."""
+"""Faults of a spec: how a reader or a check reports them, without a place in a file yet."""
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection
 from itertools import islice
-from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_origin
+from typing import Any, TypeVar
 
-from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic_core import PydanticCustomError
 
-from nrs_design.errors import Fault, SpecError
-from nrs_design.proof.text import quoted
-from nrs_design.spec.document import Mapping, Node, Position, Sequence
-
-if TYPE_CHECKING:
-    from nrs_design.spec.model import SpecModel
+from nrs_design.errors import SpecError
 
 Location = tuple[int | str, ...]
 _T = TypeVar("_T")
 
 MAX_LISTED = 20
-_FAULT = "spec_fault"
-# Below a choice between models, validation inserts the tag of the chosen one.
-_CHOICES = {"environments": "model", "controllers": "type", "mode_logic": "type"}
-# What others call these.
-_OTHER_NAMES = {
-    "admittance": "impedance",
-    "spring": "elastic",
-    "voigt": "kelvin-voigt",
-    "standard-linear-solid": "kelvin-boltzmann",
-}
-# Other words for keys, in small letters: what similar letters do not tell.
-_OTHER_KEYS = {
-    "period": ("sample_time", "sampling_time", "ts", "dt", "rate", "frequency"),
-    "delay": ("lag", "latency", "age", "dead_time"),
-    "time_constant": ("tau", "t"),
-    "stiffness": ("k", "spring", "elasticity"),
-    "damping": ("d", "viscosity"),
-    "lever_arm": ("arm", "lever", "length"),
-    "damping_ratio": ("zeta", "damping"),
-    "settling_time": ("ts", "settling"),
-    "derivative_gain": ("kd", "derivative"),
-    "velocity": ("speed", "max_velocity", "largest_velocity"),
-    "torque": ("force", "moment", "max_torque", "largest_torque"),
-    "load_inertia": ("inertia", "load"),
-    "gain": ("k", "factor"),
-}
-# What `identify` writes into a section: it is listed after what people write.
-_IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
-# How deep that tag is: below a name, or at once.
-_DEPTH = {"environments": 2, "controllers": 2, "mode_logic": 1}
-_MAPPINGS = ("model_type", "model_attributes_type", "dict_type")
+# The type of error by which validation knows them.
+FAULT = "spec_fault"
 
 
 def fault(message: str, remedy: str, *at: int | str) -> PydanticCustomError:
@@ -65,7 +30,7 @@ def fault(message: str, remedy: str, *at: int | str) -> PydanticCustomError:
         Where, below the value that is being validated.
     """
     context = {"message": message, "remedy": remedy, "at": at}
-    return PydanticCustomError(_FAULT, "{message}", context)
+    return PydanticCustomError(FAULT, "{message}", context)
 
 
 def as_text(value: object, *at: int | str) -> str:
@@ -94,8 +59,13 @@ def all_of(*reads: Callable[[], _T]) -> list[_T]:
             context = error.context or {}
             found += context.get("all", [context])
     if found:
-        raise PydanticCustomError(_FAULT, "{message}", {**found[0], "all": found})
+        raise as_error(found)
     return results
+
+
+def as_error(found: list[dict[str, Any]]) -> PydanticCustomError:
+    """Return several faults, at least one, as one error; each is the context of an error."""
+    return PydanticCustomError(FAULT, "{message}", {**found[0], "all": found})
 
 
 def did_you_mean(
@@ -124,258 +94,3 @@ def did_you_mean(
     more = ", ..." * (len(choices) > MAX_LISTED)
     listing = f"{noun} {', '.join(islice(choices, MAX_LISTED))}{more}"
     return f"did you mean {near[0]}? {listing}" if near else listing
-
-
-def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return what validation reports as faults of the file, each with its place, in file order.
-
-    Parameters
-    ----------
-    error : ValidationError
-        As raised by the model.
-    model : type
-        The model that validated the file.
-    root : Node
-        The parsed file, for the positions.
-    """
-    return tuple(
-        Fault(message, line, column, remedy)
-        for line, column, message, remedy in sorted(
-            {resolved for details in _genuine(error) for resolved in _resolve(details, model, root)}
-        )
-    )
-
-
-def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
-    """Return the faults between parts of a spec; checks of parts that it lacks are left out.
-
-    Parameters
-    ----------
-    spec : SpecModel
-        With those parts that are valid themselves.
-    model : type
-        Its model.
-    root : Node
-        The parsed file, for the positions.
-    """
-    contexts: list[dict[str, Any]] = []
-    for check in spec.across():
-        try:
-            check()
-        except AttributeError:
-            continue
-        except PydanticCustomError as error:
-            context = error.context or {}
-            contexts += context.get("all", [context])
-    details: ErrorDetails = {"type": _FAULT, "loc": (), "msg": "", "input": None}
-    resolved = {_resolve_one(details | {"ctx": context}, model, root) for context in contexts}
-    return tuple(
-        Fault(message, line, column, remedy) for line, column, message, remedy in sorted(resolved)
-    )
-
-
-def _genuine(error: ValidationError) -> list[ErrorDetails]:
-    """Leave out what only follows from another fault."""
-    faults = error.errors(include_url=False)
-    containers = {f["loc"][:depth] for f in faults for depth in range(len(f["loc"]))}
-    mistyped: dict[Location, list[str]] = {}
-    for f in faults:
-        if f["type"] == "extra_forbidden":
-            mistyped.setdefault(f["loc"][:-1], []).append(str(f["loc"][-1]))
-    return [
-        f
-        for f in faults
-        if not (
-            f["type"] == "default_factory_not_called"
-            # A list with wrong items counts as too short.
-            or (f["type"] in ("too_short", "too_long") and f["loc"] in containers)
-            or (f["type"] == "missing" and _is_mistyped(f["loc"], mistyped))
-        )
-    ]
-
-
-def _is_mistyped(location: Location, mistyped: dict[Location, list[str]]) -> bool:
-    """Whether a missing key is there under a similar name, which is reported itself."""
-    siblings, name = mistyped.get(location[:-1], []), str(location[-1])
-    called = any(sibling.lower() in _OTHER_KEYS.get(name, ()) for sibling in siblings)
-    return called or bool(difflib.get_close_matches(name, siblings, n=1))
-
-
-def _of_keys(word: str, fields: Collection[str]) -> str:
-    """Suggest the key that is meant, also by another word for it, and list the keys."""
-    keys = sorted(fields, key=_IDENTIFIED.__contains__)
-    called = [key for key in keys if word.lower() in _OTHER_KEYS.get(key, ())]
-    return did_you_mean(word, keys, "keys here are", called)
-
-
-def _resolve(
-    details: ErrorDetails, model: type[BaseModel], root: Node
-) -> Iterator[tuple[int, int, str, str]]:
-    for context in details.get("ctx", {}).get("all", [details.get("ctx", {})]):
-        yield _resolve_one(details | {"ctx": context}, model, root)
-
-
-def _resolve_one(
-    details: ErrorDetails, model: type[BaseModel], root: Node
-) -> tuple[int, int, str, str]:
-    kind, context = details["type"], details.get("ctx", {})
-    location = _without_tag(details["loc"])
-    at_key = kind == "extra_forbidden" or (bool(location) and location[-1] == "[key]")
-    location += tuple(context.get("at", ()))
-    if kind == "union_tag_invalid":
-        place = place_of(root, (*location, _CHOICES[str(location[0])]), at_key=False)
-        return place.line, place.column, *_words(details, location, model)
-    place = place_of(root, tuple(p for p in location if p != "[key]"), at_key)
-    message, remedy = _words(details, location, model)
-    return place.line, place.column, message, remedy
-
-
-def _without_tag(location: Location) -> Location:
-    depth = _DEPTH.get(str(location[0]), len(location)) if location else 0
-    if len(location) > depth and location[depth] != "[key]":
-        return location[:depth] + location[depth + 1 :]
-    return location
-
-
-def place_of(root: Node, location: Location, at_key: bool) -> Position:
-    """Position of the node, or of the nearest one above it that the file holds.
-
-    Parameters
-    ----------
-    root : Node
-        The document.
-    location : tuple
-        Keys and indices from there.
-    at_key : bool
-        Return the place of the key, not that of its value.
-    """
-    node, place = root, root.position
-    for depth, part in enumerate(location):
-        if isinstance(node, Mapping) and part in node.entries:
-            key = node.keys[str(part)]
-            node = node.entries[str(part)]
-            # What starts below its key, a block mapping or list, is best shown by the key.
-            below = node.position.line > key.line
-            place = key if below or (at_key and depth == len(location) - 1) else node.position
-        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
-            node = node.items[part]
-            place = node.position
-        else:
-            break
-    return place
-
-
-def _words(details: ErrorDetails, location: Location, model: type[BaseModel]) -> tuple[str, str]:
-    kind, context = details["type"], details.get("ctx", {})
-    where = dotted(location)
-    if kind == _FAULT:
-        return f"{where}: {context['message']}" if where else context["message"], context["remedy"]
-    if kind == "missing":
-        name = str(location[-1])
-        field = fields_at(model, details["loc"][:-1]).get(name, "")
-        return f"`{where}` is missing", f"add {name}: {field}"
-    if kind == "extra_forbidden":
-        fields = fields_at(model, details["loc"][:-1])
-        return f"unknown key `{where}`", _of_keys(str(location[-1]), fields)
-    if kind in ("union_tag_not_found", "union_tag_invalid"):
-        return _tag_words(where, _CHOICES[str(location[0])], details)
-    value, where = details["input"], where or "the file"
-    if kind == "literal_error":
-        if not isinstance(value, str):
-            return f"{where}: expected a single value, not {_shape(value)}", "write one value"
-        remedy = f"write {context['expected']}"
-        return f"{where}: {quoted(value)} is not known", remedy
-    if kind in _MAPPINGS:
-        keys = {"name": ""}
-        if kind != "dict_type":
-            keys = fields_at(model, details["loc"], needed=True)
-        listing = ", ".join(f"{key}: ..." for key in keys)
-        return (
-            f"{where}: expected a mapping, not {_shape(value)}",
-            f"write {location[-1] if location else 'the file'}: {{{listing}}}",
-        )
-    if kind == "tuple_type":
-        return f"{where}: expected a list, not {_shape(value)}", "write [..., ...]"
-    if kind == "too_short":
-        return f"{where}: must not be empty", "add at least one entry"
-    if kind == "too_long":
-        return f"{where}: more than {context['max_length']} entries are not read", "remove some"
-    # What a type says in its own words.
-    message = str(context["error"]) if kind == "value_error" else details["msg"]
-    return f"{where}: {message}", "see `nrs-design schema` for what belongs here"
-
-
-def _shape(value: object) -> str:
-    """Name what was found, in the words of the file."""
-    if isinstance(value, dict):
-        return "a mapping"
-    return "a list" if isinstance(value, tuple | list) else quoted(str(value))
-
-
-def _tag_words(where: str, key: str, details: ErrorDetails) -> tuple[str, str]:
-    context = details["ctx"]
-    if "tag" not in context:
-        written = details["input"]
-        other = next((k for k in sorted({*_CHOICES.values(), "kind"}) if k in written), None)
-        return f"`{where}.{key}` is missing", f"write {key} for {other}" if other else f"add {key}"
-    expected = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
-    tag = details["input"][key]
-    if not isinstance(tag, str):
-        remedy = f"write one of {', '.join(expected)}"
-        return f"{where}.{key}: expected a single value, not {_shape(tag)}", remedy
-    if (usual := _OTHER_NAMES.get(tag)) in expected:
-        return f"{where}.{key}: {quoted(tag)} is not known", f"write {usual}: it is called so here"
-    return f"{where}.{key}: {quoted(tag)} is not known", did_you_mean(tag, expected)
-
-
-def dotted(location: Iterable[int | str]) -> str:
-    """Write a location as in ``modes[0].A[1][0]``."""
-    text = ""
-    for part in location:
-        if part != "[key]":
-            text += f"[{part}]" if isinstance(part, int) else f".{part}"
-    return text.removeprefix(".")
-
-
-def fields_at(
-    model: type[BaseModel], location: Location, *, needed: bool = False
-) -> dict[str, str]:
-    """Names and descriptions of the keys at a location as validation reports it, tags included.
-
-    Parameters
-    ----------
-    model : type
-        Of the whole file.
-    location : sequence of int or str
-        Where to look.
-    needed : bool
-        Only those that must be there; all, if none must.
-    """
-    if not location:
-        fields = list(model.model_fields.items())
-        if needed:
-            fields = [item for item in fields if item[1].is_required()] or fields
-        return {field.alias or name: field.description or "" for name, field in fields}
-    field = model.model_fields.get(str(location[0]))
-    arms = _models_in(field.annotation) if field else []
-    rest = location[1:]
-    if location[0] in _CHOICES:
-        key = _CHOICES[str(location[0])]
-        depth = _DEPTH[str(location[0])]
-        if len(rest) < depth:
-            return {key: ""}
-        tag = rest[depth - 1]
-        arms = [arm for arm in arms if tag in get_args(arm.model_fields[key].annotation)]
-        rest = rest[depth:]
-    elif field and get_origin(field.annotation) is dict:
-        rest = rest[1:]
-    while rest and isinstance(rest[0], int):
-        rest = rest[1:]
-    return fields_at(arms[0], rest, needed=needed) if arms else {}
-
-
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    """Models anywhere within an annotation such as ``dict[str, A | B]``."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return [found for argument in get_args(annotation) for found in _models_in(argument)]

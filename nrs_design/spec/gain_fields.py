@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity, QuantityKind, is_less
 from nrs_design.spec.quantity_fields import (
     AnyQuantity,
-    check_order,
     quantity_schema,
     read_entries,
     read_quantity,
     read_range,
 )
+from nrs_design.spec.range_checks import BOUND_CHECKS, ORDERED_RANGE, is_within
 
 _KEYS = {
     "nominal": "the gain; not with min and max",
@@ -46,12 +47,35 @@ class GainSpec(SpecModel):
     )
     range: tuple[AnyQuantity, AnyQuantity] | None = Field(default=None, description=_RANGE)
 
-    @model_validator(mode="after")
-    def _check(self) -> GainSpec:
-        check_order(self.min, self.max)
-        if self.range is not None:
-            _check_range(self, *self.range)
-        return self
+    def _outside(self) -> str | None:
+        """Return a given gain that is not within its range."""
+        if self.range is None or not self.fixed or is_less(self.range[1], self.range[0]):
+            return None
+        return None if is_within(self.min, self.range) else quoted(self.min.text)
+
+    def _apart(self) -> bool:
+        """Return whether bounds and range have no value in common."""
+        if self.range is None or self.fixed:
+            return False
+        return is_less(self.max, self.range[0]) or is_less(self.range[1], self.min)
+
+    checks = (
+        *BOUND_CHECKS,
+        ORDERED_RANGE,
+        Row(
+            "range",
+            _outside,
+            "{0} is outside the range [{s.range[0].text}, {s.range[1].text}]",
+            "widen the range or correct the gain",
+        ),
+        Row(
+            "range",
+            _apart,
+            "the range [{s.range[0].text}, {s.range[1].text}] and the bounds [{s.min.text}, "
+            "{s.max.text}] have no value in common",
+            "min and max are for the design, the range is for the proof: let them overlap",
+        ),
+    )
 
     @property
     def fixed(self) -> bool:
@@ -62,28 +86,6 @@ class GainSpec(SpecModel):
     def ranged(self) -> bool:
         """Whether the proof must cover more than the designed value."""
         return self.range is not None and is_less(*self.range)
-
-
-def _check_range(gain: GainSpec, low: Quantity, high: Quantity) -> None:
-    if is_less(high, low):
-        raise fault(
-            f"the range ends at {quoted(high.text)}, below its start {quoted(low.text)}",
-            "write [lowest, highest]",
-            "range",
-        )
-    written = f"the range [{low.text}, {high.text}]"
-    if gain.fixed and (is_less(gain.min, low) or is_less(high, gain.min)):
-        raise fault(
-            f"{quoted(gain.min.text)} is outside {written}",
-            "widen the range or correct the gain",
-            "range",
-        )
-    if is_less(gain.max, low) or is_less(high, gain.min):
-        raise fault(
-            f"{written} and the bounds [{gain.min.text}, {gain.max.text}] have no value in common",
-            "min and max are for the design, the range is for the proof: let them overlap",
-            "range",
-        )
 
 
 def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
 from nrs_design.spec.model import SpecModel
@@ -120,11 +121,14 @@ class GoalsSpec(SpecModel):
         "large as is found; for the whole spec, with `limits: command`, in continuous time",
     )
 
-    @model_validator(mode="after")
-    def _check_any(self) -> GoalsSpec:
-        if not dict(self.given()):
-            raise fault("no goal is given", "add one, such as `max_sensitivity_peak: 2`")
-        return self
+    checks = (
+        Row(
+            "",
+            lambda s: not dict(s.given()),
+            "no goal is given",
+            "add one, such as `max_sensitivity_peak: 2`",
+        ),
+    )
 
     @property
     def wants_creep(self) -> bool:
@@ -134,37 +138,3 @@ class GoalsSpec(SpecModel):
     def given(self) -> Iterator[tuple[str, Quantity | Fraction | str]]:
         """Yield the goals that are set, by key."""
         return ((key, value) for key, value in self if value is not None)
-
-
-def check_applicable(goals: GoalsSpec | None, types: set[str], *at: str) -> None:
-    """Report a fault if a goal is for another type of controller than there is.
-
-    Parameters
-    ----------
-    goals : GoalsSpec or None
-        What is wanted.
-    types : set of str
-        Of the controllers in contact that the goals would apply to.
-    *at : str
-        Where they stand in the spec.
-    """
-    if goals is None:
-        return
-    given = dict(goals.given()).keys()
-    if at[0] != "goals" and (shared := sorted(given & OF_THE_CERTIFICATE)):
-        raise fault(
-            f"{shared[0]} is a goal for all controllers together",
-            "move it to the goals of the spec",
-            *at,
-            shared[0],
-        )
-    if not types and given - OF_THE_CERTIFICATE:
-        raise fault(
-            "there is no controller that a goal applies to: they are for impedance and force "
-            "control",
-            "remove goals",
-            *at,
-        )
-    for key in given:
-        if ONLY_FOR.get(key, "") not in {"", *types}:
-            raise fault(f"{key} is for {ONLY_FOR[key]} controllers", "remove it", *at, key)

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from pydantic import model_validator
-
-from nrs_design.spec.faults import all_of
-from nrs_design.spec.interaction_checks import checks_across
+from nrs_design.spec.check import find_faults, not_together
+from nrs_design.spec.combinations import CHANGING
+from nrs_design.spec.dwell import DwellObstacle
+from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 
 class InteractionDesignSpec(AbstractInteractionSpec):
     """Controllers to be designed for the contact with given environments."""
 
-    def across(self) -> tuple[Callable[[], object], ...]:
-        """Return the checks between parts: contacts, goals, disturbances, the motor, switching."""
-        return checks_across(self)
+    checks = INTERACTION_CHECKS
 
-    @model_validator(mode="after")
-    def _check_across(self) -> InteractionDesignSpec:
-        all_of(*self.across())
-        return self
+    def find_dwell_obstacle(self) -> DwellObstacle | None:
+        """Say why no dwell time can be claimed for this spec, or None."""
+        form = "a dwell time beside {}: not modelled"
+        rows = [not_together(*features, form=form) for features in CHANGING]
+        found = find_faults(rows, self)
+        return DwellObstacle(found[0]["message"], found[0]["remedy"]) if found else None

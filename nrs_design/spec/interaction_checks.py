@@ -1,327 +1,374 @@
-"""What the parts of an interaction design must be for each other."""
+"""What the parts of an interaction design must be for each other: one table."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from functools import partial
 
-from nrs_design.spec.constant_force import check_constant_force
-from nrs_design.spec.controllers import (
-    ControllerSpec,
+from nrs_design.spec.check import Row, each
+from nrs_design.spec.combinations import COMBINATIONS
+from nrs_design.spec.controllers import ControllerSpec, names_in, touched_in
+from nrs_design.spec.faults import Location
+from nrs_design.spec.features import (
+    BLEEDING,
+    CONSTANT_FORCE,
+    COUPLED,
+    HAND,
+    IDLE,
+    LOADED,
+    SATURATED,
+    Touched,
+    touched,
 )
-from nrs_design.spec.coupling import check_coupling
-from nrs_design.spec.dwell import DwellObstacle
-from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.faults import all_of, fault
-from nrs_design.spec.goals import check_applicable
-from nrs_design.spec.initial_force import check_initial_force
-from nrs_design.spec.interaction_parts import AbstractInteractionSpec
-from nrs_design.spec.mixture import check_mixture, check_offsets
-from nrs_design.spec.mode_logic import check_kept
-from nrs_design.spec.motion import check_commands
-from nrs_design.spec.sampled_loop import check_sampled
-from nrs_design.spec.sampling import (
-    check_delay,
-    check_disturbances,
-    check_motor,
-    check_peak,
-)
-from nrs_design.spec.scenario_checks import check_run_names, check_scenario
-from nrs_design.spec.switching import DwellTime, check_names
-from nrs_design.spec.touched import (
-    check_at_once,
-    check_controller_names,
-    check_free,
-    check_hands,
-    check_memories,
-    check_references,
-    check_springs,
-)
+from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec
+from nrs_design.spec.interaction_parts import FREE, MOTION
+from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
+from nrs_design.spec.logic_checks import LOGIC_CHECKS
+from nrs_design.spec.motion import IN_ITS_UNIT, AboutCommands
+from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.references import NO_SUCH, Reference
+from nrs_design.spec.scenario_checks import SCENARIO_CHECKS
+from nrs_design.spec.switching import DwellTime, switching_checks
 
 
-def checks_across(spec: AbstractInteractionSpec) -> tuple[Callable[[], object], ...]:
-    """Return the checks between parts: contacts, goals, disturbances, the motor, switching.
+@dataclass(frozen=True, slots=True)
+class _Of:
+    """A controller in its spec."""
 
-    Each asks for its parts when it is called, see `SpecModel.across`.
-    """
-    return tuple(partial(check, spec) for check in _CHECKS)
+    spec: Spec
+    name: str
+    it: ControllerSpec
 
-
-def _check_mixture(spec: AbstractInteractionSpec) -> None:
-    check_mixture(spec.controllers, spec.environments, spec.idle_states, spec.coordinates)
-
-
-def _check_references(spec: AbstractInteractionSpec) -> None:
-    _check_each(spec, check_references)
+    def misses_its_own(self) -> bool:
+        """Return whether it does not touch what it is designed for."""
+        names, own = touched_in(self.it.contacts), self.it.environment
+        return own is not None and own not in names and self.spec.environments.keys() >= set(names)
 
 
-def _check_free(spec: AbstractInteractionSpec) -> None:
-    check_free(spec.environments)
+def _controllers(spec: Spec) -> Iterator[tuple[Location, _Of]]:
+    for name, controller in spec.controllers.items():
+        yield ("controllers", name), _Of(spec, name, controller)
 
 
-def _check_controller_names(spec: AbstractInteractionSpec) -> None:
-    check_controller_names(spec.controllers)
+def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
+    """Yield the environments that controllers name."""
+    for name, controller in spec.controllers.items():
+        reference = partial(Reference, "environment", choices=spec.environments)
+        if controller.environment is not None:
+            at = ("controllers", name, "environment")
+            yield at, reference(name=controller.environment)
+        # By default the contact is the environment itself.
+        if "contacts" in controller.model_fields_set:
+            for index, contact in enumerate(controller.contacts):
+                for key in names_in(contact):
+                    yield ("controllers", name, "contacts", index), reference(name=key)
 
 
-def _check_own_goals(spec: AbstractInteractionSpec) -> None:
-    """Refuse goals of a controller that do not apply to its law."""
-    all_of(
-        *(
-            partial(check_applicable, c.goals, {c.type}, "controllers", name, "goals")
-            for name, c in spec.controllers.items()
-        )
-    )
+def _contact_mix(spec: Spec) -> tuple[str, ...]:
+    """Two kinds of controllers, and whose states others must say what to do with."""
+    first_name, first = next(iter(spec.controllers.items()))
+    for name, controller in spec.controllers.items():
+        if controller.commands != first.commands:
+            return name, controller.type, first.type, first_name, "impedance"
+    if bleeding := BLEEDING.find(spec):
+        name = str(bleeding)
+        return name, spec.controllers[name].type, first.type, first_name, "pi-force"
+    return ()
 
 
-def _check_springs(spec: AbstractInteractionSpec) -> None:
-    _check_each(spec, check_springs)
+def _other_offset(spec: Spec) -> tuple[str, ...]:
+    """Return a controller whose offset is not that of the first one that has one."""
+    offsets = [(name, c.own_offset) for name, c in spec.controllers.items() if c.own_offset]
+    for name, offset in offsets:
+        if offset != offsets[0][1]:
+            return name, str(offset), offsets[0][0], str(offsets[0][1])
+    return ()
 
 
-def _check_each(
-    spec: AbstractInteractionSpec,
-    check: Callable[[str, ControllerSpec, dict[str, EnvironmentSpec]], None],
-) -> None:
-    """Check every controller against the environments."""
-    environments = spec.environments
-    all_of(*(partial(check, *item, environments) for item in spec.controllers.items()))
+def _restless(spec: Spec) -> tuple[str, ...]:
+    """Return an environment without a rest position, its law, and the others that are touched."""
+    found = list(touched(spec))
+    for item in found:
+        if not item.law.has_rest and len(found) > 1:
+            others = ", ".join(other.name for other in found if other is not item)
+            return item.name, item.law.model, others
+    return ()
 
 
-def _check_disturbances(spec: AbstractInteractionSpec) -> None:
-    check_disturbances(spec.disturbances, spec.sampling)
+def _undriven(spec: Spec) -> str | None:
+    """Return a disturbance that acts on samples."""
+    given = spec.disturbances or ()
+    acting = (key for key, value in given if key != "command" and value is not None)
+    return next(acting, None) if spec.sampling is None else None
 
 
-def _check_peak(spec: AbstractInteractionSpec) -> None:
-    check_peak(spec.goals, spec.disturbances)
+@dataclass(frozen=True, slots=True)
+class _Goals:
+    """Goals of all controllers or of one, and the laws that they are for."""
+
+    it: GoalsSpec
+    types: Collection[str]
+    own: bool
+    creeps: bool
+
+    @property
+    def keys(self) -> list[str]:
+        """Those that are given."""
+        return [key for key, _ in self.it.given()]
+
+    def shared(self) -> str | None:
+        """Return a goal of one controller that is for all."""
+        keys = sorted(OF_THE_CERTIFICATE.intersection(self.keys)) if self.own else ()
+        return next(iter(keys), None)
+
+    def misplaced(self) -> tuple[str, str] | None:
+        """Return a goal for another law, and that law."""
+        laws = ((key, ONLY_FOR[key]) for key in self.keys if key in ONLY_FOR)
+        return next(((key, law) for key, law in laws if law not in self.types), None)
 
 
-def _check_delay(spec: AbstractInteractionSpec) -> None:
-    check_delay(spec.goals, spec.sampling)
+def _common_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
+    laws = {c.type for c in spec.controllers.values() if "goals" in type(c).model_fields}
+    if spec.goals is not None:
+        yield ("goals",), _Goals(spec.goals, laws, False, _creeps(spec))
 
 
-def _check_motor(spec: AbstractInteractionSpec) -> None:
-    check_motor(
-        spec.actuator,
-        spec.sampling,
-        spec.controllers,
-        given_loop=spec.motion_loop.transfer_function is not None,
-        among_axes=spec.coupling is not None,
-        preloaded=_preloaded(spec),
-    )
+def _own_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
+    for name, c in spec.controllers.items():
+        if c.goals is not None:
+            yield ("controllers", name, "goals"), _Goals(c.goals, {c.type}, True, _creeps(spec))
 
 
-def _preloaded(spec: AbstractInteractionSpec) -> list[str]:
-    """Environments that are touched, and known within a preload."""
-    return [
-        name
-        for name, environment in spec.environments.items()
-        if environment.preloaded and name in spec.touched
-    ]
+def _creeps(spec: Spec) -> bool:
+    return spec.sensor is not None and spec.sensor.has_errors
 
 
-def _check_coupling(spec: AbstractInteractionSpec) -> None:
-    check_coupling(
-        spec.coupling,
-        loaded=spec.actuator.load_inertia is not None,
-        disturbed=spec.disturbances is not None,
-        deflection=spec.coordinates == "deflection",
-    )
-
-
-def _check_memories(spec: AbstractInteractionSpec) -> None:
-    check_memories(spec.controllers, spec.environments, spec.coordinates)
-
-
-def _check_offsets(spec: AbstractInteractionSpec) -> None:
-    check_offsets(spec.controllers, spec.idle_states)
-
-
-def _check_preloads(spec: AbstractInteractionSpec) -> None:
-    all_of(*(partial(_check_preload, spec, name) for name in _preloaded(spec)))
-
-
-def _check_preload(spec: AbstractInteractionSpec, name: str) -> None:
-    """Refuse what is not modelled about an environment that is known within a preload."""
-    known = f"{name!r} is known within its preload only"
-    if spec.contact == "losable":
-        raise fault(f"loss of contact is not modelled: {known}", "use `contact: kept`", "contact")
-    if spec.disturbances is not None:
-        raise fault(
-            f"bounds from rest are not modelled: {known}", "remove disturbances", "disturbances"
-        )
-    if spec.coordinates == "force":
-        raise fault(
-            f"force coordinates do not apply to {name!r}: its deflection does not jump",
-            "use `coordinates: deflection`",
-            "coordinates",
-        )
-
-
-def _check_at_once(spec: AbstractInteractionSpec) -> None:
-    all_of(
-        *(
-            partial(check_at_once, *item, spec.environments, spec.contact)
-            for item in spec.controllers.items()
-        )
-    )
-
-
-def _check_common_goals(spec: AbstractInteractionSpec) -> None:
-    """Refuse goals that apply to none of the laws."""
-    with_goals = (c for c in spec.controllers.values() if "goals" in type(c).model_fields)
-    check_applicable(spec.goals, {c.type for c in with_goals}, "goals")
-
-
-def _check_switching_names(spec: AbstractInteractionSpec) -> None:
-    known = spec.contact_names if spec.switching.names_contacts else spec.controllers
-    check_names(spec.switching, known, "controller")
-
-
-def _check_logic(spec: AbstractInteractionSpec) -> None:
-    check_kept(spec.mode_logic, spec.switching, spec.controllers, spec.environments)
-
-
-def _check_dwell_times(spec: AbstractInteractionSpec) -> None:
-    if spec.sampling is not None:
-        return  # Those of a sampled loop are refused as such: no other way to write them helps.
-    all_of(
-        *(
-            partial(_check_dwell_time, dwell, spec.find_dwell_obstacle, ("switching", *at))
-            for at, dwell in spec.switching.dwell_times()
-        )
-    )
-
-
-def _check_scenarios(spec: AbstractInteractionSpec) -> None:
-    """Refuse scenarios that do not fit the rest of the spec."""
-    logic = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
-    given = (spec.controllers, spec.environments, spec.limits.velocity)
-    robot = spec.coupling is not None and spec.coupling.robot is not None
-    all_of(
-        partial(check_run_names, spec.scenarios),
-        *(
-            partial(check_scenario, name, scenario, *given, logic=logic, robot=robot)
-            for name, scenario in spec.scenarios.items()
+_GOALS = (
+    Row[_Goals](
+        "{0}",
+        lambda g: (
+            g.own and next((key for key in sorted(g.keys) if key in OF_THE_CERTIFICATE), None)
         ),
-        lambda: check_commands(
-            spec.actuator.command,
-            {
-                ("scenarios", name, "errors", "friction"): scenario.errors.friction
-                for name, scenario in spec.scenarios.items()
-                if scenario.errors is not None and scenario.errors.friction is not None
-            },
-        ),
-    )
+        "{0} is a goal for all controllers together",
+        "move it to the goals of the spec",
+    ),
+    Row[_Goals](
+        "",
+        lambda g: not g.types and set(g.keys) - OF_THE_CERTIFICATE,
+        "there is no controller that a goal applies to: they are for impedance and force control",
+        "remove goals",
+    ),
+    Row[_Goals](
+        "{0}", lambda g: g.types and g.misplaced(), "{0} is for {1} controllers", "remove it"
+    ),
+    Row[_Goals](
+        "",
+        lambda g: g.it.wants_creep and not g.creeps,
+        "a goal for the creep, and no errors of a sensor that the robot creeps by",
+        "add `sensor: {{bias: 5e-3 N*m}}`, or remove the goal",
+    ),
+)
 
 
-def _check_commands(spec: AbstractInteractionSpec) -> None:
-    """Refuse a gain or a friction about commands that the motor does not take."""
-    loop, disturbances = spec.motion_loop, spec.disturbances
-    written = {
-        ("motion_loop", "derivative_gain"): loop.derivative_gain,
+def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
+    """Yield what is about commands of the motor."""
+    disturbances = spec.disturbances
+    written: dict[Location, Quantity | None] = {
+        ("motion_loop", "derivative_gain"): spec.motion_loop.derivative_gain,
         ("limits", "command"): spec.limits.command,
         ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
     }
-    check_commands(
-        spec.actuator.command, {at: item for at, item in written.items() if item is not None}
-    )
+    for name, run in spec.scenarios.items():
+        friction = None if run.errors is None else run.errors.friction
+        written["scenarios", name, "errors", "friction"] = friction
+    for at, quantity in written.items():
+        if quantity is not None:
+            yield at, AboutCommands(spec.actuator.command, quantity)
 
 
-def _check_contact_names(spec: AbstractInteractionSpec) -> None:
-    """Refuse rules about single contacts where modes are not made one by one."""
-    if not spec.switching.names_contacts:
-        return
-    if spec.flies_like_a_mode:
-        raise fault(
-            "rules of switching about controllers in one contact each say nothing of free motion, "
-            "which is a mode of its own where an admittance has a spring Kt",
-            "name controllers alone in the rules, or use `contact: kept`",
-            "switching",
-        )
-    offset = None if spec.offset == "none" else spec.offset
-    beside = (("idle_states", spec.idle_states), ("sampling", spec.sampling), ("offset", offset))
-    for at, what in beside:
-        if what is not None:
-            raise fault(
-                f"rules of switching about controllers in one contact each, beside {at}, are not "
-                "modelled",
-                f"name controllers alone in the rules, or leave {at} out",
-                "switching",
-            )
+def _dwell_times(spec: Spec) -> Iterator[tuple[Location, DwellTime]]:
+    # Those of a sampled loop are refused as such: no other way to write them helps.
+    if spec.sampling is None:
+        yield from ((("switching", *at), dwell) for at, dwell in spec.switching.dwell_times())
 
 
-def _check_sensor(spec: AbstractInteractionSpec) -> None:
-    """Refuse a filter that is not modelled, errors that are there twice, and goals without any."""
-    sensor = spec.sensor
-    goals = (
-        ("goals", spec.goals),
-        *((f"controllers.{n}", c.goals) for n, c in spec.controllers.items()),
-    )
-    for at, given in goals:
-        errors = sensor is not None and sensor.has_errors
-        if not errors and given is not None and given.wants_creep:
-            raise fault(
-                "a goal for the creep, and no errors of a sensor that the robot creeps by",
-                "add `sensor: {bias: 5e-3 N*m}`, or remove the goal",
-                *at.split("."),
-            )
-    if sensor is None:
-        return
-    if sensor.filter is not None and any(
-        c.commands != "velocity" for c in spec.controllers.values()
-    ):
-        raise fault(
-            "a filter of the force is modelled for impedance controllers only",
-            "leave filter out, or position and force controllers",
-            "sensor",
-            "filter",
-        )
-    if spec.disturbances is not None and spec.disturbances.force_step is not None:
-        raise fault(
-            "the sensor says how far its signal is off, and force_step does, too",
-            "move it to `sensor: {resolution: ...}`",
-            "disturbances",
-            "force_step",
-        )
+def _weightless(spec: Spec) -> tuple[str, Touched] | None:
+    """Return an admittance without inertia in the hand of someone."""
+    hand = HAND.find(spec)
+    for name, controller in spec.controllers.items():
+        inertia = controller.gains().get("Mt")
+        if isinstance(hand, Touched) and inertia is not None and not inertia.min.value:
+            return name, hand
+    return None
 
 
-def _check_dwell_time(
-    dwell: DwellTime, find_obstacle: Callable[[], DwellObstacle | None], at: tuple[str, ...]
-) -> None:
-    """Check that nothing changes during a dwell time."""
-    if dwell.unit != "s":
-        raise fault(f"{dwell.text!r} is not a time", "write seconds, such as '2.76 s'", *at)
-    obstacle = find_obstacle()
-    if obstacle is not None:
-        raise fault(obstacle.message, f"leave {at[1]} out, or {obstacle.remedy}", *at)
+def _contacts(spec: Spec) -> set[object]:
+    return {contact for c in spec.controllers.values() for contact in c.contacts}
 
 
-# In the order in which their faults are told.
-_CHECKS: tuple[Callable[[AbstractInteractionSpec], None], ...] = (
-    _check_mixture,
-    _check_references,
-    _check_free,
-    _check_controller_names,
-    _check_own_goals,
-    _check_springs,
-    _check_disturbances,
-    _check_sensor,
-    _check_peak,
-    _check_commands,
-    _check_delay,
-    _check_motor,
-    check_sampled,
-    check_constant_force,
-    check_initial_force,
-    _check_coupling,
-    _check_memories,
-    check_hands,
-    _check_offsets,
-    _check_preloads,
-    _check_at_once,
-    _check_common_goals,
-    _check_switching_names,
-    _check_contact_names,
-    _check_logic,
-    _check_scenarios,
-    _check_dwell_times,
+INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
+    # Names.
+    *each(_named_environments, NO_SUCH),
+    Row(
+        "environments.free",
+        lambda s: FREE in s.environments,
+        "an environment cannot be called 'free': so are the modes without contact",
+        "call it by what it is, such as `tissue`",
+    ),
+    Row(
+        "controllers.motion",
+        lambda s: MOTION in s.controllers,
+        "a controller cannot be called 'motion': so is the motion loop among the gains and the "
+        "modes",
+        "call it by what it does, such as `insertion`",
+    ),
+    *switching_checks(
+        lambda s: s.switching,
+        lambda s: s.contact_names if s.switching.names_contacts else s.controllers,
+        "controller",
+    ),
+    # Controllers.
+    *each(
+        _controllers,
+        Row[_Of](
+            "contacts",
+            _Of.misses_its_own,
+            "{s.name!r} is designed for {s.it.environment!r}, but that is not among its contacts: "
+            "nothing would be proved about it there",
+            "add {s.it.environment} to contacts, or design it for one of them",
+        ),
+    ),
+    Row(
+        "controllers.{0}.type",
+        lambda s: s.idle_states is None and _contact_mix(s),
+        "{1} is mixed with {2} ({3!r}), and it is not said what the states of {4} controllers do "
+        "meanwhile",
+        "add `idle_states: {{decay: 20 1/s}}`, or use one kind of controller",
+    ),
+    Row(
+        "idle_states",
+        lambda s: IDLE.find(s) and not _contact_mix(s),
+        "idle_states without impedance controllers beside position or force controllers, or "
+        "pi-force controllers beside others",
+        "remove idle_states",
+    ),
+    Row(
+        "controllers.{0}.offset",
+        _other_offset,
+        "{0!r} has offset {1}, {2!r} has {3}: one state cannot hold both",
+        "give all force controllers `offset: {3}`",
+    ),
+    Row(
+        "controllers.{0}.Mt",
+        _weightless,
+        "{1.name!r} is a hand with a mass, whose force depends on itself where the admittance has "
+        "no inertia",
+        "give Mt a smallest value above zero",
+    ),
+    Row(
+        "environments.{0}.model",
+        _restless,
+        "{1} has no rest position, so {0!r} shares no deflection with {2}",
+        "let the controllers touch no other environment, or write a spec for each",
+    ),
+    # Goals.
+    *each(_common_goals, *_GOALS),
+    *each(_own_goals, *_GOALS),
+    Row(
+        "goals.peak_torque",
+        lambda s: (
+            s.goals is not None and s.goals.peak_torque is not None and s.disturbances is None
+        ),
+        "peak_torque is wanted, but nothing is said to disturb the loop",
+        "add `disturbances: {{command: 8 deg/s}}`",
+    ),
+    # The bound holds for what is declared alone: under friction, of a robot that nobody moves.
+    Row(
+        "disturbances",
+        lambda s: (
+            s.goals is not None
+            and s.goals.peak_torque is not None
+            and s.disturbances is not None
+            and s.disturbances.command is None
+        ),
+        "peak_torque is wanted, but the bound would be that of a loop without a command",
+        "add `command: 8 deg/s`",
+    ),
+    Row(
+        "goals.delay",
+        lambda s: s.goals is not None and s.goals.delay is not None and s.sampling is None,
+        "a proof up to a delay is wanted, but the spec has no samples",
+        "add `sampling: {{period: 2 ms, delay: [0, 2]}}`, or use min_delay_margin",
+    ),
+    Row(
+        "goals.constant_force",
+        lambda s: CONSTANT_FORCE.find(s) and s.contact != "losable",
+        "that contact settles under a constant force is shown through its loss",
+        "write `contact: losable`",
+    ),
+    Row(
+        "goals.constant_force",
+        lambda s: (
+            CONSTANT_FORCE.find(s)
+            and (len(_contacts(s)) != 1 or not all(isinstance(c, str) for c in _contacts(s)))
+        ),
+        "a constant force settles at one deflection in one environment: another stiffness moves it",
+        "let all controllers touch the same environment and no other, or remove the goal",
+    ),
+    Row(
+        "goals.initial_force",
+        lambda s: SATURATED.find(s) and s.limits.command is None,
+        "nothing says where the command of the motor saturates",
+        "add `command` to the limits, in {s.actuator.command}, for the error that the gains are "
+        "for",
+    ),
+    # Disturbances, sensor and the motor.
+    Row(
+        "disturbances.{0}",
+        _undriven,
+        "without sampling, {0} is not modelled",
+        "add `sampling: {{period: 2 ms, delay: 1}}`, or name the command alone",
+    ),
+    Row(
+        "disturbances.force_step",
+        lambda s: (
+            s.sensor is not None
+            and s.disturbances is not None
+            and s.disturbances.force_step is not None
+        ),
+        "the sensor says how far its signal is off, and force_step does, too",
+        "move it to `sensor: {{resolution: ...}}`",
+    ),
+    *each(_commands, IN_ITS_UNIT),
+    Row(
+        "coupling.axes",
+        lambda s: (
+            s.coupling is not None
+            and s.disturbances is not None
+            and s.coupling.robot is None
+            and s.coupling.axes is None
+        ),
+        "a bound under disturbances depends on the number of axes, which is not given",
+        "add `axes: 3`, or remove disturbances",
+    ),
+    Row(
+        "coupling",
+        lambda s: COUPLED.find(s) and not LOADED.find(s),
+        "axes act on each other against the inertia of the drives, which is not given",
+        "add `load_inertia: 1.213 kg*m^2` to actuator, or remove coupling",
+    ),
+    # Switching and runs.
+    *LOGIC_CHECKS,
+    *SCENARIO_CHECKS,
+    *each(
+        _dwell_times,
+        Row[DwellTime](
+            "",
+            lambda dwell: dwell.unit != "s",
+            "{s.text!r} is not a time",
+            "write seconds, such as '2.76 s'",
+        ),
+    ),
+    *COMBINATIONS,
 )

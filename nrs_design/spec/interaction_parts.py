@@ -1,10 +1,10 @@
-"""What the spec of an interaction design says, part by part."""
+"""What the spec of an interaction design says, part by part, without checks between the parts."""
 
 from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Discriminator, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.spec.certification import CertificationSpec
@@ -16,25 +16,26 @@ from nrs_design.spec.controllers import (
     touched_in,
 )
 from nrs_design.spec.coupling import CouplingSpec
-from nrs_design.spec.dwell import DwellObstacle, find_changing_contact
 from nrs_design.spec.environment import EnvironmentSpec
+from nrs_design.spec.environment_estimator import EstimatorSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.mode_logic import ModeLogicSpec, rules_of
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.sampling import (
-    DisturbancesSpec,
-    SamplingSpec,
-    takes_motor_ranges,
-)
+from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, LogicalRule
+from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 
 MAX_ENTRIES = 64
+# The contact in the names of the modes of free motion.
+FREE = "free"
+# What the motion controller is called where gains are listed.
+MOTION = "motion"
+ModeLogicSpec = Annotated[ThresholdLogicSpec | EstimatorSpec, Discriminator("type")]
 
 
 class DesignSpec(SpecModel):
@@ -135,11 +136,12 @@ class AbstractInteractionSpec(SpecModel):
                 "there is no mode_logic to take the rules of switching from",
                 "add mode_logic, or write `switching: arbitrary`",
             )
-        given = (info.data[name] for name in ("mode_logic", "controllers", "environments"))
         try:
-            return rules_of(*given)
+            return info.data["mode_logic"].rules_among(
+                info.data["controllers"], info.data["environments"]
+            )
         except PydanticCustomError:
-            # It does not fit: `check_kept` says so at its place.
+            # It does not fit: `LOGIC_CHECKS` say so at its place.
             return "arbitrary"
 
     @property
@@ -176,9 +178,10 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def takes_motor_ranges(self) -> bool:
         """Whether a proof can be about ranges of the actuator."""
-        given = self.motion_loop.transfer_function is not None
+        driven = all(c.commands == "velocity" for c in self.controllers.values())
         dwells = any(True for _ in self.switching.dwell_times())
-        return not dwells and takes_motor_ranges(self.sampling, self.controllers, given_loop=given)
+        given = self.motion_loop.transfer_function is not None
+        return not given and not dwells and (self.sampling is not None or driven)
 
     @property
     def has_ranges(self) -> bool:
@@ -194,21 +197,4 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def flies_like_a_mode(self) -> bool:
         """Whether free motion is a mode like others, which no rule of switching is about."""
-        return self.contact == "losable" and any(
-            "Kt" in c.gains() for c in self.controllers.values()
-        )
-
-    def find_dwell_obstacle(self) -> DwellObstacle | None:
-        """Say why no dwell time can be claimed for this spec, or None."""
-        if self.flies_like_a_mode:
-            return DwellObstacle(
-                "a dwell time and loss of contact exclude each other where an admittance has a "
-                "spring Kt: contact is lost and made again during the dwell time",
-                "use `contact: kept`",
-            )
-        return find_changing_contact(
-            self.actuator,
-            self.controllers,
-            self.environments,
-            by_contact=self.switching.names_contacts,
-        )
+        return self.contact == "losable" and any(c.sprung for c in self.controllers.values())

@@ -24,15 +24,10 @@ from nrs_design.spec.document import (
     read_source,
     to_data,
 )
-from nrs_design.spec.faults import (
-    MAX_LISTED,
-    did_you_mean,
-    faults_between,
-    file_faults,
-    place_of,
-)
+from nrs_design.spec.faults import MAX_LISTED, did_you_mean
 from nrs_design.spec.meaning import hash_meaning
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.places import faults_between, file_faults, place_of
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 from pydantic_core import CoreSchema, core_schema
+
+from nrs_design.spec.check import Row, run_checks
 
 
 class SpecModel(BaseModel):
@@ -17,13 +19,14 @@ class SpecModel(BaseModel):
         extra="forbid", frozen=True, arbitrary_types_allowed=True, defer_build=True
     )
 
-    def across(self) -> tuple[Callable[[], object], ...]:
-        """Return the checks between parts; none by default.
+    # What must not be, whatever its fields are for themselves. Each row asks for the fields that it
+    # is about only, so that faults between valid fields are told although others are not valid.
+    checks: ClassVar[tuple[Row[Any], ...]] = ()
 
-        Each asks for the parts that it is about when it is called, and reports a fault if they do
-        not fit: so the faults between valid parts can be told although others are not valid.
-        """
-        return ()
+    @model_validator(mode="after")
+    def _run_checks(self) -> Self:
+        run_checks(self.checks, self)
+        return self
 
 
 class ReadBy:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import partial
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from dataclasses import dataclass
+from operator import attrgetter
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.faults import all_of, fault
+from nrs_design.spec.check import Row, each
+from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
@@ -49,6 +51,47 @@ class ActuatorIntervals(SpecModel):
     )
 
 
+@dataclass(frozen=True, slots=True)
+class AboutCommands:
+    """A quantity that holds a unit of commands once, and the unit that the motor takes."""
+
+    command: str
+    it: Quantity
+
+    def other_unit(self) -> tuple[str, str] | None:
+        """Return what is written, and its unit, if that is not the motor's."""
+        held = command_unit(self.it.dimension)
+        return None if held == self.command else (quoted(self.it.text), held)
+
+
+IN_ITS_UNIT = Row[AboutCommands](
+    "",
+    AboutCommands.other_unit,
+    "{0} is about commands in {1}, and the motor takes {s.command}",
+    "write it in {s.command}; a spec of kind interaction-design may say `command: {1}` in its "
+    "actuator, and then writes all that is about commands in {1}",
+)
+
+
+def commands_in(command: str, *places: str) -> tuple[Row[Any], ...]:
+    """Return the checks that quantities about commands are in the unit that the motor takes.
+
+    Parameters
+    ----------
+    command : str
+        The unit.
+    *places : str
+        Of the quantities, as keys with dots between.
+    """
+
+    def parts(said: object) -> Iterator[tuple[Location, AboutCommands]]:
+        for place in places:
+            if (quantity := attrgetter(place)(said)) is not None:
+                yield tuple(place.split(".")), AboutCommands(command, quantity)
+
+    return each(parts, IN_ITS_UNIT)
+
+
 class ActuatorSpec(IdentifiedRangesSpec):
     """Velocity actuator ``theta_m/delta = Km/(s (tau s + 1))`` (thesis 4.1)."""
 
@@ -78,53 +121,30 @@ class ActuatorSpec(IdentifiedRangesSpec):
         "the nominal values",
     )
 
-    @model_validator(mode="after")
-    def _check_commands(self) -> ActuatorSpec:
-        written: dict[tuple[int | str, ...], Quantity] = {("gain",): self.gain.nominal}
-        if self.intervals is not None:
-            written |= {("intervals", "gain", i): end for i, end in enumerate(self.intervals.gain)}
-        check_commands(self.command, written)
-        return self
+    def _about_commands(self) -> Iterator[tuple[Location, AboutCommands]]:
+        yield ("gain",), AboutCommands(self.command, self.gain.nominal)
+        for i, end in enumerate(self.intervals.gain if self.intervals else ()):
+            yield ("intervals", "gain", i), AboutCommands(self.command, end)
 
-    @model_validator(mode="after")
-    def _check_intervals(self) -> ActuatorSpec:
+    def _missed(self, name: str) -> tuple[str, ...]:
+        """Return an interval and the value that it does not hold."""
         if self.intervals is None:
-            return self
-        for name in ("gain", "time_constant"):
-            value = getattr(self, name).nominal
-            low, high = getattr(self.intervals, name)
-            if is_less(value, low) or is_less(high, value):
-                raise fault(
-                    f"the interval [{low.text}, {high.text}] does not hold {value.text!r}",
-                    "correct one of them",
-                    "intervals",
-                    name,
-                )
-        return self
+            return ()
+        value, (low, high) = getattr(self, name).nominal, getattr(self.intervals, name)
+        alike = value.dimension == low.dimension == high.dimension
+        outside = alike and (is_less(value, low) or is_less(high, value))
+        return (name, low.text, high.text, value.text) if outside else ()
 
-
-def check_commands(command: CommandUnit, written: Mapping[tuple[int | str, ...], Quantity]) -> None:
-    """Refuse quantities about commands in another unit than that of the motor.
-
-    Parameters
-    ----------
-    command : {"rpm", "V", "A", "counts"}
-        The unit of the motor.
-    written : mapping
-        Quantities that hold a unit of commands once, by their places.
-    """
-    all_of(*(partial(_check_command, command, quantity, at) for at, quantity in written.items()))
-
-
-def _check_command(command: CommandUnit, quantity: Quantity, at: tuple[int | str, ...]) -> None:
-    held = command_unit(quantity.dimension)
-    if held != command:
-        raise fault(
-            f"{quoted(quantity.text)} is about commands in {held}, and the motor takes {command}",
-            f"write it in {command}; a spec of kind interaction-design may say `command: {held}` "
-            f"in its actuator, and then writes all that is about commands in {held}",
-            *at,
-        )
+    checks = (
+        *IdentifiedRangesSpec.checks,
+        *each(_about_commands, IN_ITS_UNIT),
+        Row(
+            "intervals.{0}",
+            lambda s: s._missed("gain") or s._missed("time_constant"),
+            "the interval [{1}, {2}] does not hold {3!r}",
+            "correct one of them",
+        ),
+    )
 
 
 class TransferFunctionSpec(SpecModel):
@@ -137,21 +157,20 @@ class TransferFunctionSpec(SpecModel):
         description="denominator coefficients, exact numbers, highest power of s first"
     )
 
-    @model_validator(mode="after")
-    def _check_proper(self) -> TransferFunctionSpec:
-        for name, coefficients in (
-            ("numerator", self.numerator),
-            ("denominator", self.denominator),
-        ):
-            if coefficients[0] == 0:
-                raise fault("the highest coefficient is zero", "leave it out", name, 0)
-        if len(self.numerator) >= len(self.denominator):
-            raise fault(
-                "the transfer function is not strictly proper",
-                "give the denominator a higher degree than the numerator",
-                "numerator",
-            )
-        return self
+    checks = (
+        Row(
+            "{0}.0",
+            lambda s: next((k for k in ("numerator", "denominator") if not getattr(s, k)[0]), None),
+            "the highest coefficient is zero",
+            "leave it out",
+        ),
+        Row(
+            "numerator",
+            lambda s: len(s.numerator) >= len(s.denominator),
+            "the transfer function is not strictly proper",
+            "give the denominator a higher degree than the numerator",
+        ),
+    )
 
 
 class MotionLoopSpec(SpecModel):

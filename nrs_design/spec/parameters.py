@@ -6,7 +6,7 @@ import re
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec.affine import Affine
@@ -15,6 +15,7 @@ from nrs_design.spec.expression import EXPRESSION_PATTERN, parse_affine
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.range_checks import RANGE_CHECKS
 
 PARAMETER_PATTERN = "^[A-Za-z][A-Za-z0-9_]{0,31}$"
 MAX_PARAMETERS = 16
@@ -112,19 +113,4 @@ class ParameterSpec(SpecModel):
         """Whether the range is a single value."""
         return self.range[0] == self.range[1]
 
-    @model_validator(mode="after")
-    def _check_order(self) -> ParameterSpec:
-        low, high = self.range
-        if high < low:
-            raise fault(
-                f"the range ends at {high}, below its start {low}",
-                "write [lowest, highest]",
-                "range",
-            )
-        if not low <= self.nominal <= high:
-            raise fault(
-                f"nominal {self.nominal} is outside the range [{low}, {high}]",
-                "widen the range or correct the nominal value",
-                "nominal",
-            )
-        return self
+    checks = RANGE_CHECKS

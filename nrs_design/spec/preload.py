@@ -17,13 +17,14 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
 
 from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
 from nrs_design.spec.interval import Interval
 from nrs_design.spec.model import SpecModel
+from nrs_design.spec.range_checks import RANGE_CHECKS
 
 # Powers are enclosed in integers with as many digits as the denominator is large.
 FINEST = 1000
@@ -79,16 +80,7 @@ class ExponentSpec(SpecModel):
         description=_RANGE,
     )
 
-    @model_validator(mode="after")
-    def _check_order(self) -> ExponentSpec:
-        low, high = self.range
-        if not low <= self.nominal <= high:
-            raise fault(
-                f"nominal {self.nominal} is not within the range [{low}, {high}]",
-                "write [lowest, highest] around the nominal exponent",
-                "range",
-            )
-        return self
+    checks = RANGE_CHECKS
 
 
 RangedExponent = Annotated[

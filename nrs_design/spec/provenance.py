@@ -6,11 +6,11 @@ import hashlib
 import json
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from nrs_design.spec.faults import fault
+from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Hash, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.plausible import unusual
@@ -70,15 +70,20 @@ class IdentifiedSpec(SpecModel):
         "unusual sizes: one line, which is printed with every proof; the gate then passes",
     )
 
-    @model_validator(mode="after")
-    def _check_acceptance(self) -> Self:
-        if self.accept_doubt is None:
-            return self
-        if not self.doubts and not unusual(self):
-            raise fault("there are no doubts to accept", "remove accept_doubt", "accept_doubt")
-        if not self.accept_doubt.strip():
-            raise fault("no reason is given", "say in one line why", "accept_doubt")
-        return self
+    checks: ClassVar[tuple[Row[Any], ...]] = (
+        Row(
+            "accept_doubt",
+            lambda s: s.accept_doubt is not None and not s.doubts and not unusual(s),
+            "there are no doubts to accept",
+            "remove accept_doubt",
+        ),
+        Row(
+            "accept_doubt",
+            lambda s: s.accept_doubt is not None and not s.accept_doubt.strip(),
+            "no reason is given",
+            "say in one line why",
+        ),
+    )
 
 
 class IdentifiedRangesSpec(IdentifiedSpec):
@@ -91,16 +96,16 @@ class IdentifiedRangesSpec(IdentifiedSpec):
         "changed by hand since is refused",
     )
 
-    @model_validator(mode="after")
-    def _check_id(self) -> Self:
-        if self.range_id not in (None, self.values_id()):
-            raise fault(
-                "the values are not those that range_covers and range_id are about: they were "
-                "changed since they were identified",
-                "identify them again, or remove range_covers and range_id",
-                "range_id",
-            )
-        return self
+    checks: ClassVar[tuple[Row[Any], ...]] = (
+        *IdentifiedSpec.checks,
+        Row(
+            "range_id",
+            lambda s: s.range_id not in (None, s.values_id()),
+            "the values are not those that range_covers and range_id are about: they were changed "
+            "since they were identified",
+            "identify them again, or remove range_covers and range_id",
+        ),
+    )
 
     def values_id(self) -> str:
         """Return the SHA-256 of what identification writes, whatever the layout of the text."""

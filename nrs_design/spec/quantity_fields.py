@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from nrs_design.errors import SpecError
@@ -18,9 +18,9 @@ from nrs_design.spec.quantity import (
     Quantity,
     QuantityKind,
     checked_kind,
-    is_less,
     parse_quantity,
 )
+from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS
 
 
 def read_quantity(
@@ -112,24 +112,13 @@ AnyQuantity = Annotated[
 ]
 
 
-def check_order(least: Quantity, largest: Quantity) -> None:
-    """Refuse a ``max`` below its ``min``."""
-    if is_less(largest, least):
-        raise fault(
-            f"max {quoted(largest.text)} is below min {quoted(least.text)}", "swap them", "max"
-        )
-
-
 class Bounds(SpecModel):
     """Closed interval."""
 
     min: AnyQuantity = Field(description="smallest admissible value")
     max: AnyQuantity = Field(description="largest admissible value")
 
-    @model_validator(mode="after")
-    def _check_order(self) -> Bounds:
-        check_order(self.min, self.max)
-        return self
+    checks = BOUND_CHECKS
 
     @property
     def fixed(self) -> bool:
@@ -149,25 +138,7 @@ class RangedQuantity(SpecModel):
         description="[lowest, highest] value that the proof covers; default: the nominal one",
     )
 
-    @model_validator(mode="after")
-    def _check_order(self) -> RangedQuantity:
-        low, high = self.range
-        if len({q.dimension for q in (self.nominal, low, high)}) > 1:
-            raise fault("nominal and range have different units", "use one unit", "range")
-        if is_less(high, low):
-            raise fault(
-                f"the range ends at {quoted(high.text)}, below its start {quoted(low.text)}",
-                "write [lowest, highest]",
-                "range",
-            )
-        if is_less(self.nominal, low) or is_less(high, self.nominal):
-            raise fault(
-                f"nominal {quoted(self.nominal.text)} is outside the range "
-                f"[{low.text}, {high.text}]",
-                "widen the range or correct the nominal value",
-                "nominal",
-            )
-        return self
+    checks = RANGE_CHECKS
 
     @property
     def fixed(self) -> bool:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from math import sin
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema
 
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
-from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, check_commands
-from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
     Angle,
@@ -79,17 +80,20 @@ class TensorSpec(SpecModel):
         default=None, description="entry (y, z) of the tensor in kg*m^2; default 0"
     )
 
-    @model_validator(mode="after")
-    def _check_triangle(self) -> TensorSpec:
+    def _excess(self) -> str | None:
+        """Return the moment that exceeds the sum of the two others."""
         moments = {"xx": self.xx.si, "yy": self.yy.si, "zz": self.zz.si}
         largest = max(moments, key=lambda name: moments[name])
-        if moments[largest] > sum(moments.values()) - moments[largest]:
-            raise fault(
-                "one moment exceeds the sum of the two others: no body has that inertia",
-                "check the three moments",
-                largest,
-            )
-        return self
+        return largest if 2 * moments[largest] > sum(moments.values()) else None
+
+    checks = (
+        Row(
+            "{0}",
+            _excess,
+            "one moment exceeds the sum of the two others: no body has that inertia",
+            "check the three moments",
+        ),
+    )
 
 
 class BodySpec(SpecModel):
@@ -107,15 +111,14 @@ class BodySpec(SpecModel):
         default=None, description="inertia about the center of mass, with `inertia: tensor`"
     )
 
-    @model_validator(mode="after")
-    def _check_tensor(self) -> BodySpec:
-        if (self.inertia == "tensor") != (self.tensor is not None):
-            raise fault(
-                "`inertia: tensor` and `tensor` go together",
-                "give both, or `inertia: slender-rod` alone",
-                "inertia",
-            )
-        return self
+    checks = (
+        Row(
+            "inertia",
+            lambda s: (s.inertia == "tensor") != (s.tensor is not None),
+            "`inertia: tensor` and `tensor` go together",
+            "give both, or `inertia: slender-rod` alone",
+        ),
+    )
 
 
 class LegSpec(SpecModel):
@@ -158,18 +161,14 @@ class LegsSpec(SpecModel):
         description="leg of theta3, its crank angle; its arm is rigid with the platform"
     )
 
-    @model_validator(mode="after")
-    def _check_axes(self) -> LegsSpec:
-        from math import sin
-
-        if abs(sin(self.left.azimuth.si - self.right.azimuth.si)) < 1e-6:
-            raise fault(
-                "the base axes of the side legs are parallel: they cannot point the endoscope",
-                "give them different azimuths",
-                "right",
-                "azimuth",
-            )
-        return self
+    checks = (
+        Row(
+            "right.azimuth",
+            lambda s: abs(sin(s.left.azimuth.si - s.right.azimuth.si)) < 1e-6,
+            "the base axes of the side legs are parallel: they cannot point the endoscope",
+            "give them different azimuths",
+        ),
+    )
 
 
 class PlatformSpec(BodySpec):
@@ -224,16 +223,7 @@ class DriveSpec(SpecModel):
         "saturates there",
     )
 
-    @model_validator(mode="after")
-    def _check_commands(self) -> DriveSpec:
-        written: dict[tuple[int | str, ...], Quantity] = {
-            ("gain",): self.gain,
-            ("coulomb_friction",): self.coulomb_friction,
-        }
-        if self.largest_command is not None:
-            written["largest_command",] = self.largest_command
-        check_commands(_DRIVEN_BY, written)
-        return self
+    checks = commands_in(_DRIVEN_BY, "gain", "coulomb_friction", "largest_command")
 
 
 class RobotControlSpec(SpecModel):
@@ -242,12 +232,7 @@ class RobotControlSpec(SpecModel):
     motion_loop: MotionLoopSpec = Field(description="the position loop around each motor")
     sample_period: Duration = Field(description="time between two control ticks, in s")
 
-    @model_validator(mode="after")
-    def _check_commands(self) -> RobotControlSpec:
-        Kd = self.motion_loop.derivative_gain
-        if Kd is not None:
-            check_commands(_DRIVEN_BY, {("motion_loop", "derivative_gain"): Kd})
-        return self
+    checks = commands_in(_DRIVEN_BY, "motion_loop.derivative_gain")
 
 
 class BalancedLegSpec(SpecModel):

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
 from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.controllers import ControllerSpec
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import ReadBy, SpecModel
-from nrs_design.spec.motion import ActuatorSpec
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
 from nrs_design.spec.units import command_unit
@@ -113,9 +110,17 @@ class SamplingSpec(IdentifiedSpec):
         ratio = max(self.period.exact, self.outer) / self.step
         if ratio.denominator != 1:
             return "neither period is a whole number of the other"
-        if ratio > LARGEST_RATIO:
-            return f"one period is {ratio} of the other"
-        return None
+        return f"one period is {ratio} of the other" if ratio > LARGEST_RATIO else None
+
+    checks = (
+        *IdentifiedSpec.checks,
+        Row(
+            "outer_period",
+            find_odd_periods,
+            "{0}",
+            f"give 1 to {LARGEST_RATIO} periods of one loop to a period of the other",
+        ),
+    )
 
 
 class DisturbancesSpec(SpecModel):
@@ -160,139 +165,11 @@ class DisturbancesSpec(SpecModel):
             if quantity is not None and quantity.value
         }
 
-
-def check_disturbances(disturbances: DisturbancesSpec | None, sampling: object) -> None:
-    """Refuse disturbances that need a sampled loop without one, and none at all."""
-    if disturbances is None:
-        return
-    if sampling is None:
-        for key, value in disturbances:
-            if key != "command" and value is not None:
-                raise fault(
-                    f"without sampling, {key} is not modelled",
-                    "add `sampling: {period: 2 ms, delay: 1}`, or name the command alone",
-                    "disturbances",
-                    key,
-                )
-    if not disturbances.bounds() and disturbances.largest_angle is None:
-        raise fault("no disturbance is named", "name one, or remove disturbances", "disturbances")
-
-
-def check_peak(goals: GoalsSpec | None, disturbances: DisturbancesSpec | None) -> None:
-    """Refuse a goal for the torque where nothing is said to cause one, or not of what moves it.
-
-    The bound holds for what is declared alone: under friction, of a robot that nobody moves.
-    """
-    if goals is None or goals.peak_torque is None:
-        return
-    if disturbances is None:
-        raise fault(
-            "peak_torque is wanted, but nothing is said to disturb the loop",
-            "add `disturbances: {command: 8 deg/s}`",
-            "goals",
-            "peak_torque",
-        )
-    if disturbances.command is None:
-        raise fault(
-            "peak_torque is wanted, but the bound would be that of a loop without a command",
-            "add `command: 8 deg/s`",
-            "disturbances",
-        )
-
-
-def takes_motor_ranges(
-    sampling: SamplingSpec | None, controllers: Mapping[str, ControllerSpec], *, given_loop: bool
-) -> bool:
-    """Tell whether the modes take up ranges of the actuator.
-
-    Parameters
-    ----------
-    sampling, controllers, given_loop
-        As in `check_motor`.
-    """
-    driven = all(c.commands == "velocity" for c in controllers.values())
-    return not given_loop and (sampling is not None or driven)
-
-
-def check_delay(goals: GoalsSpec | None, sampling: SamplingSpec | None) -> None:
-    """Refuse a goal for the delay where no force sample has an age."""
-    if goals is not None and goals.delay is not None and sampling is None:
-        raise fault(
-            "a proof up to a delay is wanted, but the spec has no samples",
-            "add `sampling: {period: 2 ms, delay: [0, 2]}`, or use min_delay_margin",
-            "goals",
-            "delay",
-        )
-
-
-def check_motor(
-    actuator: ActuatorSpec,
-    sampling: SamplingSpec | None,
-    controllers: Mapping[str, ControllerSpec],
-    *,
-    given_loop: bool,
-    among_axes: bool = False,
-    preloaded: Collection[str] = (),
-) -> None:
-    """Refuse ranges and a load of the actuator where the modes do not take them up.
-
-    Parameters
-    ----------
-    actuator : ActuatorSpec
-        With or without ranges.
-    sampling : SamplingSpec or None
-        The processor, where there is one.
-    controllers : mapping
-        By name.
-    given_loop : bool
-        Whether the spec states the closed motion loop itself.
-    among_axes : bool
-        Whether other axes act on this one, against the inertia of its drive.
-    preloaded : collection of str
-        Touched environments with a preload.
-    """
-    ranged = [n for n in ("gain", "time_constant") if not getattr(actuator, n).fixed]
-    loaded = ["load_inertia"] if actuator.load_inertia is not None else []
-    others = [n for n, c in controllers.items() if c.commands != "velocity"]
-    for name in (*ranged, *loaded):
-        what = f"the {name} has a range" if name in ranged else "there is a load_inertia"
-        drop = "give its nominal value only" if name in ranged else "remove it"
-        if given_loop:
-            raise fault(
-                f"{what}, but the spec states the closed motion loop itself",
-                f"{drop}, or leave transfer_function out",
-                "actuator",
-                name,
-            )
-        if sampling is None and others and among_axes and name in loaded:
-            raise fault(
-                "in continuous time, axes that act on each other are modelled for impedance "
-                f"controllers alone, and {others[0]!r} is not one",
-                "prove the sampled loop: add `sampling: {period: 2 ms, delay: 0}`; or remove "
-                "coupling and load_inertia, or use impedance controllers",
-                "coupling",
-            )
-        if sampling is None and others:
-            raise fault(
-                f"{what}, which is modelled for impedance controllers alone, and {others[0]!r} is "
-                "none",
-                f"{drop}, or use impedance controllers"
-                + (", or prove the sampled loop: add `sampling`" if name in ranged else ""),
-                "actuator",
-                name,
-            )
-        if name in loaded and ranged and preloaded:
-            raise fault(
-                f"a motor that carries what is touched rests elsewhere for every {ranged[0]}: "
-                f"under the preload of {next(iter(preloaded))} there is no rest",
-                f"leave load_inertia out, or give the nominal {ranged[0]} only",
-                "actuator",
-                name,
-            )
-        if sampling is not None and name in loaded and not among_axes:
-            raise fault(
-                "the load of the motor is not modelled in the sampled loop",
-                "leave load_inertia or sampling out",
-                "actuator",
-                name,
-            )
+    checks = (
+        Row(
+            "",
+            lambda s: not s.bounds() and s.largest_angle is None,
+            "no disturbance is named",
+            "name one, or remove disturbances",
+        ),
+    )

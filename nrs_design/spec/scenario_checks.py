@@ -1,146 +1,188 @@
-"""Whether a scenario fits the rest of its spec."""
+"""Whether scenarios fit the rest of their spec: one table."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.faults import did_you_mean, fault
-from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.scenarios import AXES, CommandProfileSpec, ScenarioSpec
+from nrs_design.spec.check import Row, each
+from nrs_design.spec.faults import Location
+from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
+from nrs_design.spec.references import NO_SUCH, Reference
+from nrs_design.spec.scenarios import AXES, ScenarioSpec, SurfaceSpec
 
 
-def check_run_names(scenarios: Mapping[str, ScenarioSpec]) -> None:
-    """Refuse a scenario that is called as one axis of another, ``NAME.theta1``."""
-    for name in scenarios:
+def _axis_of_another(spec: Spec) -> tuple[str, str] | None:
+    """Return a scenario that is called as one axis of another, ``NAME.theta1``."""
+    for name in spec.scenarios:
         whole, _, axis = name.rpartition(".")
-        if axis in AXES and whole in scenarios and scenarios[whole].axes is not None:
-            raise fault(
-                f"{name!r} is the name of a run of {whole!r}",
-                "give it another name",
-                "scenarios",
-                name,
-            )
+        if axis in AXES and whole in spec.scenarios and spec.scenarios[whole].axes is not None:
+            return name, whole
+    return None
 
 
-def check_scenario(
-    name: str,
-    scenario: ScenarioSpec,
-    controllers: Mapping[str, Any],
-    environments: Mapping[str, Any],
-    largest: Quantity,
-    *,
-    logic: bool,
-    robot: bool = False,
-) -> None:
-    """Refuse a scenario that does not fit the rest of its spec.
-
-    Parameters
-    ----------
-    name : str
-        Of the scenario.
-    scenario : ScenarioSpec
-        As written.
-    controllers, environments : mapping
-        Of the spec, by name.
-    largest : Quantity
-        Limit of the commanded velocity.
-    logic : bool
-        Whether the spec has a mode logic of thresholds.
-    robot : bool
-        Whether the spec names a robot whose links couple its axes.
-    """
-    given, at = (controllers, environments, largest), ("scenarios", name)
-    if scenario.axes is None:
-        _check_axis(scenario, *given, at, logic=logic)
-        return
-    if not robot:
-        raise fault(
-            "three axes move on the links of a robot, and the spec names none",
-            "add `coupling: {robot: arm.nrs.yaml}`, or remove axes",
-            *at,
-            "axes",
-        )
-    if scenario.start is not None:
-        raise fault("three axes begin in a pose", "write axes: {pose: ...}", *at, "start")
-    for axis in AXES:
-        alone = scenario.of_axis(axis)
-        _check_axis(alone, *given, (*at, "axes", axis), logic=logic)
+def _of_three_axes(spec: Spec) -> Iterator[tuple[Location, ScenarioSpec]]:
+    for name, scenario in spec.scenarios.items():
+        if scenario.axes is not None:
+            yield ("scenarios", name), scenario
 
 
-def _check_axis(
-    scenario: ScenarioSpec,
-    controllers: Mapping[str, Any],
-    environments: Mapping[str, Any],
-    largest: Quantity,
-    at: tuple[str | int, ...],
-    *,
-    logic: bool,
-) -> None:
-    _check_velocity(scenario.command, largest, at)
-    for i, surface in enumerate(scenario.surfaces):
-        for j, name in enumerate((surface.environment, *surface.beside)):
-            part: tuple[str | int, ...] = ("beside", j - 1) if j else ("environment",)
-            if name not in environments:
-                remedy = did_you_mean(name, environments)
-                raise fault(f"there is no environment {name!r}", remedy, *at, "surfaces", i, *part)
-            if surface.beside and environments[name].preloaded:
-                raise fault(
-                    f"{name} is not linear, and environments of one body are",
-                    "leave beside out, or name linear environments",
-                    *(*at, "surfaces", i, *part),
-                )
-        start = 0.0 if scenario.start is None else scenario.start.si
-        depth = start - surface.at.si if surface.side == "above" else surface.at.si - start
-        if depth > 0:
-            raise fault(
-                f"the axis rests inside {surface.environment!r} at the start",
-                f"move the surface beyond {start:.6g} rad, or the start out of it",
-                *at,
-                "surfaces",
-                i,
-                "at",
-            )
-    if scenario.control is None:
-        return
-    for place, controller in scenario.control.named.items():
-        if controller not in controllers:
-            remedy = did_you_mean(controller, controllers)
-            raise fault(f"there is no controller {controller!r}", remedy, *at, "control", *place)
-    for environment in scenario.control.contact or {}:
-        if environment not in environments:
-            remedy = did_you_mean(environment, environments)
-            place = (*at, "control", "contact", environment)
-            raise fault(f"there is no environment {environment!r}", remedy, *place)
-    if scenario.control.logic is not None and not logic:
-        raise fault(
+def _axes(spec: Spec) -> Iterator[tuple[Location, ScenarioSpec]]:
+    """Yield what each axis does by itself."""
+    for name, scenario in spec.scenarios.items():
+        if scenario.axes is None:
+            yield ("scenarios", name), scenario
+        else:
+            for axis in AXES:
+                yield ("scenarios", name, "axes", axis), scenario.of_axis(axis)
+
+
+def _names(spec: Spec) -> Iterator[tuple[Location, Reference]]:
+    """Yield the environments and controllers that scenarios name."""
+    for at, axis in _axes(spec):
+        for i, surface in enumerate(axis.surfaces):
+            at_surface = (*at, "surfaces", i)
+            of_surface = {("environment",): surface.environment} | {
+                ("beside", j): name for j, name in enumerate(surface.beside)
+            }
+            for key, name in of_surface.items():
+                yield (*at_surface, *key), Reference("environment", name, spec.environments)
+        if axis.control is None:
+            continue
+        for place, name in axis.control.named.items():
+            yield (*at, "control", *place), Reference("controller", name, spec.controllers)
+        for name in axis.control.contact or ():
+            place = (*at, "control", "contact", name)
+            yield place, Reference("environment", name, spec.environments)
+
+
+@dataclass(frozen=True, slots=True)
+class _Surface:
+    """One surface that an axis meets."""
+
+    spec: Spec
+    axis: ScenarioSpec
+    it: SurfaceSpec
+
+    @property
+    def start(self) -> float:
+        """Angle of the axis at first, in rad."""
+        return 0.0 if self.axis.start is None else self.axis.start.si
+
+    @property
+    def depth(self) -> float:
+        """How deep below the surface that is, in rad."""
+        depth = self.start - self.it.at.si
+        return depth if self.it.side == "above" else -depth
+
+    def preloaded(self) -> str | None:
+        """Return an environment of one body with others that is not linear."""
+        names = (self.it.environment, *self.it.beside) if self.it.beside else ()
+        laws = ((name, self.spec.environments.get(name)) for name in names)
+        return next((name for name, law in laws if law is not None and law.preloaded), None)
+
+
+def _surfaces(spec: Spec) -> Iterator[tuple[Location, _Surface]]:
+    for at, axis in _axes(spec):
+        for i, surface in enumerate(axis.surfaces):
+            yield (*at, "surfaces", i), _Surface(spec, axis, surface)
+
+
+@dataclass(frozen=True, slots=True)
+class _Velocity:
+    """A velocity that is commanded, and the limit, in rad/s."""
+
+    size: float
+    limit: float
+    text: str
+
+    # The same number in another unit may be a rounding above.
+    def is_beyond(self) -> bool:
+        return self.size > self.limit * (1 + 1e-12)
+
+
+def _velocities(spec: Spec) -> Iterator[tuple[Location, _Velocity]]:
+    limit = spec.limits.velocity
+    for at, axis in _axes(spec):
+        written: dict[Location, float] = {}
+        command = axis.command
+        if command.constant is not None:
+            written["constant",] = command.constant.si
+        for i, (_, quantity) in enumerate(command.points or ()):
+            written["points", i, 1] = quantity.si
+        if command.sinusoid is not None:
+            offset = 0.0 if command.sinusoid.offset is None else command.sinusoid.offset.si
+            written["sinusoid",] = abs(offset) + command.sinusoid.amplitude.si
+        for place, size in written.items():
+            yield (*at, "command", *place), _Velocity(abs(size), limit.si, quoted(limit.text))
+
+
+def _logic_of_runs(spec: Spec) -> Iterator[tuple[Location, bool]]:
+    """Yield runs that the mode logic controls, with whether there is one of thresholds."""
+    there = spec.mode_logic is not None and spec.mode_logic.thresholds is not None
+    for at, axis in _axes(spec):
+        if axis.control is not None and axis.control.logic is not None:
+            yield (*at, "control", "logic"), there
+
+
+SCENARIO_CHECKS: tuple[Row[Spec], ...] = (
+    Row(
+        "scenarios.{0}",
+        _axis_of_another,
+        "{0!r} is the name of a run of {1!r}",
+        "give it another name",
+    ),
+    Row(
+        "scenarios.{0}.axes",
+        lambda s: (
+            (s.coupling is None or s.coupling.robot is None)
+            and next((name for name, run in s.scenarios.items() if run.axes is not None), None)
+        ),
+        "three axes move on the links of a robot, and the spec names none",
+        "add `coupling: {{robot: arm.nrs.yaml}}`, or remove axes",
+    ),
+    *each(
+        _of_three_axes,
+        Row[ScenarioSpec](
+            "start",
+            lambda run: run.start is not None,
+            "three axes begin in a pose",
+            "write axes: {{pose: ...}}",
+        ),
+    ),
+    *each(_names, NO_SUCH),
+    *each(
+        _surfaces,
+        Row[_Surface](
+            "",
+            _Surface.preloaded,
+            "{0} is not linear, and environments of one body are",
+            "leave beside out, or name linear environments",
+        ),
+        Row[_Surface](
+            "at",
+            lambda x: x.depth > 0,
+            "the axis rests inside {s.it.environment!r} at the start",
+            "move the surface beyond {s.start:.6g} rad, or the start out of it",
+        ),
+    ),
+    *each(
+        _velocities,
+        Row[_Velocity](
+            "",
+            _Velocity.is_beyond,
+            "a velocity of {s.size:.6g} rad/s is beyond the limit of {s.text}",
+            "command less, or raise limits.velocity",
+        ),
+    ),
+    *each(
+        _logic_of_runs,
+        Row[bool](
+            "",
+            lambda there: not there,
             "the spec has no mode_logic of type thresholds",
             "add one, or control in another way",
-            *at,
-            "control",
-            "logic",
-        )
-
-
-def _check_velocity(
-    command: CommandProfileSpec, largest: Quantity, at: tuple[str | int, ...]
-) -> None:
-    written: dict[tuple[str | int, ...], float] = {}
-    if command.constant is not None:
-        written["constant",] = command.constant.si
-    for i, (_, quantity) in enumerate(command.points or ()):
-        written["points", i, 1] = quantity.si
-    if command.sinusoid is not None:
-        offset = 0.0 if command.sinusoid.offset is None else command.sinusoid.offset.si
-        written["sinusoid",] = abs(offset) + command.sinusoid.amplitude.si
-    for place, velocity in written.items():
-        # The same number in another unit may be a rounding above.
-        if abs(velocity) > largest.si * (1 + 1e-12):
-            raise fault(
-                f"a velocity of {velocity:.6g} rad/s is beyond the limit of {quoted(largest.text)}",
-                "command less, or raise limits.velocity",
-                *at,
-                "command",
-                *place,
-            )
+        ),
+    ),
+)

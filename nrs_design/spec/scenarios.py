@@ -7,10 +7,11 @@ from functools import partial
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -121,6 +122,11 @@ Seed = Annotated[
 ]
 
 
+def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:
+    """Return the check that just one field of a model is given."""
+    return (Row("", lambda s: sum(v is not None for _, v in s) != 1, message, remedy),)
+
+
 class SinusoidSpec(SpecModel):
     """A velocity ``offset + amplitude sin(omega t)``."""
 
@@ -151,10 +157,7 @@ class CommandProfileSpec(SpecModel):
         "velocity_rad_s; straight lines between its rows",
     )
 
-    @model_validator(mode="after")
-    def _check_one(self) -> CommandProfileSpec:
-        _check_one(self, "a command is given in one way", "write constant, points, sinusoid or csv")
-        return self
+    checks = one_of("a command is given in one way", "write constant, points, sinusoid or csv")
 
 
 class SurfaceSpec(SpecModel):
@@ -218,14 +221,9 @@ class ControlSpec(SpecModel):
         default=None, description="mode-logic: as the spec's mode_logic says (thresholds)"
     )
 
-    @model_validator(mode="after")
-    def _check_one(self) -> ControlSpec:
-        _check_one(
-            self,
-            "control is given in one way",
-            "write fixed, schedule, sign, contact, threshold or logic",
-        )
-        return self
+    checks = one_of(
+        "control is given in one way", "write fixed, schedule, sign, contact, threshold or logic"
+    )
 
     @property
     def named(self) -> Mapping[tuple[str | int, ...], str]:
@@ -308,11 +306,14 @@ class ScenarioLimitsSpec(SpecModel):
         default=None, description="largest speed of the axis in rad/s"
     )
 
-    @model_validator(mode="after")
-    def _check_any(self) -> ScenarioLimitsSpec:
-        if not self.named:
-            raise fault("no limit is named", "name torque, deflection or velocity")
-        return self
+    checks = (
+        Row(
+            "",
+            lambda s: not s.named,
+            "no limit is named",
+            "name torque, deflection or velocity",
+        ),
+    )
 
     @property
     def named(self) -> Mapping[str, Quantity]:
@@ -360,18 +361,27 @@ class ScenarioSpec(SpecModel):
         "alike, or what each has for itself. Default: one axis alone",
     )
 
-    @model_validator(mode="after")
-    def _check_length(self) -> ScenarioSpec:
-        length = self.length
-        if length is None and self.command.csv is None:
-            raise fault("nothing says how long the run is", "add `duration: 10 s`")
-        if length is not None and not 0 < length.exact <= LONGEST:
-            raise fault(
-                f"a run of {quoted(length.text)} is not simulated",
-                f"write a duration above zero, up to {LONGEST} s",
-                *(("duration",) if self.duration is not None else ("command", "points")),
-            )
-        return self
+    def _too_long(self) -> tuple[str, str] | None:
+        """Return the key of a length that is not simulated, and the length."""
+        key = "duration" if self.duration is not None else "command"
+        if self.length is None or 0 < self.length.exact <= LONGEST:
+            return None
+        return key, quoted(self.length.text)
+
+    checks = (
+        Row(
+            "",
+            lambda s: s.length is None and s.command.csv is None,
+            "nothing says how long the run is",
+            "add `duration: 10 s`",
+        ),
+        Row(
+            "{0}",
+            _too_long,
+            "a run of {1} is not simulated",
+            f"write a duration above zero, up to {LONGEST} s",
+        ),
+    )
 
     def of_axis(self, name: str) -> ScenarioSpec:
         """Return the scenario of one axis of several.
@@ -391,8 +401,3 @@ class ScenarioSpec(SpecModel):
         if self.duration is None and self.command.points is not None:
             return self.command.points[-1][0]
         return self.duration
-
-
-def _check_one(model: SpecModel, message: str, remedy: str) -> None:
-    if sum(value is not None for _, value in model) != 1:
-        raise fault(message, remedy)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema
 
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ReadBy, SpecModel
@@ -86,6 +87,17 @@ class ToolSpec(IdentifiedSpec):
     )
 
 
+# Keys that count with another one only, and how to write that.
+_TOOL = "tool: {mass: 0.797 kg, center_of_mass: ...}"
+_WITH = (
+    ("drift", "tared_every", "tared_every: 600 s"),
+    ("tared_every", "drift", "drift: 1e-5 N*m/s"),
+    ("pose_error", "tool", _TOOL),
+    ("imu_error", "tool", _TOOL),
+    ("force_bias", "pivot", "pivot: {x: 0 m, y: 0 m, z: -0.1 m}"),
+)
+
+
 class SensorSpec(SpecModel):
     """The force signal: what filters it, and how far it may be off.
 
@@ -138,25 +150,27 @@ class SensorSpec(SpecModel):
         "there, too",
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> SensorSpec:
+    def _alone(self) -> tuple[str, str, str] | None:
+        """Return a key that counts with another one only, that one, and how to write it."""
         given = self.model_fields_set
-        if not given:
-            raise fault("nothing is said of the sensor", "add `bias: 5 N*mm`, or remove sensor")
-        for key, other, remedy in (
-            ("drift", "tared_every", "tared_every: 600 s"),
-            ("tared_every", "drift", "drift: 1e-5 N*m/s"),
-            ("pose_error", "tool", "tool: {mass: 0.797 kg, center_of_mass: ...}"),
-            ("imu_error", "tool", "tool: {mass: 0.797 kg, center_of_mass: ...}"),
-            ("force_bias", "pivot", "pivot: {x: 0 m, y: 0 m, z: -0.1 m}"),
-        ):
-            if key in given and other not in given:
-                raise fault(f"{key} counts with {other} only", f"add `{remedy}`", key)
-        if self.contact is not None and self.contact.exact == self._pivot:
-            raise fault(
-                "the contact point is at the pivot", "a force has no torque there", "contact"
-            )
-        return self
+        rows = (row for row in _WITH if row[0] in given and row[1] not in given)
+        return next(rows, None)
+
+    checks = (
+        Row(
+            "",
+            lambda s: not s.model_fields_set,
+            "nothing is said of the sensor",
+            "add `bias: 5 N*mm`, or remove sensor",
+        ),
+        Row("{0}", _alone, "{0} counts with {1} only", "add `{2}`"),
+        Row(
+            "contact",
+            lambda s: s.contact is not None and s.contact.exact == s._pivot,
+            "the contact point is at the pivot",
+            "a force has no torque there",
+        ),
+    )
 
     @property
     def has_errors(self) -> bool:

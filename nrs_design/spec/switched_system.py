@@ -2,28 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from nrs_design.spec.certification import CertificationSpec
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.dwell import DwellObstacle, find_changing_parameter
-from nrs_design.spec.faults import all_of, did_you_mean, fault
+from nrs_design.spec.faults import Location, did_you_mean
 from nrs_design.spec.fields import Label, Name, Title
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.parameters import MAX_PARAMETERS, Entry, ParameterName, ParameterSpec
+from nrs_design.spec.references import NO_SUCH, Reference
 from nrs_design.spec.switching import (
     MAX_DIMENSION,
     MAX_TRANSITIONS,
+    DwellTime,
     ResetSpec,
     SwitchingRule,
     Transition,
-    check_denominators,
-    check_names,
-    check_rows,
+    matrix_checks,
+    short_denominator,
+    switching_checks,
 )
 
 MAX_MODES = 20_000
@@ -63,18 +66,24 @@ class ModeSpec(SpecModel):
         """
         return [[entry.at(values) for entry in row] for row in self.A]
 
-    @model_validator(mode="after")
-    def _check_square(self) -> ModeSpec:
-        check_rows(self.A, "A")
-        check_denominators((number for row in self.A for e in row for number in e.numbers), "A")
-        n = len(self.A[0])
-        if len(self.A) != n:
-            raise fault(
-                f"the matrix is {len(self.A)} x {n}, not square",
-                "write as many rows as columns",
-                "A",
-            )
-        return self
+    def _not_square(self) -> tuple[int, int] | None:
+        rows, columns = len(self.A), len(self.A[0])
+        even = all(len(row) == columns for row in self.A)
+        return (rows, columns) if even and rows != columns else None
+
+    checks = (
+        *matrix_checks(
+            "A",
+            lambda s: s.A,
+            lambda s: (number for row in s.A for e in row for number in e.numbers),
+        ),
+        Row(
+            "A",
+            _not_square,
+            "the matrix is {0} x {1}, not square",
+            "write as many rows as columns",
+        ),
+    )
 
 
 class SwitchedSystemSpec(SpecModel):
@@ -123,164 +132,127 @@ class SwitchedSystemSpec(SpecModel):
         """Say why no dwell time can be claimed for this spec, or None."""
         return find_changing_parameter(self.parameters)
 
-    def across(self) -> tuple[Callable[[], object], ...]:
-        """Return the checks between parts: parameters, names of modes, dwell times."""
-        return (
-            lambda: _check_parameters(self),
-            lambda: check_names(self.switching, _modes_by_name(self.modes), "mode"),
-            lambda: _check_dwell_times(self),
-        )
 
-    @model_validator(mode="after")
-    def _check(self) -> SwitchedSystemSpec:
-        modes = _modes_by_name(self.modes)
-        all_of(*self.across())
-        _check_resets(self, modes)
-        _check_sizes(self, modes)
-        return self
+@dataclass(frozen=True, slots=True)
+class _Reset:
+    """A reset in its spec."""
 
+    it: ResetSpec
+    # Whether the rules allow the switch, and whether the same reset stands before.
+    allowed: bool
+    doubled: bool
+    # Rows and columns that its map must have; None if a mode is not there.
+    expected: tuple[int, int] | None
 
-def _modes_by_name(modes: tuple[ModeSpec, ...]) -> dict[str, ModeSpec]:
-    found: dict[str, ModeSpec] = {}
-    for index, mode in enumerate(modes):
-        if mode.name in found:
-            raise fault(f"another mode is named {mode.name!r}", "rename it", "modes", index, "name")
-        found[mode.name] = mode
-    return found
+    def misshapen(self) -> tuple[int, ...]:
+        """Rows and columns of a map that has not those of its modes, and theirs."""
+        if self.expected is None or self.expected == self.it.shape:
+            return ()
+        return *self.it.shape, *self.expected
 
 
-def _check_parameters(spec: SwitchedSystemSpec) -> None:
-    all_of(*(partial(_check_known, spec, index) for index in range(len(spec.modes))))
-    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
-    constant = [name for name, parameter in spec.parameters.items() if not parameter.varies]
-    if len(constant) > 1:
-        raise fault(
-            f"{constant[0]!r} has varies: false already, and at most one parameter may",
-            "leave it out here: what holds for a varying parameter holds for a constant one",
-            "parameters",
-            constant[1],
-            "varies",
-        )
-    for name in spec.parameters:
-        if name not in used:
-            raise fault(
-                "no matrix depends on this parameter", "remove it or use it", "parameters", name
-            )
-    values = (v for p in spec.parameters.values() for v in (p.nominal, *p.range))
-    check_denominators(values, "parameters")
-    corners = sum(2 ** len(mode.parameters) for mode in spec.modes)
-    entries = sum(2 ** len(mode.parameters) * mode.dimension**2 for mode in spec.modes)
-    if entries > MAX_ENTRIES:
-        raise fault(
-            f"the corners of the modes have {entries} entries in all, at most {MAX_ENTRIES} are "
-            "read",
-            "declare fewer parameters",
-            "parameters",
-        )
-    if corners > MAX_MODES:
-        raise fault(
-            f"the modes have {corners} corners in all, at most {MAX_MODES} are read",
-            "declare fewer parameters",
-            "parameters",
-        )
-
-
-def _check_known(spec: SwitchedSystemSpec, index: int) -> None:
-    if spec.modes[index].parameters <= spec.parameters.keys():
-        return
-
-    def check(name: str, *at: int) -> None:
-        if name not in spec.parameters:
-            known = did_you_mean(name, spec.parameters, "parameters here are")
-            raise fault(
-                f"{name!r} is not a number, and there is no parameter of that name",
-                known if spec.parameters else "write a number, or declare parameters",
-                "modes",
-                index,
-                "A",
-                *at,
-            )
-
-    all_of(
-        *(
-            partial(check, name, i, j)
-            for i, row in enumerate(spec.modes[index].A)
-            for j, entry in enumerate(row)
-            for name in sorted(entry.names)
-        )
-    )
-
-
-def _check_dwell_times(spec: SwitchedSystemSpec) -> None:
-    unit, example = ("s", "2.76 s") if spec.time == "continuous" else ("steps", "3 steps")
-    obstacle = spec.find_dwell_obstacle()
-    for at, dwell in spec.switching.dwell_times():
-        if dwell.unit != unit:
-            raise fault(
-                f"{dwell.text!r} is not a dwell time in {spec.time} time, expected {unit}",
-                f"such as {example!r}",
-                *("switching", *at),
-            )
-        if obstacle is not None:
-            raise fault(
-                obstacle.message, f"leave {at[0]} out, or {obstacle.remedy}", *("switching", *at)
-            )
-
-
-def _check_resets(spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]) -> None:
-    allowed = None if spec.switching.transitions is None else set(spec.switching.transitions)
-    found: set[ResetSpec] = set()
+def _resets(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, _Reset]]:
+    sizes = {mode.name: mode.dimension for mode in spec.modes}
+    rules, known = spec.switching.transitions, set[ResetSpec]()
+    allowed = None if rules is None else set(rules)
     for index, reset in enumerate(spec.resets):
-        at = ("resets", index)
-        for key, name in (("from", reset.source), ("to", reset.target)):
-            if name not in modes:
-                raise fault(f"there is no mode {name!r}", did_you_mean(name, modes), *at, key)
-        transition = (reset.source, reset.target)
-        if reset.source == reset.target:
-            raise fault("a switch leads to another mode", "name two modes", *at, "to")
-        if allowed is not None and transition not in allowed:
-            raise fault(
-                f"the switch from {reset.source} to {reset.target} is not allowed",
-                "add it to switching.transitions, or remove this reset",
-                *at,
-            )
-        if reset in found:
-            raise fault("this reset is listed twice", "list each once", *at)
-        _check_shape(reset, modes, *at)
-        found.add(reset)
+        ends = reset.target, reset.source
+        expected = (sizes[ends[0]], sizes[ends[1]]) if sizes.keys() >= set(ends) else None
+        may = allowed is None or (reset.source, reset.target) in allowed or expected is None
+        yield ("resets", index), _Reset(reset, may, reset in known, expected)
+        known.add(reset)
 
 
-def _check_shape(reset: ResetSpec, modes: Mapping[str, ModeSpec], *at: int | str) -> None:
-    rows, columns = modes[reset.target].dimension, modes[reset.source].dimension
-    if reset.shape != (rows, columns):
-        raise fault(
-            f"the map is {reset.shape[0]} x {reset.shape[1]}, expected {rows} x {columns}: "
-            f"{reset.target} has {rows} states, {reset.source} has {columns}",
-            "write a row for each state after the switch, a column for each state before it",
-            *(*at, "map"),
-        )
+def _named_modes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference]]:
+    names = dict.fromkeys(mode.name for mode in spec.modes)
+    for at, reset in _resets(spec):
+        for key, name in (("from", reset.it.source), ("to", reset.it.target)):
+            yield (*at, key), Reference("mode", name, names)
 
 
-def _check_sizes(spec: SwitchedSystemSpec, modes: Mapping[str, ModeSpec]) -> None:
-    """Check that a switch between different states says what becomes of the state."""
-    if len({mode.dimension for mode in spec.modes}) == 1:
+def _renamed(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, str]]:
+    """Yield names of modes that another one has before."""
+    known: set[str] = set()
+    for index, mode in enumerate(spec.modes):
+        if mode.name in known:
+            yield ("modes", index, "name"), mode.name
+        known.add(mode.name)
+
+
+def _in_matrices(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, Reference]]:
+    """Yield the parameters in the matrices that are not declared."""
+    for index, mode in enumerate(spec.modes):
+        if mode.parameters <= spec.parameters.keys():
+            continue
+        for i, row in enumerate(mode.A):
+            for j, entry in enumerate(row):
+                for name in sorted(entry.names):
+                    yield ("modes", index, "A", i, j), Reference("", name, spec.parameters)
+
+
+def _undeclared(parameter: Reference) -> tuple[str, str] | None:
+    if parameter.name in parameter.choices:
+        return None
+    known = did_you_mean(parameter.name, parameter.choices, "parameters here are")
+    return parameter.name, known if parameter.choices else "write a number, or declare parameters"
+
+
+def _unused(spec: SwitchedSystemSpec) -> str | None:
+    used = frozenset[str]().union(*(mode.parameters for mode in spec.modes))
+    return next((name for name in spec.parameters if name not in used), None)
+
+
+def _constant(spec: SwitchedSystemSpec) -> tuple[str, ...]:
+    """Return the parameters that do not vary, if they are more than one."""
+    names = tuple(name for name, parameter in spec.parameters.items() if not parameter.varies)
+    return names if len(names) > 1 else ()
+
+
+def _corners(spec: SwitchedSystemSpec) -> int:
+    return sum(2 ** len(mode.parameters) for mode in spec.modes)
+
+
+def _entries(spec: SwitchedSystemSpec) -> int:
+    return sum(2 ** len(mode.parameters) * mode.dimension**2 for mode in spec.modes)
+
+
+# The unit of dwell times, and an example.
+_UNITS = {"continuous": ("s", "2.76 s"), "discrete": ("steps", "3 steps")}
+
+
+def _dwell_times(
+    spec: SwitchedSystemSpec,
+) -> Iterator[tuple[Location, tuple[SwitchedSystemSpec, str, DwellTime]]]:
+    for at, dwell in spec.switching.dwell_times():
+        yield ("switching", *at), (spec, at[0], dwell)
+
+
+def _other_unit(said: tuple[SwitchedSystemSpec, str, DwellTime]) -> tuple[str, ...]:
+    spec, _, dwell = said
+    unit, example = _UNITS[spec.time]
+    return () if dwell.unit == unit else (dwell.text, spec.time, unit, example)
+
+
+def _obstacle(said: tuple[SwitchedSystemSpec, str, DwellTime]) -> tuple[str, ...]:
+    spec, key, _ = said
+    found = spec.find_dwell_obstacle()
+    return () if found is None else (found.message, key, found.remedy)
+
+
+def _sizes(spec: SwitchedSystemSpec) -> Iterator[tuple[Location, tuple[str, int, str, int]]]:
+    """Yield a switch between states of different sizes that has no reset."""
+    sizes = {mode.name: mode.dimension for mode in spec.modes}
+    if len(set(sizes.values())) == 1:
         return
     resets = {(reset.source, reset.target) for reset in spec.resets}
     for (source, target), at in _transitions(spec):
-        n, m = modes[source].dimension, modes[target].dimension
-        if n != m and (source, target) not in resets:
-            raise fault(
-                f"{source} has {n} states and {target} has {m}, and the switch from {source} to "
-                f"{target} has no reset",
-                f"give all modes the same size, or add {{from: {source}, to: {target}, map: ...}} "
-                f"with {m} x {n} entries to resets",
-                *at,
-            )
+        known = sizes.keys() >= {source, target}
+        if known and sizes[source] != sizes[target] and (source, target) not in resets:
+            yield at, (source, sizes[source], target, sizes[target])
+            return
 
 
-def _transitions(
-    spec: SwitchedSystemSpec,
-) -> Iterator[tuple[Transition, tuple[str | int, ...]]]:
+def _transitions(spec: SwitchedSystemSpec) -> Iterator[tuple[Transition, Location]]:
     """Yield the allowed transitions, and where to report a fault of each."""
     if spec.switching.transitions is not None:
         for index, transition in enumerate(spec.switching.transitions):
@@ -290,3 +262,96 @@ def _transitions(
         for index, target in enumerate(spec.modes):
             if source is not target:
                 yield (source.name, target.name), ("modes", index, "A")
+
+
+def _found(said: Any) -> Any:
+    return said
+
+
+SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
+    *each(_renamed, Row[str]("", _found, "another mode is named {0!r}", "rename it")),
+    *each(
+        _in_matrices,
+        Row[Reference](
+            "",
+            _undeclared,
+            "{0!r} is not a number, and there is no parameter of that name",
+            "{1}",
+        ),
+    ),
+    Row(
+        "parameters.{1}.varies",
+        _constant,
+        "{0!r} has varies: false already, and at most one parameter may",
+        "leave it out here: what holds for a varying parameter holds for a constant one",
+    ),
+    Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
+    short_denominator(
+        "parameters", lambda s: (v for p in s.parameters.values() for v in (p.nominal, *p.range))
+    ),
+    Row(
+        "parameters",
+        lambda s: _entries(s) > MAX_ENTRIES and _entries(s),
+        f"the corners of the modes have {{0}} entries in all, at most {MAX_ENTRIES} are read",
+        "declare fewer parameters",
+    ),
+    Row(
+        "parameters",
+        lambda s: _corners(s) > MAX_MODES and _corners(s),
+        f"the modes have {{0}} corners in all, at most {MAX_MODES} are read",
+        "declare fewer parameters",
+    ),
+    *switching_checks(
+        lambda s: s.switching, lambda s: dict.fromkeys(mode.name for mode in s.modes), "mode"
+    ),
+    *each(
+        _dwell_times,
+        Row[Any](
+            "",
+            _other_unit,
+            "{0!r} is not a dwell time in {1} time, expected {2}",
+            "such as {3!r}",
+        ),
+        Row[Any]("", _obstacle, "{0}", "leave {1} out, or {2}"),
+    ),
+    *each(_named_modes, NO_SUCH),
+    *each(
+        _resets,
+        Row[_Reset](
+            "to",
+            lambda r: r.it.source == r.it.target,
+            "a switch leads to another mode",
+            "name two modes",
+        ),
+        Row[_Reset](
+            "",
+            lambda r: not r.allowed and r.it.source != r.it.target,
+            "the switch from {s.it.source} to {s.it.target} is not allowed",
+            "add it to switching.transitions, or remove this reset",
+        ),
+        Row[_Reset](
+            "",
+            lambda r: r.doubled,
+            "this reset is listed twice",
+            "list each once",
+        ),
+        Row[_Reset](
+            "map",
+            _Reset.misshapen,
+            "the map is {0} x {1}, expected {2} x {3}: {s.it.target} has {2} states, "
+            "{s.it.source} has {3}",
+            "write a row for each state after the switch, a column for each state before it",
+        ),
+    ),
+    *each(
+        _sizes,
+        Row[Any](
+            "",
+            _found,
+            "{0} has {1} states and {2} has {3}, and the switch from {0} to {2} has no reset",
+            "give all modes the same size, or add {{from: {0}, to: {2}, map: ...}} with {3} x {1} "
+            "entries to resets",
+        ),
+    ),
+)
+SwitchedSystemSpec.checks = SYSTEM_CHECKS

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import partial
 from math import lcm
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import counted, quoted
 from nrs_design.spec import kinds
+from nrs_design.spec.check import Row, each
 from nrs_design.spec.exact import parse_exact
-from nrs_design.spec.faults import all_of, as_text, did_you_mean, fault, reported
+from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
 from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
+from nrs_design.spec.references import NO_SUCH, Reference
 
 MAX_TRANSITIONS = 20_000
 MAX_DIMENSION = 64
@@ -240,6 +241,67 @@ LogicalRule = Annotated[
 ]
 
 
+def _uneven(
+    rows: Collection[Collection[object]],
+) -> Iterator[tuple[Location, tuple[int, int, int]]]:
+    """Yield rows of another length than the first, with both lengths."""
+    n = len(next(iter(rows)))
+    for index, row in enumerate(rows):
+        if len(row) != n:
+            yield (index,), (index + 1, len(row), n)
+
+
+def is_long(numbers: Iterable[Fraction]) -> bool:
+    """Tell whether numbers that are to be written over one denominator have a long one.
+
+    A hundred coprime denominators of a hundred digits make one of ten thousand, in every entry.
+    """
+    common = 1
+    for number in numbers:
+        common = lcm(common, number.denominator)
+        if common.bit_length() > MAX_DENOMINATOR_BITS:
+            return True
+    return False
+
+
+def short_denominator(at: str, numbers: Callable[[Any], Iterable[Fraction]]) -> Row[Any]:
+    """Return the check that numbers have a common denominator of few digits."""
+    return Row(
+        at,
+        lambda s: is_long(numbers(s)),
+        f"the least common denominator has more than {MAX_DENOMINATOR_BITS} binary digits",
+        "write the numbers as decimals, or with fewer different denominators",
+    )
+
+
+def matrix_checks(
+    key: str,
+    rows: Callable[[Any], Collection[Collection[object]]],
+    numbers: Callable[[Any], Iterable[Fraction]],
+) -> tuple[Row[Any], ...]:
+    """Return the checks of a matrix: rows of one length, a common denominator of few digits.
+
+    Parameters
+    ----------
+    key : str
+        Its key.
+    rows, numbers : callable
+        Take what holds it, and return its rows and all its numbers.
+    """
+    return (
+        *each(
+            lambda s: (((key, *at), found) for at, found in _uneven(rows(s))),
+            Row[Any](
+                "",
+                lambda found: found,
+                "row {0} has {1} entries, the first has {2}",
+                "give all rows the same length",
+            ),
+        ),
+        short_denominator(key, numbers),
+    )
+
+
 class ResetSpec(SpecModel):
     """What a switch does to the state, ``x+ = map x`` (thesis 5.9)."""
 
@@ -255,89 +317,70 @@ class ResetSpec(SpecModel):
         """Rows and columns."""
         return len(self.map), len(self.map[0])
 
-    @model_validator(mode="after")
-    def _check_rows(self) -> ResetSpec:
-        check_rows(self.map, "map")
-        check_denominators((entry for row in self.map for entry in row), "map")
-        return self
+    checks = matrix_checks("map", lambda s: s.map, lambda s: (e for row in s.map for e in row))
 
 
-def check_rows(rows: Collection[Collection[object]], *at: int | str) -> None:
-    """Report a fault if the rows of a matrix have different lengths."""
-    n = len(next(iter(rows)))
-    for index, row in enumerate(rows):
-        if len(row) != n:
-            raise fault(
-                f"row {index + 1} has {len(row)} entries, the first has {n}",
-                "give all rows the same length",
-                *at,
-                index,
-            )
+@dataclass(frozen=True, slots=True)
+class _Stay:
+    """How long a mode is kept, and what may follow it."""
+
+    noun: str
+    name: str
+    shortest: DwellTime | None
+    longest: DwellTime | None
+    follows: bool
 
 
-def check_denominators(numbers: Iterable[Fraction], *at: int | str) -> None:
-    """Report a fault if numbers that are to be written over one denominator have a long one.
-
-    A hundred coprime denominators of a hundred digits make one of ten thousand, in every entry.
-    """
-    common = 1
-    for number in numbers:
-        common = lcm(common, number.denominator)
-        if common.bit_length() > MAX_DENOMINATOR_BITS:
-            raise fault(
-                f"the least common denominator has more than {MAX_DENOMINATOR_BITS} binary digits",
-                "write the numbers as decimals, or with fewer different denominators",
-                *at,
-            )
+def _stays(
+    switching: SwitchingSpec, names: Collection[str], noun: str
+) -> Iterator[tuple[Location, _Stay]]:
+    allowed = switching.transitions
+    left = names if allowed is None and len(names) > 1 else {a for a, _ in allowed or ()}
+    for name in names if switching.longest_dwell_time is not None else ():
+        at = ("switching", "longest_dwell_time", name)
+        yield at, _Stay(noun, name, *switching.stay(name), name in left)
 
 
-def check_names(switching: SwitchingSpec, names: Collection[str], noun: str) -> None:
-    """Report a fault if a rule names something that does not exist, or cannot be kept.
+def _named(
+    switching: SwitchingSpec, names: Collection[str], noun: str
+) -> Iterator[tuple[Location, Reference]]:
+    for at, _ in switching.dwell_times():
+        for name in at[1:]:
+            yield ("switching", *at), Reference(noun, name, names)
+    for index, transition in enumerate(switching.transitions or ()):
+        for side, name in enumerate(transition):
+            yield ("switching", "transitions", index, side), Reference(noun, name, names)
+
+
+_STAY_CHECKS = (
+    Row[_Stay](
+        "",
+        lambda x: x.longest and x.shortest and x.longest.value < x.shortest.value,
+        "{s.noun} {s.name!r} must be left after {s.longest.text}, but not before {s.shortest.text}",
+        "give a longest dwell time that is not below the dwell time",
+    ),
+    Row[_Stay](
+        "",
+        lambda x: x.longest and not x.follows,
+        "{s.noun} {s.name!r} must be left, but nothing may follow it",
+        "allow a switch from {s.name}, or give it no longest dwell time",
+    ),
+)
+
+
+def switching_checks(
+    rules: Callable[[Any], SwitchingSpec], names: Callable[[Any], Collection[str]], noun: str
+) -> tuple[Row[Any], ...]:
+    """Return the checks that rules name what exists, and can be kept.
 
     Parameters
     ----------
-    switching : SwitchingSpec
-        The rules.
-    names : collection of str
-        What there is.
+    rules, names : callable
+        The rules of a spec, and the names that there are.
     noun : str
-        Modes or controllers, for faults.
+        Mode or controller, for faults.
     """
-    places = [at for at, _ in switching.dwell_times()]
-    all_of(
-        *(partial(_check_name, name, names, noun, *at) for at in places for name in at[1:]),
-        *(
-            partial(_check_name, name, names, noun, "transitions", index, side)
-            for index, transition in enumerate(switching.transitions or ())
-            for side, name in enumerate(transition)
-        ),
-        *(partial(_check_stay, switching, name, names, noun) for name in names),
+    return (
+        *each(lambda s: _named(rules(s), names(s), noun), NO_SUCH),
+        *each(lambda s: _stays(rules(s), names(s), noun), *_STAY_CHECKS),
     )
-
-
-def _check_name(name: str, names: Collection[str], noun: str, *at: int | str) -> None:
-    if name not in names:
-        remedy = did_you_mean(name, names)
-        raise fault(f"there is no {noun} {quoted(name)}", remedy, "switching", *at)
-
-
-def _check_stay(switching: SwitchingSpec, name: str, names: Collection[str], noun: str) -> None:
-    """Check that a mode that must be left can be left, and no earlier than it may be."""
-    shortest, longest = switching.stay(name)
-    if longest is None:
-        return
-    at = ("switching", "longest_dwell_time", name)
-    if shortest is not None and longest.value < shortest.value:
-        raise fault(
-            f"{noun} {name!r} must be left after {longest.text}, but not before {shortest.text}",
-            "give a longest dwell time that is not below the dwell time",
-            *at,
-        )
-    allowed = switching.transitions
-    follows = len(names) > 1 if allowed is None else any(source == name for source, _ in allowed)
-    if not follows:
-        raise fault(
-            f"{noun} {name!r} must be left, but nothing may follow it",
-            f"allow a switch from {name}, or give it no longest dwell time",
-            *at,
-        )

@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, WithJsonSchema, model_validator
+from pydantic import Field, WithJsonSchema
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.faults import did_you_mean, fault
+from nrs_design.spec.check import Row, each
+from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Label
 from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import Quantity
@@ -30,6 +31,7 @@ from nrs_design.spec.quantity_fields import (
     Torque,
     TorqueRate,
 )
+from nrs_design.spec.references import Reference
 from nrs_design.spec.switching import (
     DWELL_SCHEMA,
     DwellTime,
@@ -81,6 +83,16 @@ class LogicSignalsSpec(SpecModel):
     )
 
 
+ONE_SIDE = (
+    Row[Any](
+        "",
+        lambda s: (s.above is None) == (s.below is None),
+        "a condition has one threshold",
+        "write {{above: ...}} or {{below: ...}}",
+    ),
+)
+
+
 class CommandCondition(SpecModel):
     """One side of a threshold on the command."""
 
@@ -91,10 +103,7 @@ class CommandCondition(SpecModel):
         default=None, description=_BELOW.format(unit="rad/s")
     )
 
-    @model_validator(mode="after")
-    def _check_one_side(self) -> CommandCondition:
-        _check_one_side(self.above, self.below)
-        return self
+    checks = ONE_SIDE
 
 
 class TorqueCondition(SpecModel):
@@ -103,18 +112,10 @@ class TorqueCondition(SpecModel):
     above: SignedTorque | None = Field(default=None, description=_ABOVE.format(unit="N*m"))
     below: SignedTorque | None = Field(default=None, description=_BELOW.format(unit="N*m"))
 
-    @model_validator(mode="after")
-    def _check_one_side(self) -> TorqueCondition:
-        _check_one_side(self.above, self.below)
-        return self
+    checks = ONE_SIDE
 
 
 Condition = CommandCondition | TorqueCondition
-
-
-def _check_one_side(above: Quantity | None, below: Quantity | None) -> None:
-    if (above is None) == (below is None):
-        raise fault("a condition has one threshold", "write {above: ...} or {below: ...}")
 
 
 class LogicSwitchSpec(SpecModel):
@@ -135,13 +136,20 @@ class LogicSwitchSpec(SpecModel):
         written = {"command": self.command, "torque": self.torque}
         return {name: condition for name, condition in written.items() if condition is not None}
 
-    @model_validator(mode="after")
-    def _check(self) -> LogicSwitchSpec:
-        if self.source == self.target:
-            raise fault("a switch leads to another controller", "remove it", "to")
-        if not self.conditions:
-            raise fault("nothing says when this switch is made", "add command or torque")
-        return self
+    checks = (
+        Row(
+            "to",
+            lambda s: s.source == s.target,
+            "a switch leads to another controller",
+            "remove it",
+        ),
+        Row(
+            "",
+            lambda s: not s.conditions,
+            "nothing says when this switch is made",
+            "add command or torque",
+        ),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,69 +182,90 @@ class ThresholdLogicSpec(SpecModel):
         )
     )
 
-    @model_validator(mode="after")
-    def _check(self) -> ThresholdLogicSpec:
+    def _unsaid(self) -> Iterator[tuple[Location, str]]:
+        """Yield the conditions of switches on a signal of which nothing is said."""
         for index, switch in enumerate(self.switches):
             for name in switch.conditions:
                 if getattr(self.signals, name) is None:
-                    raise fault(
-                        f"nothing is said of the signal {name}",
-                        f"add `{name}: {{noise: ..., age: ..., largest_rate: ...}}` to signals",
-                        "switches",
-                        index,
-                        name,
-                    )
-        self._check_hold()
-        for controller in self.controllers:
-            self._check_apart(controller)
-        return self
+                    yield ("switches", index, name), name
 
-    def _check_hold(self) -> None:
-        held = self.hold if isinstance(self.hold, dict) else {"": self.hold}
-        for name, time in held.items():
-            if name and name not in self.controllers:
-                remedy = did_you_mean(name, self.controllers)
-                raise fault(f"no switch leads to or from {name!r}", remedy, "hold", name)
-            if time is not None and time.unit != "s":
-                raise fault(f"{time.text!r} is not a time", "write seconds, as in '50 ms'", "hold")
+    def _holds(self) -> Iterator[tuple[Location, tuple[str, DwellTime | None]]]:
+        """Yield how long controllers are held, by name; "" for all."""
+        if isinstance(self.hold, dict):
+            yield from ((("hold", name), (name, time)) for name, time in self.hold.items())
+        else:
+            yield ("hold",), ("", self.hold)
 
-    def _check_apart(self, controller: str) -> None:
-        apart = self.tightest(controller)
-        if apart is None or self.stay(controller) is not None:
-            return
-        raise fault(
-            f"{controller!r} may be left as soon as it is entered, so the controllers may chatter: "
-            f"no signal has to move between switch {apart.entering + 1} and switch "
-            f"{apart.leaving + 1} of the list",
-            "let one of them ask for a signal above, the other for the same signal below, further "
-            f"apart than twice its noise and what it moves in its age; or add `hold: {{{controller}"
-            ": 50 ms}`",
-            "switches",
-            apart.leaving,
-        )
+    def _held(self) -> Iterator[tuple[Location, Reference]]:
+        """Yield the names of controllers that are held."""
+        for at, (name, _) in self._holds():
+            if name:
+                yield at, Reference("controller", name, self.controllers)
+
+    def _chattering(self) -> Iterator[tuple[Location, tuple[str, Apart]]]:
+        """Yield controllers that may be left as soon as they are entered."""
+        # Of a signal of which nothing is said there is nothing to compute.
+        for name in () if any(self._unsaid()) else self.controllers:
+            apart = self.tightest(name)
+            if apart is not None and self.stay(name) is None:
+                yield ("switches", apart.leaving), (name, apart)
+
+    checks = (
+        *each(
+            _unsaid,
+            Row[Any](
+                "",
+                lambda name: name,
+                "nothing is said of the signal {0}",
+                "add `{0}: {{noise: ..., age: ..., largest_rate: ...}}` to signals",
+            ),
+        ),
+        *each(
+            _held,
+            Row[Reference]("", Reference.is_lost, "no switch leads to or from {0}", "{1}"),
+        ),
+        *each(
+            _holds,
+            Row[Any](
+                "",
+                lambda held: held[1] is not None and held[1].unit != "s" and held[1].text,
+                "{0!r} is not a time",
+                "write seconds, as in '50 ms'",
+            ),
+        ),
+        *each(
+            _chattering,
+            Row[Any](
+                "",
+                lambda found: (found[0], found[1].entering + 1, found[1].leaving + 1),
+                "{0!r} may be left as soon as it is entered, so the controllers may chatter: no "
+                "signal has to move between switch {1} and switch {2} of the list",
+                "let one of them ask for a signal above, the other for the same signal below, "
+                "further apart than twice its noise and what it moves in its age; or add "
+                "`hold: {{{0}: 50 ms}}`",
+            ),
+        ),
+    )
 
     @property
     def thresholds(self) -> ThresholdLogicSpec:
         """What a program of the logic follows: itself."""
         return self
 
-    def check_names(self, controllers: Mapping[str, object]) -> None:
-        """Refuse names of controllers that there are not.
+    def lost_names(self, controllers: Mapping[str, object]) -> tuple[str, ...]:
+        """Return the names of controllers in it that there are not.
 
         Parameters
         ----------
         controllers : mapping of str
             Those of the spec.
         """
-        for name in self.controllers:
-            if name not in controllers:
-                remedy = did_you_mean(name, controllers)
-                raise fault(f"there is no controller {name!r}", remedy, "mode_logic")
+        return tuple(name for name in self.controllers if name not in controllers)
 
     def rules_among(
         self, controllers: Mapping[str, object], environments: Mapping[str, object]
     ) -> SwitchingSpec:
-        """Return the rules that it keeps, whatever is touched; as `rules_of` says."""
+        """Return the rules that it keeps, whatever is touched."""
         return self.rules()
 
     @property

@@ -22,7 +22,7 @@ def with_constant_force(system: SwitchedSystem) -> SwitchedSystem:
     Parameters
     ----------
     system : SwitchedSystem
-        One axis in contact with one environment, as `nrs_design.spec.constant_force` checks.
+        One axis in contact with one environment, as `nrs_design.spec.combinations` checks.
     """
     if system.contact is None:
         return system

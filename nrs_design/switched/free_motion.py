@@ -15,7 +15,7 @@ from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import SwitchingSpec
-from nrs_design.spec.touched import FREE
+from nrs_design.spec.interaction_parts import FREE
 from nrs_design.switched.assumption import say
 from nrs_design.switched.modes import Rows, velocity_mode
 from nrs_design.switched.shared_state import SharedState

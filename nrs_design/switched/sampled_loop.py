@@ -24,8 +24,8 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.spec.touched import FREE
 from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching

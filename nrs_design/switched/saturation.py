@@ -48,7 +48,7 @@ def with_saturation(
     system : SwitchedSystem
         The loop in which nothing does, in deflection coordinates.
     spec : InteractionDesignSpec
-        With its limits and the goal, as `nrs_design.spec.initial_force` checks.
+        With its limits and the goal, as `nrs_design.spec.combinations` checks.
     actuator : Actuator
         The nominal motor.
     state : SharedState

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache, partial
 from math import isfinite
+from typing import Any
+
+from nrs_design.thesis.errata import read_data
 
 Number = float | complex
 Value = Number | Sequence[Number]
@@ -83,202 +87,113 @@ class Tolerance:
         )
 
 
-def reproduced(
-    name: str,
-    section: str,
-    printed: Printed,
-    value: Value,
-    unit: str,
-    tolerance: Tolerance,
-    *,
-    right: Printed | None = None,
-    note: str = "",
-    errata: tuple[str, ...] = (),
-) -> ReproducedValue:
-    """Return the row of a print that the recomputed value confirms.
+@dataclass(frozen=True, slots=True)
+class PrintedRow:
+    """A line of `rows.yaml`: what is printed, and what is on record of it."""
 
-    Parameters
-    ----------
-    name, section, unit, note, errata
-        See `ReproducedValue`.
-    printed : str or tuple of str
-        Numbers, ``a +- bj`` for a pair of poles.
-    value : number or sequence of numbers
-        Recomputed.
-    tolerance : Tolerance
-        A value outside it makes the row a drift.
-    right : str or tuple of str, optional
-        Our reference, where it has more digits than the print; the tolerance is about it.
-    """
-    values, reference = _sequence(value), right or printed
-    near = not _is_numeric(printed) or meets_standard(values, printed)
-    agrees = near and tolerance.allows(values, _numbers(reference))
-    verdict = PrintVerdict.REPRODUCED if agrees else PrintVerdict.DRIFT
-    if agrees and _is_cut_off(values, printed):
-        note = f"{note} {CUT_OFF}".strip()
-    found = _row(name, section, printed, values, unit, verdict, note, tolerance, reference)
-    return replace(found, errata=errata)
+    verdict: str  # A `PrintVerdict`, as long as the value is what is on record
+    name: str
+    section: str
+    printed: Printed = ""
+    unit: str = ""
+    value: str | None = None  # What is right, in words; numbers are computed
+    right: Printed = ""  # Our reference, where it is not the print
+    # Beyond these the value has drifted from our reference: relative to it, or absolute.
+    relative: float = 0.0
+    absolute: float = 0.0
+    because: str = ""  # Why it is not reproducible: a clause
+    fitted: str = ""
+    note: str = ""
+    errata: tuple[str, ...] = ()
+
+    @property
+    def is_computed(self) -> bool:
+        """Whether there is a result, if only of its note."""
+        lost = self.verdict == PrintVerdict.NOT_REPRODUCIBLE
+        return not lost or bool(self.right) or "{}" in self.because
 
 
-def fitted(
-    name: str,
-    section: str,
-    printed: Printed,
-    value: Value,
-    unit: str,
-    tolerance: Tolerance,
-    *,
-    constants: str,
-    right: Printed | None = None,
-    note: str = "",
-    errata: tuple[str, ...] = (),
-) -> ReproducedValue:
-    """Return the row of a print that is met because a constant was fitted for it.
+@dataclass(frozen=True, slots=True)
+class Recomputed:
+    """What is computed for a row."""
 
-    Parameters
-    ----------
-    name, section, printed, value, unit, tolerance, right, note, errata
-        As for `reproduced`.
-    constants : str
-        What was fitted, with its number.
-    """
-    values, reference = _sequence(value), right or printed
-    agrees = tolerance.allows(values, _numbers(reference))
-    verdict = PrintVerdict.FITTED if agrees else PrintVerdict.DRIFT
-    found = _row(name, section, printed, values, unit, verdict, note, tolerance, reference)
-    return replace(found, fitted=constants, errata=errata)
+    value: Value | str | None = None  # Words or numbers; None is the words of the row
+    holds: bool = True  # Whether the computation says what is on record
+    facts: tuple[object, ...] = ()  # What stands in its note, or in `because`
 
 
-def derived(
-    name: str,
-    section: str,
-    value: Value | str,
-    unit: str = "",
-    *,
-    printed: str = "",
-    right: Printed | None = None,
-    tolerance: Tolerance | None = None,
-    holds: bool = True,
-    note: str,
-    errata: tuple[str, ...] = (),
-) -> ReproducedValue:
-    """Return the row of a result that the thesis prints no number for.
+# A result, its value alone, or whether it holds.
+Found = Recomputed | Value | str | bool
 
-    Parameters
-    ----------
-    name, section, unit
-        As for `reproduced`.
-    value : str, number or sequence of numbers
-        What follows.
-    printed : str
-        What it follows from, or what the thesis says instead; it is not held against the value.
-    right : str or tuple of str, optional
-        What the value is on record to be.
-    tolerance : Tolerance, optional
-        About `right`.
-    holds : bool
-        Whether the computation still says so; if not, the row is a drift.
-    note : str
-        What it means.
-    errata : tuple of str
-        As for `reproduced`.
-    """
-    if isinstance(value, str):
-        verdict = PrintVerdict.DERIVED if holds else PrintVerdict.DRIFT
-        return ReproducedValue(
-            name, section, printed, value, unit, None, verdict, note, errata=errata
-        )
-    values, tolerance = _sequence(value), tolerance or Tolerance(STANDARD)
-    reference = _numbers(right or ())
-    confirmed = holds and tolerance.allows(values, reference)
-    verdict = PrintVerdict.DERIVED if confirmed else PrintVerdict.DRIFT
-    return ReproducedValue(
-        name,
-        section,
-        printed,
-        ", ".join(format_number(number) for number in values),
-        unit,
-        None,
-        verdict,
-        note,
-        drift=_deviation(values, reference),
-        limit=str(tolerance),
-        errata=errata,
+
+@cache
+def printed_rows_of(topic: str) -> tuple[PrintedRow, ...]:
+    """Return the rows of a topic, as they are on record."""
+    entries: list[dict[str, Any]] = read_data("rows.yaml")[topic]
+    return tuple(
+        PrintedRow(**{key: _fixed(value) for key, value in one.items()}) for one in entries
     )
 
 
-def near(
-    name: str,
-    section: str,
-    printed: Printed,
-    value: Value,
-    unit: str,
-    tolerance: Tolerance,
-    *,
-    right: Printed,
-    because: str,
-    note: str = "",
-    constants: str = "",
-) -> ReproducedValue:
-    """Return the row of a print that is only come near, for want of data in the thesis.
+def _fixed(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
 
-    The row is a drift if the value leaves the tolerance around our reference, or if it meets the
-    print after all.
 
-    Parameters
-    ----------
-    name, section, printed, value, unit, tolerance, note
-        As for `reproduced`.
-    right : str or tuple of str
-        Our reference.
-    because : str
-        What is missing; a clause, to which `note` adds sentences.
-    constants : str
-        As for `fitted`.
+def compare_topic(topic: str, found: Iterable[Found]) -> tuple[ReproducedValue, ...]:
+    """Return the rows of a topic with what is computed for them, in the order of `rows.yaml`.
+
+    Raises
+    ------
+    ValueError
+        If there are more results than rows that are computed, or fewer.
     """
-    values = _sequence(value)
-    confirmed = tolerance.allows(values, _numbers(right)) and not meets_standard(values, printed)
-    verdict = PrintVerdict.NOT_REPRODUCIBLE if confirmed else PrintVerdict.DRIFT
-    note = f"{BECAUSE} {because}. {note}".strip()
-    found = _row(name, section, printed, values, unit, verdict, note, tolerance, right)
-    return replace(found, fitted=constants)
+    rows, results = printed_rows_of(topic), list(found)
+    if len(results) != sum(row.is_computed for row in rows):
+        raise ValueError(f"{topic}: {len(results)} results for the rows that are computed")
+    left = iter(results)
+    return tuple(judge(row, next(left) if row.is_computed else Recomputed()) for row in rows)
 
 
-def misprint(
-    name: str,
-    section: str,
-    printed: Printed,
-    value: Value,
-    unit: str,
-    tolerance: Tolerance,
-    *,
-    right: Printed,
-    note: str,
-    errata: tuple[str, ...],
-) -> ReproducedValue:
-    """Return the row of a print that is wrong; parameters as in `reproduced`.
+def judge(row: PrintedRow, found: Found) -> ReproducedValue:
+    """Hold a result against the print and against what is on record.
 
-    The row is a drift if the value leaves the tolerance around what is `right`, or if the print
-    turns out to meet the standard.
-
-    Parameters
-    ----------
-    name, section, printed, value, unit, tolerance
-        As for `reproduced`.
-    right : str or tuple of str
-        What should be printed.
-    note : str
-        Why.
-    errata : tuple of str
-        The errors behind it.
+    A value that leaves its tolerance makes the row a drift, and so does one that meets a print
+    that is on record as missed, or misses one that is on record as met.
     """
-    values = _sequence(value)
-    confirmed = tolerance.allows(values, _numbers(right))
-    if _is_numeric(printed) and meets_standard(values, printed):
-        confirmed = False
-    verdict = PrintVerdict.PRINTED_DIFFERENTLY if confirmed else PrintVerdict.DRIFT
-    found = _row(name, section, printed, values, unit, verdict, note, tolerance, right)
-    return replace(found, errata=errata)
+    if isinstance(found, bool):
+        found = Recomputed(holds=found)
+    result = found if isinstance(found, Recomputed) else Recomputed(found)
+    because, note = (text.format(*result.facts) for text in (row.because, row.note))
+    if because:
+        note = f"{BECAUSE} {because}. {note}".strip()
+    verdict, printed = PrintVerdict(row.verdict), row.printed
+    text = printed if isinstance(printed, str) else ", ".join(printed)
+    made = partial(
+        ReproducedValue, row.name, row.section, text, fitted=row.fitted, errata=row.errata
+    )
+    if result.value is None or isinstance(result.value, str):
+        words = row.value if result.value is None else result.value
+        verdict = verdict if result.holds else PrintVerdict.DRIFT
+        return made(words, row.unit, None, verdict, note)
+    values, reference = _sequence(result.value), _numbers(row.right or printed)
+    compared = _is_numeric(printed) and verdict is not PrintVerdict.DERIVED
+    tolerance = Tolerance(row.relative or (0.0 if row.absolute else STANDARD), row.absolute)
+    agrees = result.holds and tolerance.allows(values, reference)
+    if compared and verdict is not PrintVerdict.FITTED:
+        agrees &= meets_standard(values, printed) == (verdict is PrintVerdict.REPRODUCED)
+    if agrees and verdict is PrintVerdict.REPRODUCED and _is_cut_off(values, printed):
+        note = f"{note} {CUT_OFF}".strip()
+    digits = max(DIGITS, _significant_digits(text)) if compared else DIGITS
+    return made(
+        ", ".join(format_number(number, digits) for number in values),
+        row.unit,
+        _deviation(values, _numbers(printed)) if compared else None,
+        verdict if agrees else PrintVerdict.DRIFT,
+        note,
+        precision=_precision(printed) if compared else "",
+        drift=_deviation(values, reference),
+        limit=str(tolerance),
+    )
 
 
 def meets_standard(values: Sequence[Number], printed: Printed) -> bool:
@@ -311,54 +226,6 @@ def _unit(text: str) -> float:
     return float(10.0 ** (int(exponent or 0) - decimals))
 
 
-def claim(
-    name: str,
-    section: str,
-    printed: str,
-    value: str,
-    unit: str = "",
-    *,
-    verdict: PrintVerdict,
-    holds: bool,
-    note: str,
-    errata: tuple[str, ...] = (),
-) -> ReproducedValue:
-    """Return the row of a statement in words.
-
-    Parameters
-    ----------
-    name, section, printed, value, unit, note, errata
-        See `ReproducedValue`; `value` says what was found.
-    verdict : PrintVerdict
-        What is on record.
-    holds : bool
-        Whether the computation still says so; if not, the row is a drift.
-    """
-    verdict = verdict if holds else PrintVerdict.DRIFT
-    return ReproducedValue(name, section, printed, value, unit, None, verdict, note, errata=errata)
-
-
-def omitted(
-    name: str,
-    section: str,
-    printed: str,
-    unit: str,
-    because: str,
-    errata: tuple[str, ...] = (),
-) -> ReproducedValue:
-    """Return the row of a print that cannot be recomputed.
-
-    Parameters
-    ----------
-    name, section, printed, unit, errata
-        As for `reproduced`.
-    because : str
-        Why not: what is missing, or that only the machine can show it; a clause.
-    """
-    verdict, note = PrintVerdict.NOT_REPRODUCIBLE, f"{BECAUSE} {because}."
-    return ReproducedValue(name, section, printed, None, unit, None, verdict, note, errata=errata)
-
-
 def drifted(rows: Sequence[ReproducedValue]) -> tuple[ReproducedValue, ...]:
     """Return the rows that no longer agree with what is on record."""
     return tuple(row for row in rows if row.verdict is PrintVerdict.DRIFT)
@@ -369,35 +236,6 @@ def format_number(value: Number, digits: int = DIGITS) -> str:
     if isinstance(value, complex) and value.imag:
         return f"{value.real:.{digits}g} +- {abs(value.imag):.{digits}g}j"
     return f"{value.real:.{digits}g}"
-
-
-def _row(
-    name: str,
-    section: str,
-    printed: Printed,
-    values: Sequence[Number],
-    unit: str,
-    verdict: PrintVerdict,
-    note: str,
-    tolerance: Tolerance,
-    reference: Printed,
-) -> ReproducedValue:
-    text = printed if isinstance(printed, str) else ", ".join(printed)
-    numeric = _is_numeric(printed)
-    digits = max(DIGITS, _significant_digits(text)) if numeric else DIGITS
-    return ReproducedValue(
-        name,
-        section,
-        text,
-        ", ".join(format_number(number, digits) for number in values),
-        unit,
-        _deviation(values, _numbers(printed)) if numeric else None,
-        verdict,
-        note,
-        precision=_precision(printed) if numeric else "",
-        drift=_deviation(values, _numbers(reference)),
-        limit=str(tolerance),
-    )
 
 
 def _precision(printed: Printed) -> str:

@@ -15,11 +15,6 @@ class Erratum:
     id: str  # Short name, which rows use
     where: str  # Sections, equations or tables
     about: str  # What it is
-    # printed, right, note: of an erratum in a formula, which has no number of its own; else empty.
-    printed: str = ""
-    right: str = ""
-    note: str = ""
-    derived: bool = False  # Whether the formula is missing in the text rather than wrong
 
 
 @cache
@@ -28,10 +23,10 @@ def errata() -> tuple[Erratum, ...]:
     return tuple(Erratum(**entry) for entry in read_data("errata.yaml"))
 
 
-def read_data(name: str) -> list[Any]:
+@cache
+def read_data(name: str) -> Any:
     """Return what a data file of this package holds."""
     from ruamel.yaml import YAML
 
     text = files("nrs_design.thesis").joinpath(name).read_text(encoding="utf-8")
-    found: list[Any] = YAML(typ="safe", pure=True).load(text)
-    return found
+    return YAML(typ="safe", pure=True).load(text)

@@ -22,8 +22,7 @@ from nrs_design.robot.models.vectors import Array
 from nrs_design.search.balance import own_norm
 from nrs_design.switched.modes import Rows
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue, claim
-from nrs_design.thesis.errata import Erratum, errata
+from nrs_design.thesis.comparison import ReproducedValue, compare_topic
 from nrs_design.thesis.matrices import family, impedance_rows, printed_rows
 
 # A pose in rad and m, and rates of it in 1/s and m/s; any would do.
@@ -32,63 +31,8 @@ _STEP = 1e-5
 
 
 def rows() -> tuple[ReproducedValue, ...]:
-    """Check every formula of the errata, and the right ones of chapters 2.3 and 5."""
-    wrong = [entry for entry in errata() if entry.right]
-    return (*(_wrong(entry, CHECKS[entry.id]) for entry in wrong), *_right())
-
-
-def _wrong(entry: Erratum, holds: Callable[[], bool]) -> ReproducedValue:
-    return claim(
-        entry.about,
-        entry.where,
-        entry.printed,
-        entry.right,
-        verdict=PrintVerdict.DERIVED if entry.derived else PrintVerdict.PRINTED_DIFFERENTLY,
-        holds=holds(),
-        note=entry.note,
-        errata=(entry.id,),
-    )
-
-
-def _right() -> tuple[ReproducedValue, ...]:
-    found = (
-        (
-            "HIC of a collision",
-            "2.15",
-            "HIC = 2 (2/pi)^1.5 (k/m)^0.75 (M/(M + m))^1.75 v^2.5",
-            "agrees",
-            _collision(),
-            "The half sine of two masses and a spring, integrated over the whole contact.",
-        ),
-        (
-            "order of the modes in the gradient iteration",
-            "5.26",
-            "sigma_i = i - m floor(i/m) + 1",
-            "1, 2, ..., m, 1, ...",
-            [i - 3 * (i // 3) + 1 for i in range(6)] == [1, 2, 3, 1, 2, 3],
-            "For i from 0.",
-        ),
-        (
-            "gradient of v",
-            "5.28",
-            "A x x' + x x' A'",
-            "agrees",
-            _gradient(),
-            "With differences of lambda_max(A'Q + QA + 1) in all entries of Q.",
-        ),
-    )
-    return tuple(
-        claim(
-            name,
-            section,
-            printed,
-            value,
-            verdict=PrintVerdict.REPRODUCED,
-            holds=holds,
-            note=note,
-        )
-        for name, section, printed, value, holds, note in found
-    )
+    """Check formulas that are wrong or missing, and some of chapters 2.3 and 5 that are right."""
+    return compare_topic("formulas", (holds() for holds in CHECKS.values()))
 
 
 def _safe_speed() -> bool:
@@ -232,6 +176,11 @@ def _gradient() -> bool:
     return True
 
 
+def _order() -> bool:
+    return [i - 3 * (i // 3) + 1 for i in range(6)] == [1, 2, 3, 1, 2, 3]
+
+
+# By equation, in the order of the rows.
 CHECKS: Mapping[str, Callable[[], bool]] = {
     "2.17": _safe_speed,
     "3.1": _normals,
@@ -245,4 +194,7 @@ CHECKS: Mapping[str, Callable[[], bool]] = {
     "5.18": _decay,
     "5.24": _update,
     "6.21": _input_of_admittance,
+    "2.15": _collision,
+    "5.26": _order,
+    "5.28": _gradient,
 }

@@ -9,6 +9,7 @@ of surgeons' hands as cited in 6.1. They are ends between which an operator is, 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -18,7 +19,7 @@ from nrs_design.models.motion_loop import realize
 from nrs_design.simulation.metrics import Effort, effort
 from nrs_design.simulation.time_response import Array
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import ReproducedValue, Tolerance, derived
+from nrs_design.thesis.comparison import Recomputed, ReproducedValue, compare_topic
 from nrs_design.thesis.hands_on import ADMITTANCES
 
 # Thesis 7.2.2: phi goes from 0 to -15 deg; and 6.1: 1002 N/m, at the lever arm of 0.24 m.
@@ -93,12 +94,7 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
 
 def rows() -> tuple[ReproducedValue, ...]:
     """Simulate the six experiments with both operators."""
-    pushed = [move(*admittance) for admittance in ADMITTANCES]
-    led = [move(*admittance, HAND) for admittance in ADMITTANCES]
-    return (*_speeds(pushed, led), *_torques(pushed, led), _efforts(pushed))
-
-
-_CHANGES = "Mt 1-2, 2-3 at Bt 4; 1-2, 2-3 at Bt 8; Bt 4-8 at Mt 1, 2, 3"
+    return compare_topic("hand_runs", _results())
 
 
 def changes(values: list[float]) -> tuple[float, ...]:
@@ -112,92 +108,19 @@ def changes(values: list[float]) -> tuple[float, ...]:
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 
-def _speeds(pushed: list[HandRun], led: list[HandRun]) -> tuple[ReproducedValue, ReproducedValue]:
-    low, high = (changes([WAY / run.time for run in runs]) for runs in (pushed, led))
-    printed = ", ".join(map(str, SPEEDS))
-    return (
-        derived(
-            f"change of mean speed, a hand that pushes with 0.3 N m; {_CHANGES}",
-            "7.2.2",
-            low,
-            "%",
-            printed=printed,
-            right=("-6.233", "-5.817", "-1.724", "-1.695", "-47.24", "-44.71", "-42.29"),
-            tolerance=Tolerance(2e-3),
-            holds=all(ours < 0 for ours in low)
-            and all(abs(low[i] - SPEEDS[i]) < 1 for i in range(4)),
-            note="All signs are as printed, and the effect of Mt within one point. Bt costs more "
-            "than on the robot, whose handle did not push with one torque: it is driven by a motor "
-            "whose torque and speed are not printed.",
-        ),
-        derived(
-            f"change of mean speed, a hand that moves on at 8 deg/s; {_CHANGES}",
-            "7.2.2",
-            high,
-            "%",
-            printed=printed,
-            right=("1.427", "-4.439", "0.018", "-1.121", "-3.056", "-4.402", "-1.083"),
-            tolerance=Tolerance(2e-3, absolute=0.005),
-            holds=all(
-                ours > thesis_change > theirs
-                for ours, thesis_change, theirs in zip(high[4:], SPEEDS[4:], low[4:], strict=True)
-            ),
-            note="The other end: behind 57.7 N m/rad (1002 N/m, 6.1) the robot follows, and Bt "
-            "costs next to nothing. What is printed for Bt lies between the two hands. Mt has no "
-            "sign of its own here: the hand and the mass swing.",
-        ),
-    )
-
-
-def _torques(pushed: list[HandRun], led: list[HandRun]) -> tuple[ReproducedValue, ReproducedValue]:
+def _results() -> Iterator[Recomputed]:
+    pushed = [move(*admittance) for admittance in ADMITTANCES]
+    led = [move(*admittance, HAND) for admittance in ADMITTANCES]
+    slow, fast = (changes([WAY / run.time for run in runs]) for runs in (pushed, led))
+    near = all(abs(slow[i] - SPEEDS[i]) < 1 for i in range(4))
+    yield Recomputed(slow, near and all(change < 0 for change in slow))
+    between = zip(fast[4:], SPEEDS[4:], slow[4:], strict=True)
+    yield Recomputed(fast, all(led > printed > pushed for led, printed, pushed in between))
     low, high = (changes([run.effort.total for run in runs]) for runs in (pushed, led))
-    printed = ", ".join(map(str, TORQUES))
-    balance = (
-        "Of a hand that never pulls, the total is Bt times the way and Mt times the last speed"
-    )
-    return (
-        derived(
-            f"change of total torque, a hand that pushes with 0.3 N m; {_CHANGES}",
-            "7.2.2",
-            low,
-            "%",
-            printed=printed,
-            right=("6.647", "6.176", "1.755", "1.724", "89.55", "80.86", "73.27"),
-            tolerance=Tolerance(2e-3),
-            holds=all(
-                ours > 0 and abs(ours - theirs) < 12
-                for ours, theirs in zip(low, TORQUES, strict=True)
-            ),
-            note=f"{balance}, so a Bt that is doubled costs up to twice as much, and less with "
-            "more Mt. All signs are as printed, and sizes within 12 points of a hundred.",
-        ),
-        derived(
-            f"change of total torque, a hand that moves on at 8 deg/s; {_CHANGES}",
-            "7.2.2",
-            high,
-            "%",
-            printed=printed,
-            right=("22.49", "29.37", "6.575", "6.300", "88.03", "63.60", "34.42"),
-            tolerance=Tolerance(2e-3),
-            holds=all(ours > 0 for ours in high),
-            note="The signs are as printed. Mt counts for more than on the robot: this hand swings "
-            "with it, and pulls.",
-        ),
-    )
-
-
-def _efforts(pushed: list[HandRun]) -> ReproducedValue:
+    pairs = zip(low, TORQUES, strict=True)
+    yield Recomputed(low, all(ours > 0 and abs(ours - theirs) < 12 for ours, theirs in pairs))
+    yield Recomputed(high, all(ours > 0 for ours in high))
     found = [run.effort for run in pushed]
-    totals, energies = tuple(e.total for e in found), tuple(e.energy for e in found)
-    return derived(
-        "total torque of each experiment, its rms, its energy; a hand that pushes with 0.3 N m",
-        "7.2.2",
-        (*totals, max(e.rms for e in found), max(energies)),
-        "N m s, N m, J",
-        printed="changes alone are printed",
-        right=("1.128", "1.203", "1.278", "2.137", "2.175", "2.213", "0.3", "0.07853"),
-        tolerance=Tolerance(2e-3),
-        holds=max(energies) - min(energies) < 1e-3,
-        note="Under one torque all six moves cost the same energy, 0.3 N m times 15 deg, and have "
-        "the same rms: of the three, the total alone tells them apart.",
-    )
+    energies = [e.energy for e in found]
+    numbers = (*(e.total for e in found), max(e.rms for e in found), max(energies))
+    yield Recomputed(numbers, max(energies) - min(energies) < 1e-3)

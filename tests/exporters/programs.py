@@ -104,3 +104,32 @@ def built(*command: str | Path) -> None:
     """Run a compiler that must not complain."""
     done = run(*command)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def emulated(folder: Path, law: Path, *others: str | Path) -> str:
+    """Compile a law as for the robot, and return what its program says on an emulated STM32F405."""
+    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
+    compiled, program = folder / "compiled.o", folder / "program.elf"
+    built(gcc, *CORTEX, *STRICT, "-O2", "-c", law, "-o", compiled)
+    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
+    linked = run(gcc, *flags, compiled, *others, *start, "-lm", "-o", program)
+    assert linked.returncode == 0, linked.stderr
+    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
+    # The emulator prints what the program says beside its own messages; its exit code stands first.
+    return f"{done.returncode}: {done.stderr}"
+
+
+def check_with_misra(source: Path) -> None:
+    """Let cppcheck look for MISRA C, but for macros that are the caller's (rule 2.5)."""
+    limits = ("RADIX=2", "MANT_DIG=24", "MAX_EXP=128", "EVAL_METHOD=0")
+    suppressed = ("missingIncludeSystem", "unusedFunction", "misra-c2012-2.5")
+    suppressed += ("unmatchedSuppression",)
+    done = run(
+        compiler("cppcheck"),
+        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
+        *(f"-DFLT_{limit}" for limit in limits),
+        *(f"--suppress={name}" for name in suppressed),
+        source,
+    )
+    assert (done.returncode, done.stderr) == (0, "")

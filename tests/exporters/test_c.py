@@ -12,12 +12,11 @@ from nrs_design.exporters.vectors import make_vectors
 from tests.exporters.programs import (
     CORTEX,
     LAWS,
-    M4F,
-    MACHINE,
-    SEMIHOSTING,
     STRICT,
     built,
+    check_with_misra,
     compiler,
+    emulated,
     run,
 )
 
@@ -62,19 +61,8 @@ def test_host_compilers_agree_with_the_replica(tmp_path, sampled_export, shape):
 )
 def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, sampled_export, shape):
     """The same states on an emulated STM32F405, compiled as for the robot."""
-    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     flag = written(tmp_path, LAWS[shape], sampled_export)
-    compiled, program = tmp_path / "law.o", tmp_path / "test.elf"
-    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", compiled)
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
-    sources = (compiled, tmp_path / "test.c", *start)
-    linked = run(
-        gcc, *CORTEX, flag, "-O2", "-std=c99", "-ffp-contract=off", *sources, "-o", program
-    )
-    assert linked.returncode == 0, linked.stderr
-    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
-    # The emulator prints what the program says beside its own messages.
-    assert (done.returncode, done.stderr) == (0, SAME)
+    assert emulated(tmp_path, tmp_path / "law.c", flag, tmp_path / "test.c") == f"0: {SAME}"
 
 
 def test_the_law_links_to_nothing(tmp_path, sampled_export):
@@ -89,19 +77,8 @@ def test_the_law_links_to_nothing(tmp_path, sampled_export):
 
 
 def test_cppcheck_with_misra_is_content(tmp_path, sampled_export):
-    """But for macros that the caller uses: rule 2.5 asks for none that this file does not."""
-    cppcheck = compiler("cppcheck")
     written(tmp_path, LAWS["filter and spring"], sampled_export, 1)
-    limits = ("RADIX=2", "MANT_DIG=24", "MAX_EXP=128", "EVAL_METHOD=0")
-    suppressed = ("missingIncludeSystem", "unusedFunction", "misra-c2012-2.5")
-    done = run(
-        cppcheck,
-        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
-        *(f"-DFLT_{limit}" for limit in limits),
-        *(f"--suppress={name}" for name in suppressed),
-        tmp_path / "law.c",
-    )
-    assert (done.returncode, done.stderr) == (0, "")
+    check_with_misra(tmp_path / "law.c")
 
 
 @pytest.mark.slow

@@ -15,16 +15,7 @@ from nrs_design.exporters.logic_cases import logic_document
 from nrs_design.exporters.vectors import make_vectors, vectors_text
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
-from tests.exporters.programs import (
-    CORTEX,
-    M4F,
-    MACHINE,
-    SEMIHOSTING,
-    STRICT,
-    built,
-    compiler,
-    run,
-)
+from tests.exporters.programs import STRICT, built, check_with_misra, compiler, emulated, run
 from tests.support import ROOT
 
 PERIOD = Fraction(1, 500)
@@ -128,15 +119,8 @@ def test_compiled_logic_agrees_with_the_replica(tmp_path, program):
 
 @pytest.mark.slow
 def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, program):
-    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
-    compiled, made = tmp_path / "law.o", tmp_path / "main.elf"
-    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", compiled)
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
-    linked = run(gcc, *CORTEX, "-O2", "-std=c99", compiled, tmp_path / "main.c", *start, "-o", made)
-    assert linked.returncode == 0, linked.stderr
-    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", made)
-    # The emulator prints what the program says beside its own messages.
-    assert (done.returncode, done.stderr.splitlines()) == (0, program)
+    said = emulated(tmp_path, tmp_path / "law.c", tmp_path / "main.c").removeprefix("0: ")
+    assert said.splitlines() == program
 
 
 def test_exported_cases_reach_every_switch(shipped):
@@ -159,22 +143,11 @@ def test_exported_cases_reach_every_switch(shipped):
 
 
 @pytest.mark.slow
-def test_it_compiles_for_a_cortex_and_is_clean(tmp_path, shipped):
+def test_cppcheck_with_misra_is_content(tmp_path, shipped):
     record, law, names = shipped
     (tmp_path / f"{names.spec}.h").write_text(header_text(record, law, names))
     (tmp_path / "law.c").write_text(source_text(record, law, names))
-    gcc = compiler("arm-none-eabi-gcc")
-    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "law.c", "-o", tmp_path / "law.o")
-    limits = ("RADIX=2", "MANT_DIG=24", "MAX_EXP=128", "EVAL_METHOD=0")
-    suppressed = ("missingIncludeSystem", "unusedFunction")
-    done = run(
-        compiler("cppcheck"),
-        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
-        *(f"-DFLT_{limit}" for limit in limits),
-        *(f"--suppress={name}" for name in suppressed),
-        tmp_path / "law.c",
-    )
-    assert (done.returncode, done.stderr) == (0, "")
+    check_with_misra(tmp_path / "law.c")
 
 
 def test_every_number_of_the_logic_is_in_the_header(shipped):

@@ -7,18 +7,11 @@ import zipfile
 import pytest
 
 from nrs_design.exporters.compiled import compiler
-from nrs_design.exporters.deployed_archive import Archive, unpack_archive
 from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.fmu import contents, library_of, packed
 from nrs_design.exporters.program import program_of
 
 XML = "modelDescription.xml"
-
-
-def unpacked(content):
-    """Here, not in a process of its own, which would take its time for each of these."""
-    found = unpack_archive(io.BytesIO(content), None)
-    return None if found is None else Archive(*found)
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +27,7 @@ def differences(sampled_export, entries):
             text = change(found[name].decode())
             assert text != found[name].decode()
             found[name] = text.encode()
-        return [*model_differences(unpacked(packed(found | other)), sampled_export)]
+        return [*model_differences(packed(found | other), sampled_export)]
 
     return compare
 
@@ -114,7 +107,7 @@ def test_what_is_more_or_less(differences, entries, sampled_export):
     assert differences(**{"sources/other.c": b""}) == ["sources/other.c is not in an export"]
     for name in entries:
         left = packed({k: v for k, v in entries.items() if k != name})
-        assert [*model_differences(unpacked(left), sampled_export)] == [f"{name} is missing"]
+        assert [*model_differences(left, sampled_export)] == [f"{name} is missing"]
 
 
 def test_hostile_files(differences, entries, sampled_export):
@@ -129,5 +122,5 @@ def test_hostile_files(differences, entries, sampled_export):
     whole = packed(entries)
     around = (b"before" + whole, whole + b"behind", packed({"x": b""}) + whole)
     for content in (b"", b"PK", pressed.getvalue(), many, whole[:-9], *around):
-        (found,) = model_differences(unpacked(content), sampled_export)
+        (found,) = model_differences(content, sampled_export)
         assert found == "it is no archive that was exported"

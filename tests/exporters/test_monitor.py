@@ -20,12 +20,11 @@ from tests.exporters.monitored import TEXT, spec_with
 from tests.exporters.programs import (
     CORTEX,
     LAWS,
-    M4F,
-    MACHINE,
-    SEMIHOSTING,
     STRICT,
     built,
+    check_with_misra,
     compiler,
+    emulated,
     run,
 )
 from tests.identification import runs
@@ -279,35 +278,22 @@ int main(void)
 
 @pytest.mark.slow
 def test_on_an_emulated_processor_it_tells_the_same(tmp_path, monitor):
-    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     for name, text in (monitor(spec_with()).sources | {"main.c": PRESS}).items():
         (tmp_path / name).write_text(text)
     sources = (tmp_path / "x_monitor.c", tmp_path / "main.c")
     built(compiler(), *STRICT, "-O2", *sources, "-o", tmp_path / "here")
     here = run(tmp_path / "here").stdout
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
-    flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
-    assert run(gcc, *flags, *sources, *start, "-o", tmp_path / "there").returncode == 0
-    there = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", tmp_path / "there")
+    assert emulated(tmp_path, *sources) == f"0: {here}"
     kind, sample = here.split(" at ")
-    assert (here, int(kind)) == (there.stderr, [*KINDS].index("FORCE"))
+    assert int(kind) == [*KINDS].index("FORCE")
     assert 1000 <= int(sample) < 1400
 
 
 @pytest.mark.slow
 def test_cppcheck_with_misra_is_content(tmp_path, monitor):
-    """But for macros that the caller uses, as with the law."""
-    cppcheck = compiler("cppcheck")
     for name, text in monitor(spec_with("{dwell_time: 2 s}")).sources.items():
         (tmp_path / name).write_text(text)
-    suppressed = ("missingIncludeSystem", "unusedFunction", "misra-c2012-2.5")
-    done = run(
-        cppcheck,
-        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
-        *(f"--suppress={name}" for name in suppressed),
-        tmp_path / "x_monitor.c",
-    )
-    assert (done.returncode, done.stderr) == (0, "")
+    check_with_misra(tmp_path / "x_monitor.c")
 
 
 @pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])

@@ -7,17 +7,7 @@ from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.self_test import program_macro, self_test
 from nrs_design.exporters.vectors import make_vectors
-from tests.exporters.programs import (
-    CORTEX,
-    LAWS,
-    M4F,
-    MACHINE,
-    SEMIHOSTING,
-    STRICT,
-    built,
-    compiler,
-    run,
-)
+from tests.exporters.programs import LAWS, STRICT, built, compiler, emulated, run
 
 # What a robot does before it moves: the exit code says which case is the first to differ.
 MAIN = """#include "soft-tissue_test.h"
@@ -57,14 +47,8 @@ def test_the_first_case_that_differs(tmp_path, sampled_export, wrong, first):
 
 @pytest.mark.parametrize("wrong", [[], [(17, "command"), (30, "valid")]])
 def test_on_an_emulated_processor(tmp_path, sampled_export, wrong):
-    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
-    sources, program = written(tmp_path, sampled_export, wrong), tmp_path / "test.elf"
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
-    flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
-    done = run(gcc, *flags, *sources, *start, "-o", program)
-    assert done.returncode == 0, done.stderr
-    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
-    assert (done.returncode, done.stderr) == (18 if wrong else 0, "")
+    main, *others = written(tmp_path, sampled_export, wrong)
+    assert emulated(tmp_path, main, *others) == f"{18 if wrong else 0}: "
 
 
 def test_the_program_around_it(tmp_path, sampled_export):

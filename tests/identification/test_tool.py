@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import PoseRecord, read_poses
+from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tool import identify_tool
-from nrs_design.tables.table import Source
 from tests.identification import synthetic
 
 MASS, CENTER = synthetic.TOOL_MASS, np.array(synthetic.TOOL_CENTER)

@@ -60,7 +60,6 @@ def test_a_coupling_that_says_nothing_is_refused(coupling, words):
     [
         (LOADED.replace(", load_inertia: 1.213 kg*m^2", ""), "", "the inertia of the drives"),
         (LOADED, "disturbances: {command: 8 deg/s}\n", "depends on the number of axes"),
-        (LOADED, "coordinates: force\n", "not modelled in force coordinates"),
     ],
 )
 def test_what_is_not_modelled_with_it_is_refused(text, more, words):
@@ -75,7 +74,7 @@ def test_beside_samples_and_disturbances():
         more="sampling: {period: 2 ms, delay: 1}\ndisturbances: {command: 8 deg/s}\n",
     )
     assert spec.coupling.axes == 3
-    with pytest.raises(SpecError, match="the load of the motor is not modelled"):
+    with pytest.raises(SpecError, match="a load of the motor of one axis beside a sampled loop"):
         parse_spec(f"{LOADED}sampling: {{period: 2 ms, delay: 1}}\n")
     unloaded = LOADED.replace(", load_inertia: 1.213 kg*m^2", "")
     with pytest.raises(SpecError, match="the inertia of the drives"):

@@ -117,12 +117,12 @@ def test_wrong_modes_are_left_and_right_ones_last():
         (
             "switching: mode-logic",
             "sampling: {period: 2 ms, delay: 1}\nswitching: mode-logic",
-            "beside sampling, are not",
+            "beside a sampled loop",
         ),
         (
             "stiffness: 43.0356 N*m/rad",
             "stiffness: {nominal: 43 N*m/rad, range: [42 N*m/rad, 44 N*m/rad]}",
-            "range of environment 'tissue' exclude each other",
+            "beside the range of environment 'tissue'",
         ),
     ],
 )

@@ -115,7 +115,7 @@ def test_dwell_time_excludes_gains_that_move() -> None:
     text = spoiled(IMPEDANCE, "switching: arbitrary", "switching: {dwell_time: 1 s}")
     interaction(text)
     error = refusal(spoiled(text, MT, f"Mt: {HEAVY}"))
-    assert "the range of Mt of 'insertion' exclude each other" in error.message
+    assert "a dwell time beside the range of Mt of 'insertion'" in error.message
     assert (error.line, error.column) == place_of(text, "1 s}")
 
 

@@ -124,10 +124,14 @@ def test_degrees_cancel():
         ("preload: [2 mm, 8 mm]", "preload: [8 mm, 2 mm]", "not within the preload"),
         ("preload: [2 mm, 8 mm]", "preload: 2 mm", "preload"),
         ("range: [1.1, 1.3]", "range: [0.9, 1.3]", "not between 1 and 3"),
-        ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "not within the range"),
+        ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "outside the range"),
         ("nominal: 1.2,", "nominal: 1.2001,", "finer than 1/1000"),
         ("    exponent: {nominal: 1.2, range: [1.1, 1.3]}\n", "", "exponent"),
-        ("switching: arbitrary", "switching: {dwell_time: 1 s}", "its parameters may move"),
+        (
+            "switching: arbitrary",
+            "switching: {dwell_time: 1 s}",
+            "beside the range of",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_refused(old, new, message):
@@ -139,10 +143,10 @@ def test_what_makes_no_sense_is_refused(old, new, message):
     [
         (
             "contact: losable\n",
-            "loss of contact is not modelled: 'soft' is known within its preload only",
+            "'soft', known within its preload only, beside loss of contact",
         ),
-        ("disturbances: {command: 8 deg/s}\n", "bounds from rest are not modelled"),
-        ("coordinates: force\n", "its deflection does not jump"),
+        ("disturbances: {command: 8 deg/s}\n", "beside bounds under disturbances"),
+        ("coordinates: force\n", "force coordinates beside 'soft'"),
     ],
 )
 def test_what_is_not_modelled_is_refused(end, message):
@@ -157,6 +161,6 @@ def test_a_loaded_motor_in_ranges_has_no_rest_under_a_preload():
     gain = "gain: {nominal: 4.8417e-4 rad/s/rpm, range: [4.4e-4 rad/s/rpm, 5.2e-4 rad/s/rpm]}"
     ranged = text.replace("gain: 4.8417e-4 rad/s/rpm", gain)
     assert not parse_spec(ranged).actuator.gain.fixed
-    with pytest.raises(SpecError, match="under the preload of concha there is no rest") as caught:
+    with pytest.raises(SpecError, match="load of the motor beside a range of the gain") as caught:
         parse_spec(loaded.replace("gain: 4.8417e-4 rad/s/rpm", gain))
     assert "load_inertia" in str(caught.value)

@@ -7,7 +7,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import InteractionDesignSpec, parse_spec
 from nrs_design.spec.describe import describe
-from tests.support import SOFT_TISSUE
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, typed
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 
@@ -65,7 +65,6 @@ RANGED = TEXT.replace(
 LOADED = TEXT.replace(
     "time_constant: 0.0351 s", "time_constant: 0.0351 s\n  load_inertia: 1 kg*m^2"
 )
-POSITION = "  held: {type: position}\n"
 
 
 def test_ranges_of_the_actuator_are_for_impedance_controllers_with_and_without_samples():
@@ -74,31 +73,14 @@ def test_ranges_of_the_actuator_are_for_impedance_controllers_with_and_without_s
             Fraction("0.034"),
             Fraction("0.036"),
         ]
-    mixed = "idle_states: {decay: 20 1/s}\n"
-    for text, what in ((RANGED, "the time_constant has a range"), (LOADED, "load_inertia")):
-        both = text.replace("controllers:\n", f"controllers:\n{POSITION}") + mixed
-        with pytest.raises(SpecError, match=rf"{what}.*impedance controllers alone, and 'held'"):
-            parse_spec(both)
 
 
 def test_a_load_of_the_motor_is_for_continuous_time():
     assert parse_spec(LOADED).actuator.load_inertia.exact == 1
-    with pytest.raises(SpecError, match="not modelled in the sampled loop"):
+    with pytest.raises(SpecError, match="a load of the motor of one axis beside a sampled loop"):
         sampled("{period: 2 ms, delay: 0}", LOADED)
     with pytest.raises(SpecError, match="load_inertia"):
         parse_spec(LOADED.replace("1 kg*m^2", "0 kg*m^2"))
-
-
-def test_a_motor_that_may_change_and_a_dwell_time_exclude_each_other():
-    with pytest.raises(SpecError, match="a dwell time and a range of the actuator"):
-        parse_spec(RANGED.replace("switching: arbitrary", "switching: {dwell_time: 1 s}"))
-
-
-def test_ranges_of_the_actuator_do_not_go_with_a_stated_loop():
-    loop = "  transfer_function: {numerator: [28, 1600], denominator: [1, 57, 1600]}\n"
-    text = RANGED.replace("motion_loop:\n", f"motion_loop:\n{loop}")
-    with pytest.raises(SpecError, match="states the closed motion loop itself"):
-        sampled("{period: 2 ms, delay: 0}", text)
 
 
 def test_check_lists_what_the_processor_does():
@@ -142,3 +124,78 @@ def test_a_wrong_key_is_told_by_the_one_that_is_meant(word, meant):
     assert f"unknown key `sampling.{word}`" in message
     assert "is missing" not in message
     assert f"did you mean {meant}? keys here are period, delay, " in message
+
+
+FORCE = FORCE_LIMIT.read_text(encoding="utf-8")
+OFFSET = (ROOT / "specs/neuroboscope/force-limit-offset.nrs.yaml").read_text(encoding="utf-8")
+SAMPLED = "\nsampling: {period: 2 ms, delay: 0}\n"
+BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
+DAMPED = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
+LOSABLE = SAMPLED + "contact: losable\n"
+OUTER = "\nsampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"
+
+
+def read(text, *changes):
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return parse_spec(text)
+
+
+def test_loss_of_damped_contact_is_read():
+    assert read(TEXT + LOSABLE, DAMPED)
+
+
+@pytest.mark.parametrize(
+    ("outer", "round_", "step"),
+    [
+        ("0.1 ms", 20, "1/10000"),
+        ("2 ms", 1, "1/500"),
+        ("10 ms", 5, "1/500"),
+        ("0.04 ms", 50, "1/25000"),
+    ],
+)
+def test_periods_that_meet(outer, round_, step):
+    sampling = read(TEXT + OUTER.replace("0.1 ms", outer)).sampling
+    assert (sampling.round, sampling.step) == (round_, Fraction(step))
+    assert sampling.outer == sampling.outer_period.exact
+
+
+@pytest.mark.parametrize(
+    ("outer", "said"),
+    [("0.3 ms", "whole number"), ("3 ms", "whole number"), ("0.02 ms", "is 100 of the other")],
+)
+def test_periods_that_do_not_meet(outer, said):
+    with pytest.raises(SpecError, match=said) as caught:
+        read(TEXT + OUTER.replace("0.1 ms", outer))
+    assert "sampling.outer_period" in str(caught.value)
+    assert "1 to 50 periods" in caught.value.remedy
+
+
+def test_a_delay_counts_samples_of_the_force():
+    text = TEXT + OUTER.replace("delay: 0", "delay: [0, 3]")
+    assert read(text).sampling.oldest == Fraction(3, 10_000)
+    assert read(text, (", outer_period: 0.1 ms", "")).sampling.oldest == Fraction(3, 500)
+
+
+def test_without_sampling_none_of_this_is_refused():
+    assert read(OFFSET)
+    assert read(TEXT, ("model: elastic", "model: maxwell\n    damping: 20 N*s/m"))
+
+
+def test_ranges_of_gains_and_force_control_are_read():
+    assert read(TEXT + SAMPLED, (f"{BT}}}", f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}"))
+    assert read(FORCE + SAMPLED)
+    assert read(FORCE + LOSABLE)
+
+
+def test_check_says_it_as_a_user_types_it(tmp_path):
+    path = tmp_path / "offset.nrs.yaml"
+    path.write_text(OFFSET + SAMPLED, encoding="utf-8")
+    done = typed("check", path, cwd=tmp_path)
+    assert done.returncode == 2
+    assert (
+        "controllers.force.offset: the offset of 'force' beside a sampled loop: not modelled"
+        in done.stderr
+    )
+    assert "offset.nrs.yaml:42" in done.stderr

@@ -82,7 +82,7 @@ def test_a_goal_for_the_creep_needs_a_sensor() -> None:
 
 def test_a_filter_is_for_impedance_controllers() -> None:
     force = (ROBOT / "force-limit.nrs.yaml").read_text(encoding="utf-8")
-    with pytest.raises(SpecError, match="modelled for impedance controllers only"):
+    with pytest.raises(SpecError, match="a filter of the force beside 'position'"):
         read("sensor: {filter: {cutoff: 30 Hz}}\n", force)
     read("sensor: {bias: 1e-3 N*m}\n", force)
 

@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq, fmpq_mat
 
 from nrs_design.controllers.float32 import to_float32
-from nrs_design.errors import AssemblyError
+from nrs_design.errors import AssemblyError, SpecError
 from tests.search.support import thesis_robot
 
 SOFT = ("41.5", "44.2")
@@ -57,7 +57,7 @@ def test_a_free_axis_follows_the_command():
 
 def test_force_coordinates_are_refused():
     """The force would jump with the stiffness, and its bound with it."""
-    with pytest.raises(AssemblyError, match="velocity command is modelled for impedance"):
+    with pytest.raises(SpecError, match="force coordinates beside bounds under disturbances"):
         thesis_robot(SOFT, ("2.15",), "0.01", coordinates="force", **COMMAND)
 
 

@@ -126,29 +126,9 @@ def test_a_mass_that_changes_too_much_is_refuted():
 
 
 @pytest.mark.parametrize(
-    ("section", "words"),
-    [
-        ("contact: losable", "loss of contact"),
-        ("sampling: {period: 2 ms, delay: 0}", "a sampled loop"),
-        ("disturbances: {command: 8 deg/s}", "a bound under disturbances"),
-        ("coordinates: force", "force coordinates"),
-    ],
-)
-def test_what_is_not_modelled_is_refused(section, words):
-    with pytest.raises(SpecError, match=f"hand with a mass, which is not modelled beside {words}"):
-        parse_spec(f"{TEXT}\n{section}\n")
-
-
-@pytest.mark.parametrize(
     ("old", "new", "words"),
     [
         ("Mt: 2 kg*m^2, Bt: 4", "Mt: 0 kg*m^2, Bt: 4", "depends on itself"),
-        ("time_constant:", "load_inertia: 1.213 kg*m^2\n  time_constant:", "load of the motor"),
-        ("environment: hand, Mt: 2 kg*m^2, Bt: 4", "environment: hand, contacts: [[hand, soft]], "
-         "Mt: 2 kg*m^2, Bt: 4", "has a mass"),
-        ("  lively: {type: impedance, environment: hand, Mt: 2 kg*m^2, Bt: 4 N*m*s/rad}",
-         "  lively: {type: force, environment: hand, proportional_gain: 0.02 rad/(N*m)}",
-         "force control in contact with"),
     ],
 )  # fmt: skip
 def test_controllers_and_motors_that_are_refused(old, new, words):
@@ -157,12 +137,6 @@ def test_controllers_and_motors_that_are_refused(old, new, words):
     assert old in text
     with pytest.raises(SpecError, match=words):
         parse_spec(text.replace(old, new))
-
-
-def test_a_position_controller_beside_is_refused():
-    text = TEXT.replace("switching:", "  still: {type: position}\nswitching:")
-    with pytest.raises(SpecError, match="a mixture of controllers"):
-        parse_spec(f"{text}\nidle_states: {{decay: 20 1/s}}\n")
 
 
 def test_a_mass_at_a_lever_arm_is_turned():

@@ -84,7 +84,7 @@ def test_the_shipped_certificate_holds():
 
 
 def test_loss_of_contact_is_refused():
-    with pytest.raises(SpecError, match="whose integral a force has to balance"):
+    with pytest.raises(SpecError, match="whose integral bleeds, and a sampled loop: not modelled"):
         parse_spec(text_of(BOTH, more=SAMPLED.replace("kept", "losable")))
 
 

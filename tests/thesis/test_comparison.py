@@ -5,29 +5,29 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.thesis.comparison import (
-    PrintVerdict,
+    PrintedRow,
+    Recomputed,
     Tolerance,
-    claim,
-    derived,
+    compare_topic,
     drifted,
-    fitted,
     format_number,
+    judge,
     meets_standard,
-    misprint,
-    near,
-    omitted,
-    reproduced,
 )
 
 
+def row(verdict, printed, found, /, **options):
+    tolerance = options.pop("tolerance", Tolerance())
+    given = {"relative": tolerance.relative, "absolute": tolerance.absolute, **options}
+    return judge(PrintedRow(verdict, "quantity", "1.1", printed, "s", **given), found)
+
+
 def confirm(printed, value, tolerance, **options):
-    return reproduced("quantity", "1.1", printed, value, "s", tolerance, **options)
+    return row("reproduced", printed, value, tolerance=tolerance, **options)
 
 
 def correct(printed, value, tolerance, right):
-    return misprint(
-        "quantity", "1.1", printed, value, "s", tolerance, right=right, note="why", errata=("e",)
-    )
+    return row("printed differently", printed, value, tolerance=tolerance, right=right)
 
 
 @pytest.mark.parametrize(
@@ -49,14 +49,14 @@ def test_tolerance_is_about_the_right_value_where_one_is_given():
 
 
 def test_words_in_print_have_no_deviation():
-    row = confirm("Hurwitz", (-1.0, -2.0), Tolerance(1e-3), right=("-1", "-2"))
-    assert (row.verdict, row.deviation, row.printed) == ("reproduced", None, "Hurwitz")
+    found = confirm("Hurwitz", (-1.0, -2.0), Tolerance(1e-3), right=("-1", "-2"))
+    assert (found.verdict, found.deviation, found.printed) == ("reproduced", None, "Hurwitz")
 
 
 def test_misprint_needs_the_right_value():
-    row = correct("3.7754", 3.74541, Tolerance(1e-4), "3.7454")
-    assert row.verdict == "printed differently"
-    assert row.deviation == pytest.approx(0.0301 / 3.7754, rel=1e-2)
+    found = correct("3.7754", 3.74541, Tolerance(1e-4), "3.7454")
+    assert found.verdict == "printed differently"
+    assert found.deviation == pytest.approx(0.0301 / 3.7754, rel=1e-2)
     assert correct("3.7754", 3.7554, Tolerance(1e-4), "3.7454").verdict == "drift"
 
 
@@ -64,20 +64,19 @@ def test_misprint_is_a_drift_if_the_print_is_right_after_all():
     assert correct("3.7454", 3.7454, Tolerance(1e-4), "3.7454").verdict == "drift"
 
 
-def test_a_claim_that_no_longer_holds_is_a_drift():
-    verdicts = [
-        claim(
-            "q", "1", "p", "v", verdict=PrintVerdict.PRINTED_DIFFERENTLY, holds=holds, note=""
-        ).verdict
-        for holds in (True, False)
-    ]
-    assert verdicts == ["printed differently", "drift"]
+@pytest.mark.parametrize("verdict", ["printed differently", "derived", "reproduced"])
+def test_words_that_no_longer_hold_are_a_drift(verdict):
+    for found in (True, Recomputed("v"), "v"):
+        kept = row(verdict, "p", found, value="v")
+        assert (kept.verdict, kept.value, kept.deviation) == (verdict, "v", None)
+    for found in (False, Recomputed("v", holds=False)):
+        assert row(verdict, "p", found, value="v").verdict == "drift"
 
 
 def test_pairs_of_poles():
-    row = confirm("-28.4900 +- 28.49861j", complex(-28.49, 28.4986), Tolerance(1e-5))
-    assert row.verdict == "reproduced"
-    assert row.value == "-28.49 +- 28.4986j"
+    found = confirm("-28.4900 +- 28.49861j", complex(-28.49, 28.4986), Tolerance(1e-5))
+    assert found.verdict == "reproduced"
+    assert found.value == "-28.49 +- 28.4986j"
     assert confirm("-28 +- 28j", complex(-28, 29), Tolerance(1e-2)).verdict == "drift"
 
 
@@ -100,10 +99,10 @@ def test_value_shows_as_many_digits_as_the_print():
 
 
 def test_what_cannot_be_recomputed_says_why():
-    row = omitted("q", "1", "20", "%", "there is no record")
-    assert row.verdict == "not reproducible"
-    assert (row.value, row.deviation, row.drift) == (None, None, None)
-    assert row.note == "Not reproducible, because there is no record."
+    found = row("not reproducible", "20", Recomputed(), because="there is no record")
+    assert found.verdict == "not reproducible"
+    assert (found.value, found.deviation, found.drift) == (None, None, None)
+    assert found.note == "Not reproducible, because there is no record."
 
 
 def test_drifted_picks_the_drifts():
@@ -118,9 +117,9 @@ def test_number_text_is_close_to_the_number(value):
 
 @given(st.floats(1e-3, 1e3), st.floats(-2e-3, 2e-3))
 def test_verdict_agrees_with_the_deviation(printed, relative):
-    row = confirm(repr(printed), printed * (1 + relative), Tolerance(1e-3))
+    found = confirm(repr(printed), printed * (1 + relative), Tolerance(1e-3))
     if abs(abs(relative) - 1e-3) > 1e-9:
-        assert (row.verdict == "reproduced") == (row.deviation < 1e-3)
+        assert (found.verdict == "reproduced") == (found.deviation < 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -153,30 +152,29 @@ def test_a_misprint_within_the_standard_is_none():
     [("0.99", 0.9974, True), ("-0.99", -0.9974, True), ("1.00", 0.9974, False), ("1", 1.0, False)],
 )
 def test_what_is_cut_off_is_said(printed, value, cut):
-    row = confirm(printed, value, Tolerance(1e-2))
-    assert row.verdict == "reproduced"
-    assert ("Cut off" in row.note) == cut
+    found = confirm(printed, value, Tolerance(1e-2))
+    assert found.verdict == "reproduced"
+    assert ("Cut off" in found.note) == cut
+
+
+def near(printed, value, right, tolerance):
+    given = {"right": right, "because": "why", "tolerance": tolerance}
+    return row("not reproducible", printed, value, **given)
 
 
 def test_near_is_neither_reproduced_nor_far():
-    def close(value):
-        options = {"right": "1.05", "because": "why"}
-        return near("q", "1", "1.00", value, "s", Tolerance(0.1), **options).verdict
-
-    assert [close(value) for value in (1.0, 1.05, 1.2)] == ["drift", "not reproducible", "drift"]
+    found = [near("1.00", value, "1.05", Tolerance(0.1)).verdict for value in (1.0, 1.05, 1.2)]
+    assert found == ["drift", "not reproducible", "drift"]
 
 
 def test_print_and_reference_are_two_things():
     """Far from the print and on our reference is no drift, and the other way about it is one."""
-
-    def found(value):
-        row = near("q", "1", "2.0", value, "s", Tolerance(1e-3), right="2.5", because="why")
-        return row.verdict, row.deviation, row.precision, row.drift, row.limit
-
-    assert found(2.5) == ("not reproducible", 0.25, "0.1", 0.0, "0.1 %")
-    assert found(2.4)[0] == "drift"
-    row = confirm("2.15", 2.1514, Tolerance(absolute=1e-4), right="2.1514")
-    assert (row.precision, row.drift, row.limit) == ("0.01", 0.0, "0.0001")
+    found = near("2.0", 2.5, "2.5", Tolerance(1e-3))
+    assert (found.verdict, found.deviation, found.precision) == ("not reproducible", 0.25, "0.1")
+    assert (found.drift, found.limit) == (0.0, "0.1 %")
+    assert near("2.0", 2.4, "2.5", Tolerance(1e-3)).verdict == "drift"
+    found = confirm("2.15", 2.1514, Tolerance(absolute=1e-4), right="2.1514")
+    assert (found.precision, found.drift, found.limit) == ("0.01", 0.0, "0.0001")
 
 
 def test_precision_number_by_number():
@@ -186,20 +184,31 @@ def test_precision_number_by_number():
 
 
 def test_what_is_fitted_names_its_constant():
-    row = fitted("q", "1", "1.00", 1.0, "s", Tolerance(1e-3), constants="l0 = 200 mm")
-    assert (row.verdict, row.fitted) == ("fitted", "l0 = 200 mm")
-    far = fitted("q", "1", "1.00", 1.1, "s", Tolerance(1e-3), constants="l0 = 200 mm")
-    assert far.verdict == "drift"
+    found = [
+        row("fitted", "1.00", value, fitted="l0 = 200 mm", relative=1e-3) for value in (1.0, 1.1)
+    ]
+    assert [(one.verdict, one.fitted) for one in found] == [
+        ("fitted", "l0 = 200 mm"),
+        ("drift", "l0 = 200 mm"),
+    ]
 
 
-def test_derived_numbers_are_held_to_the_record():
-    def found(value, **options):
-        return derived("q", "1", value, "s", note="why", **options).verdict
+@pytest.mark.parametrize(
+    ("found", "verdict"),
+    [(6.69, "derived"), (6.5, "drift"), (Recomputed(6.8, holds=False), "drift")],
+)
+def test_derived_numbers_are_held_to_the_record(found, verdict):
+    assert row("derived", "", found, right="6.8", absolute=0.2).verdict == verdict
 
-    assert found(6.69, right="6.8", tolerance=Tolerance(absolute=0.2)) == "derived"
-    assert found(6.5, right="6.8", tolerance=Tolerance(absolute=0.2)) == "drift"
-    assert found(6.8, right="6.8", holds=False) == "drift"
-    assert [found("none", holds=holds) for holds in (True, False)] == ["derived", "drift"]
+
+def test_notes_have_computed_numbers():
+    found = row("derived", "", Recomputed(1.0, facts=("2.5",)), right="1", note="It is {} s.")
+    assert found.note == "It is 2.5 s."
+
+
+def test_every_row_that_is_computed_has_a_result():
+    with pytest.raises(ValueError, match="actuator: 1 results"):
+        compare_topic("actuator", [1.0])
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.gradient_settings import Order
 from nrs_design.thesis.gradient import FEW, UPDATES, pairs, run
 
-PAIRS = {section: system for section, _, system in pairs()}
+PAIRS = dict(pairs())
 RADII = [10.0**power for power in range(13)]
 
 

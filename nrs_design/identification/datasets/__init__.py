@@ -11,7 +11,7 @@ from nrs_design.identification.datasets.records import (
     read_signals,
     read_tissue,
 )
-from nrs_design.tables.table import Source
+from nrs_design.identification.tables.table import Source
 
 __all__ = [
     "ActuatorRecord",

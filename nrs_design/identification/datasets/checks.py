@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.tables.table import Array, MeasurementTable
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.quantity import SMALLEST
-from nrs_design.tables.table import Array, MeasurementTable
 
 FEWEST_ROWS = 50
 # A step of more than so many usual ones is a gap.

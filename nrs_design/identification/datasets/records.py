@@ -19,14 +19,14 @@ from nrs_design.identification.datasets.checks import (
     pauses_text,
     stretches_in,
 )
-from nrs_design.models.contact.motion import Motion
-from nrs_design.tables.table import (
+from nrs_design.identification.tables.table import (
     Array,
     MeasurementTable,
     Progress,
     Source,
     read_table,
 )
+from nrs_design.models.contact.motion import Motion
 
 LINEAR = ("time", "deflection", "force")
 ROTATIONAL = ("time", "angle", "torque")

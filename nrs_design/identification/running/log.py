@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance, gaps_in
-from nrs_design.tables.table import Progress, Source, read_table
+from nrs_design.identification.tables.table import Progress, Source, read_table
 
 Array = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from scipy.io import savemat
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import read_tissue
-from nrs_design.tables.columns import find_columns, parse_mapping
-from nrs_design.tables.names import Name, read_name, read_stamp
+from nrs_design.identification.tables.columns import find_columns, parse_mapping
+from nrs_design.identification.tables.names import Name, read_name, read_stamp
 
 N = 80
 TIME = np.arange(N) / 100

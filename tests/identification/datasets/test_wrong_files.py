@@ -9,13 +9,13 @@ from scipy.io import savemat
 from scipy.io.matlab import MatlabOpaque
 
 from nrs_design.errors import DataError
-from nrs_design.foreign import read_mat, read_parquet, unpack_sheet
 from nrs_design.identification.datasets import (
     read_actuator,
     read_poses,
     read_signals,
     read_tissue,
 )
+from nrs_design.identification.foreign import read_mat, read_parquet, unpack_sheet
 from tests.support import run
 
 HEAD = "time_s,deflection_m,force_N\n"

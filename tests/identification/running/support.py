@@ -1,8 +1,8 @@
 """Logs of tests, and what is judged of them."""
 
 from nrs_design.identification.running import judge_run, read_run, read_run_bounds
+from nrs_design.identification.tables.columns import parse_mapping
 from nrs_design.spec import read_spec
-from nrs_design.tables.columns import parse_mapping
 from tests.identification import runs
 from tests.support import ROBOT, SOFT_TISSUE
 

@@ -18,12 +18,11 @@ from nrs_design.robot.exporters.robot_tree import RobotExport
 from nrs_design.robot.models import build_robot
 from tests.exporters.programs import (
     CORTEX,
-    M4F,
-    MACHINE,
-    SEMIHOSTING,
     STRICT,
     built,
+    check_with_misra,
     compiler,
+    emulated,
     run,
 )
 from tests.robot.exporters.robot_programs import program, wild
@@ -72,16 +71,9 @@ def test_host_compilers_agree_with_the_replica(tmp_path, exported, control_laws,
 @pytest.mark.parametrize("law", SIZES)
 def test_an_emulated_cortex_agrees_with_the_replica(tmp_path, exported, control_laws, law):
     """One law at a time: the cases of all are more than its memory holds."""
-    gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     written(tmp_path, exported, {law: control_laws[law]}, COUNT)
-    compiled, made = tmp_path / "laws.o", tmp_path / "test.elf"
-    built(gcc, *CORTEX, *STRICT, "-O2", "-c", tmp_path / "laws.c", "-o", compiled)
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
-    sources = (compiled, tmp_path / "test.c", *start, "-lm")
-    linked = run(gcc, *CORTEX, "-O2", "-std=c99", "-ffp-contract=off", *sources, "-o", made)
-    assert linked.returncode == 0, linked.stderr
-    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", made)
-    assert (done.returncode, done.stderr) == (0, "0 cases differ\n")
+    said = emulated(tmp_path, tmp_path / "laws.c", tmp_path / "test.c")
+    assert said == "0: 0 cases differ\n"
 
 
 def test_sizes_on_a_cortex(tmp_path, exported, control_laws):
@@ -112,18 +104,8 @@ def instructions(listing):
 
 @pytest.mark.slow
 def test_cppcheck_with_misra_is_content(tmp_path, exported, control_laws):
-    cppcheck = compiler("cppcheck")
     written(tmp_path, exported, control_laws, 1)
-    limits = ("RADIX=2", "MANT_DIG=24", "MAX_EXP=128", "EVAL_METHOD=0")
-    suppressed = ("missingIncludeSystem", "unusedFunction")
-    done = run(
-        cppcheck,
-        *("--enable=all", "--addon=misra", "--std=c99", "--quiet", "--error-exitcode=1"),
-        *(f"-DFLT_{limit}" for limit in limits),
-        *(f"--suppress={name}" for name in suppressed),
-        tmp_path / "laws.c",
-    )
-    assert (done.returncode, done.stderr) == (0, "")
+    check_with_misra(tmp_path / "laws.c")
 
 
 def test_files_say_that_nothing_is_proved(exported, control_laws):

@@ -59,7 +59,7 @@ def read_all(
     entries : sequence of str
         ``name=column`` each, as the user gave them.
     """
-    from nrs_design.tables.columns import parse_mapping
+    from nrs_design.identification.tables.columns import parse_mapping
 
     mapping = parse_mapping(entries)
     with _bar() as begin:

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
+from nrs_design.identification.tables.arrays import ARRAYS, check_kind, read_arrays, read_sheet
+from nrs_design.identification.tables.columns import Column, find_columns
+from nrs_design.identification.tables.header import BLOCK, SYNTHETIC, read_header
+from nrs_design.identification.tables.names import UNITS, standard_name
+from nrs_design.identification.tables.text import MAX_ROWS, Parser, read_blocks
 from nrs_design.spec.quantity import LARGEST
-from nrs_design.tables.arrays import ARRAYS, check_kind, read_arrays, read_sheet
-from nrs_design.tables.columns import Column, find_columns
-from nrs_design.tables.header import BLOCK, SYNTHETIC, read_header
-from nrs_design.tables.names import UNITS, standard_name
-from nrs_design.tables.text import MAX_ROWS, Parser, read_blocks
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]

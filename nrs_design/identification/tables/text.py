@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
+from nrs_design.identification.tables.columns import Column
+from nrs_design.identification.tables.header import BLOCK, Header, is_decimal
 from nrs_design.proof.text import quoted
-from nrs_design.tables.columns import Column
-from nrs_design.tables.header import BLOCK, Header, is_decimal
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from nrs_design.errors import DataError
-from nrs_design.tables.columns import check_stated
-from nrs_design.tables.names import (
+from nrs_design.identification.tables.columns import check_stated
+from nrs_design.identification.tables.names import (
     UNITS,
     read_name,
     read_stamp,

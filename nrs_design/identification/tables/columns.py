@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from nrs_design.errors import DataError
-from nrs_design.tables.names import (
+from nrs_design.identification.tables.names import (
     UNITS,
     Name,
     read_name,

@@ -1,4 +1,4 @@
-"""One way that a run can be in: a controller in force, what is touched, and what may end it."""
+"""A location of the hybrid loop: controller in force, contacts, and the guards that end it."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ POINTS = 2000
 
 
 @dataclass(frozen=True)
-class Way:
+class Location:
     """A controller in force and what is touched: the loop, and the signals that may end it."""
 
-    index: int  # In the order in which ways are taken
+    index: int  # In the order in which locations are entered
     controller: str  # In force
     mode: LoopMode  # The loop
     # Watches the depths below all surfaces, the pushes of those that it is in and that have
@@ -34,14 +34,14 @@ class Way:
     bounds: tuple[tuple[int, int, int], ...]
 
 
-def make_way(
+def make_location(
     loop: Loop,
     controller: str,
     inside: Sequence[bool],
     touched: tuple[int, ...],
     direction: int,
     index: int,
-) -> Way:
+) -> Location:
     """Return the loop under a controller in contact, with the signals that may end it.
 
     Parameters
@@ -57,7 +57,7 @@ def make_way(
     direction : int
         Sign of the surface that was touched last.
     index : int
-        In the order in which ways are taken.
+        In the order in which locations are entered.
     """
     scenario = loop.scenario
     mode, one = loop.mode(controller, touched), loop.row("one")
@@ -81,4 +81,4 @@ def make_way(
     across = np.full(len(rows), 2 * TOLERANCE)
     step = scenario.duration / POINTS
     flow = Flow(mode.A, np.array(rows).reshape(-1, len(one)), across, step)
-    return Way(index, controller, mode, flow, damped, pushes, tuple(bounds))
+    return Location(index, controller, mode, flow, damped, pushes, tuple(bounds))

@@ -13,7 +13,13 @@ from typing import BinaryIO
 
 from nrs_design.confined import read_confined
 from nrs_design.errors import DataError
-from nrs_design.foreign import Content, read_mat, read_npz, read_parquet, unpack_sheet
+from nrs_design.identification.foreign import (
+    Content,
+    read_mat,
+    read_npz,
+    read_parquet,
+    unpack_sheet,
+)
 
 # How files begin that are often named for what they are not, and what to do with them.
 _BEGINNINGS = (

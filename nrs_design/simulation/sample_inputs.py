@@ -1,4 +1,4 @@
-"""What chance and the surgeon bring to a sampled run."""
+"""Inputs of a sampled run: instants, commanded velocity, noise and delay of every sample."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nrs_design.simulation.scenario import Array, Scenario
 
 
 @dataclass(frozen=True, slots=True)
-class Fate:
+class SampleInputs:
     """Instants, commands, noise and delays, for every sample."""
 
     # times, hand, noise: shape (N,). Instants in s, commanded velocities in rad/s, errors of the
@@ -22,7 +22,9 @@ class Fate:
     ages: NDArray[np.int64]  # Shape (N,). Of the force samples.
 
     @classmethod
-    def of(cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int) -> Fate:
+    def of(
+        cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int
+    ) -> SampleInputs:
         """Draw it from the seed of the scenario.
 
         Parameters

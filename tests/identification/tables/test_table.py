@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.errors import DataError
-from nrs_design.tables import table as tables
-from nrs_design.tables import text as module
-from nrs_design.tables.columns import parse_mapping
-from nrs_design.tables.table import read_table
+from nrs_design.identification.tables import table as tables
+from nrs_design.identification.tables import text as module
+from nrs_design.identification.tables.columns import parse_mapping
+from nrs_design.identification.tables.table import read_table
 
 LAYOUTS = (("time", "deflection", "force"), ("time", "angle", "torque"))
 HEADER = "time_s,deflection_m,force_N\n"

@@ -1,0 +1,153 @@
+"""Checks of a spec as rows of tables: where, what must not be, what is said, and what to do."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Generic, TypeVar
+
+from pydantic_core import PydanticCustomError
+
+from nrs_design.spec.faults import Location, as_error, fault
+
+S = TypeVar("S")
+T = TypeVar("T")
+
+
+# Between keys, and not within a place to be filled.
+_DOT = re.compile(r"\.(?![^{]*\})")
+
+
+def _itself(said: Any) -> Iterable[tuple[Location, Any]]:
+    return (((), said),)
+
+
+@dataclass(frozen=True)
+class Feature(Generic[S]):
+    """Something that a spec may have, which does not combine with everything.
+
+    What a spec is found to have fills the places ``{0}`` of the texts.
+    """
+
+    # As a part of a sentence, such as "a hand with a mass".
+    phrase: str
+    # Where a spec says it.
+    at: str
+    # How to do without it.
+    without: str
+    # False, None or "" where a spec has none; a text, or more, names what has it.
+    find: Callable[[S], object]
+
+
+@dataclass(frozen=True)
+class Row(Generic[S]):
+    """A row: at a place, a condition that must not hold, the message, and the remedy.
+
+    What the condition finds fills the places ``{0}``, ``{1}`` of the texts; ``{s}`` is the part of
+    the spec that it is about.
+    """
+
+    # Keys with dots between, below the part; a key may be a place to be filled, such as ``{0}``.
+    at: str
+    # False, None, "" or () where nothing is wrong. It may raise a fault of its own instead.
+    find: Callable[[S], object]
+    message: str
+    remedy: str
+    # The parts that it is about, each with its place; by default the whole.
+    parts: Callable[[Any], Iterable[tuple[Location, Any]]] = _itself
+    # Those that do not combine, where the condition is that a spec has all of them.
+    features: tuple[Feature[Any], ...] = ()
+
+    def faults(self, said: Any) -> Iterator[PydanticCustomError]:
+        """Yield a fault for each part in which the condition holds.
+
+        Parameters
+        ----------
+        said : object
+            What the spec says; of a type that the parts, or the condition, take.
+        """
+        for place, part in self.parts(said):
+            if found := self.find(part):
+                # A named tuple is one thing that is found.
+                values = found if type(found) is tuple else (found,)
+                at = (
+                    int(key) if key.isdigit() else key.format(*values, s=part)
+                    for key in _DOT.split(self.at)
+                    if key
+                )
+                texts = (text.format(*values, s=part) for text in (self.message, self.remedy))
+                yield fault(*texts, *place, *at)
+
+
+def each(parts: Callable[[S], Iterable[tuple[Location, T]]], *checks: Row[T]) -> tuple[Row[S], ...]:
+    """Return checks of every part of a spec as checks of the whole.
+
+    Parameters
+    ----------
+    parts : callable
+        Takes the whole and yields its parts, each with its place.
+    *checks : Row
+        Of one part.
+    """
+    return tuple(replace(check, parts=parts) for check in checks)  # type: ignore[misc]
+
+
+def not_together(*features: Feature[S], form: str = "{}: not modelled") -> Row[S]:
+    """Return the row that refuses features which are not modelled together.
+
+    Parameters
+    ----------
+    *features : Feature
+        Refused if a spec has all of them, at the place of the first.
+    form : str
+        Of the message, with a place for what the spec has.
+    """
+
+    def find(said: S) -> tuple[object, ...]:
+        found = tuple(feature.find(said) for feature in features)
+        return found if all(found) else ()
+
+    def filled(text: str, number: int) -> str:
+        return text.replace("{0", f"{{{number}")
+
+    phrases = [filled(feature.phrase, i) for i, feature in enumerate(features)]
+    ways = dict.fromkeys(filled(feature.without, i) for i, feature in enumerate(features))
+    first, *beside = phrases
+    together = f"{first} beside {' and '.join(beside)}" if beside else first
+    together = together.removesuffix(",")
+    message, remedy = form.replace("{}", together), ", or ".join(ways)
+    return Row(features[0].at, find, message, remedy, features=features)
+
+
+def find_faults(
+    checks: Sequence[Row[Any]], said: object, *, partial: bool = False
+) -> list[dict[str, Any]]:
+    """Return the faults that a table of checks finds.
+
+    Parameters
+    ----------
+    checks : sequence of Row
+        The table.
+    said : object
+        What the spec says.
+    partial : bool
+        Parts of it may be missing, as they are not valid: checks that ask for them are left out.
+    """
+    found: list[dict[str, Any]] = []
+    for check in checks:
+        try:
+            found += [error.context or {} for error in check.faults(said)]
+        except PydanticCustomError as error:
+            context = error.context or {}
+            found += context.get("all", [context])
+        except AttributeError:
+            if not partial:
+                raise
+    return found
+
+
+def run_checks(checks: Sequence[Row[Any]], said: object) -> None:
+    """Raise the faults that a table of checks finds, all of them as one error."""
+    if found := find_faults(checks, said):
+        raise as_error(found)

@@ -1,0 +1,125 @@
+"""Which features of an interaction design are not modelled beside which others: one table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nrs_design.spec.check import Feature, Row, not_together
+from nrs_design.spec.features import (
+    ANGLE,
+    AT_ONCE,
+    BLEEDING,
+    COMMAND,
+    CONSTANT_FORCE,
+    CONTACT_RULES,
+    CONTINUOUS,
+    COUPLED,
+    DAMPED,
+    DAMPED_FORCE,
+    DISTURBED,
+    DWELL,
+    FILTER,
+    FORCE_COORDINATES,
+    GAIN_RANGE,
+    GIVEN_LOOP,
+    HAND,
+    HEAVY_AT_ONCE,
+    IDLE,
+    IDLE_RESET,
+    LAGGING_AT_ONCE,
+    LOADED,
+    LOADED_ALONE,
+    LOSABLE,
+    MEMORY,
+    MOTOR_RANGE,
+    NOT_KEPT,
+    OFFSET,
+    OTHERS,
+    PARALLEL,
+    PRELOADED,
+    RULES,
+    SAMPLED,
+    SAMPLED_DWELL,
+    SATURATED,
+    SEVERAL_CONTACTS,
+    SPRUNG,
+    TISSUE_RANGE,
+    TWO_PERIODS,
+    UNPARALLEL,
+    UNSPRUNG,
+)
+from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
+
+
+def _beside(first: Feature[Spec], *others: Feature[Spec]) -> Iterator[Row[Spec]]:
+    """Yield a row for the first feature beside each of the others."""
+    return (not_together(first, other) for other in others)
+
+
+# What may change while one controller is active, although a proof with a dwell time holds for
+# constant modes only: environments obey no rule of ours.
+CHANGING: tuple[tuple[Feature[Spec], ...], ...] = (
+    (LOSABLE, SPRUNG),
+    (MOTOR_RANGE,),
+    (SEVERAL_CONTACTS,),
+    (AT_ONCE,),
+    (GAIN_RANGE,),
+    (TISSUE_RANGE,),
+)
+
+COMBINATIONS: tuple[Row[Spec], ...] = (
+    *_beside(HAND, LOSABLE, SAMPLED, DISTURBED, COUPLED, IDLE, LOADED),
+    *_beside(PRELOADED, LOSABLE, DISTURBED),
+    *_beside(MEMORY, SAMPLED, IDLE),
+    *_beside(
+        FORCE_COORDINATES,
+        LOSABLE,
+        SPRUNG,
+        DISTURBED,
+        HAND,
+        PRELOADED,
+        MEMORY,
+        IDLE,
+        COUPLED,
+        SAMPLED,
+    ),
+    not_together(DAMPED_FORCE),
+    not_together(HEAVY_AT_ONCE),
+    not_together(LOSABLE, LAGGING_AT_ONCE),
+    not_together(OFFSET, IDLE),
+    not_together(IDLE_RESET, BLEEDING),
+    not_together(FILTER, OTHERS),
+    # Their modes would share no state.
+    not_together(PARALLEL, UNPARALLEL),
+    # The motor. Under a preload, one that carries what is touched rests elsewhere for every gain.
+    *_beside(GIVEN_LOOP, MOTOR_RANGE, LOADED),
+    not_together(LOADED, MOTOR_RANGE, PRELOADED),
+    not_together(MOTOR_RANGE, OTHERS, CONTINUOUS),
+    not_together(LOADED_ALONE, OTHERS),
+    not_together(LOADED_ALONE, SAMPLED),
+    not_together(COUPLED, OTHERS, CONTINUOUS),
+    # The sampled loop.
+    *_beside(PARALLEL, SAMPLED),
+    *_beside(OFFSET, SAMPLED),
+    *_beside(GIVEN_LOOP, SAMPLED),
+    *_beside(SAMPLED_DWELL, SAMPLED),
+    *(not_together(DWELL, *features) for features in CHANGING),
+    *_beside(TWO_PERIODS, OTHERS, RULES),
+    not_together(COMMAND, OTHERS, SAMPLED),
+    # It would move the position that the spring draws to.
+    not_together(COMMAND, SPRUNG, SAMPLED),
+    # An integral has to be balanced by a force.
+    not_together(LOSABLE, BLEEDING, SAMPLED),
+    not_together(LOSABLE, IDLE, SAMPLED),
+    not_together(LOSABLE, SPRUNG, UNSPRUNG),
+    # The position is added to the reference at every sample, which rounds an angle once more.
+    not_together(ANGLE, IDLE, SAMPLED),
+    # Modes are not made one by one beside these; free motion is a mode that no rule names.
+    *_beside(CONTACT_RULES, IDLE, SAMPLED, OFFSET),
+    not_together(CONTACT_RULES, LOSABLE, SPRUNG),
+    # The loop must rest at one deflection under every controller.
+    *_beside(CONSTANT_FORCE, SAMPLED, COUPLED, LOADED, DAMPED, SPRUNG),
+    *_beside(SATURATED, SAMPLED, COUPLED, GIVEN_LOOP, FORCE_COORDINATES, OTHERS, SPRUNG, AT_ONCE),
+    *_beside(SATURATED, MEMORY, HAND, PRELOADED),
+    not_together(SATURATED, DAMPED, NOT_KEPT),
+)

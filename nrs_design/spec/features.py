@@ -1,0 +1,334 @@
+"""What an interaction design may have besides the plainest, each with how a spec is asked for it.
+
+The plainest: impedance controllers on elastic tissue of one stiffness, touched one by one, one
+axis, continuous time, contact kept, arbitrary switching.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from operator import attrgetter
+from typing import NamedTuple
+
+from nrs_design.spec.check import Feature
+from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
+from nrs_design.spec.environment import AbstractEnvironmentSpec
+from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
+
+
+class Touched(NamedTuple):
+    """An environment that a controller touches."""
+
+    name: str
+    law: AbstractEnvironmentSpec
+
+
+class TouchedPart(NamedTuple):
+    """One of several environments that a controller touches at once."""
+
+    controller: str
+    contact: str
+    name: str
+
+
+def touched(spec: Spec) -> Iterator[Touched]:
+    """Yield what is touched, by name; a name that there is not is a fault of its own."""
+    for name in sorted(spec.touched & spec.environments.keys()):
+        yield Touched(name, spec.environments[name])
+
+
+def _tissue(holds: Callable[[AbstractEnvironmentSpec], bool]) -> Callable[[Spec], Touched | None]:
+    return lambda s: next((item for item in touched(s) if holds(item.law)), None)
+
+
+def _controller(holds: Callable[[ControllerSpec], object]) -> Callable[[Spec], str | None]:
+    return lambda s: next((name for name, c in s.controllers.items() if holds(c)), None)
+
+
+def _part(
+    holds: Callable[[AbstractEnvironmentSpec], bool],
+) -> Callable[[Spec], TouchedPart | None]:
+    def find(spec: Spec) -> TouchedPart | None:
+        for name, controller in spec.controllers.items():
+            for contact in controller.contacts:
+                for key in names_in(contact) if len(names_in(contact)) > 1 else ():
+                    if key in spec.environments and holds(spec.environments[key]):
+                        return TouchedPart(name, contact_name(contact), key)
+        return None
+
+    return find
+
+
+def _given(at: str) -> Callable[[Spec], bool]:
+    """Ask for a field, by its keys with dots between; parts on the way may be missing."""
+    first, _, rest = at.partition(".")
+
+    def find(spec: Spec) -> bool:
+        part = getattr(spec, first)
+        return part is not None and (not rest or attrgetter(rest)(part) is not None)
+
+    return find
+
+
+def _first(names: Iterable[str]) -> str | None:
+    return next(iter(names), None)
+
+
+def _motor_range(spec: Spec) -> str | None:
+    return _first(n for n in ("gain", "time_constant") if not getattr(spec.actuator, n).fixed)
+
+
+def _bleeding(spec: Spec) -> str | None:
+    """Return a controller with an integral that others leave to bleed."""
+    all_alike = len({c.bleeds for c in spec.controllers.values()}) < 2
+    return None if all_alike else _first(n for n, c in spec.controllers.items() if c.bleeds)
+
+
+def _dwell(*, sampled: bool) -> Callable[[Spec], str | None]:
+    """Ask for the key of a dwell time; rules about single contacts are refused beside samples."""
+
+    def find(spec: Spec) -> str | None:
+        if (spec.sampling is not None) is not sampled or (
+            sampled and spec.switching.names_contacts
+        ):
+            return None
+        return _first(at[0] for at, _ in spec.switching.dwell_times())
+
+    return find
+
+
+def _gain_range(spec: Spec) -> tuple[str, str] | None:
+    """Return the first controller with a range of a gain, and that gain."""
+    gains = ((name, key, g) for name, c in spec.controllers.items() for key, g in c.gains().items())
+    return next(((name, key) for name, key, gain in gains if gain.ranged), None)
+
+
+def _damped_force(spec: Spec) -> tuple[str, str] | None:
+    """Return a controller of the force of what is no spring, and the first such environment."""
+    for name, controller in spec.controllers.items():
+        contacts = [key for contact in controller.contacts for key in names_in(contact)]
+        laws = ((key, spec.environments.get(key)) for key in contacts)
+        damped = (key for key, law in laws if law is not None and not law.is_spring)
+        if controller.commands != "velocity" and (key := _first(damped)):
+            return name, key
+    return None
+
+
+# Every one of them is asked of an interaction design.
+_F = Feature[Spec]
+SAMPLED = _F("a sampled loop", "sampling", "leave sampling out", _given("sampling"))
+CONTINUOUS = _F(
+    "continuous time",
+    "",
+    "add `sampling: {{period: 2 ms, delay: 0}}`",
+    lambda s: s.sampling is None,
+)
+TWO_PERIODS = _F(
+    "an outer_period",
+    "sampling.outer_period",
+    "leave outer_period out",
+    lambda s: s.sampling is not None and s.sampling.round > 1,
+)
+LOSABLE = _F("loss of contact", "contact", "use `contact: kept`", lambda s: s.contact == "losable")
+NOT_KEPT = _F(
+    "contact that may be lost", "contact", "write `contact: kept`", lambda s: s.contact != "kept"
+)
+FORCE_COORDINATES = _F(
+    "force coordinates",
+    "coordinates",
+    "use `coordinates: deflection`",
+    lambda s: s.coordinates == "force",
+)
+GIVEN_LOOP = _F(
+    "a closed motion loop that the spec states",
+    "motion_loop.transfer_function",
+    "leave transfer_function out",
+    _given("motion_loop.transfer_function"),
+)
+MOTOR_RANGE = _F(
+    "a range of the {0} of the actuator",
+    "actuator.{0}",
+    "give the nominal {0} only",
+    _motor_range,
+)
+LOADED = _F(
+    "a load of the motor",
+    "actuator.load_inertia",
+    "leave load_inertia out",
+    _given("actuator.load_inertia"),
+)
+LOADED_ALONE = _F(
+    "a load of the motor of one axis",
+    "actuator.load_inertia",
+    "leave load_inertia out",
+    lambda s: s.actuator.load_inertia is not None and s.coupling is None,
+)
+COUPLED = _F("axes that act on each other", "coupling", "leave coupling out", _given("coupling"))
+
+HAND = _F(
+    "{0.name!r}, a hand with a mass,",
+    "environments.{0.name}.model",
+    "use a kelvin-voigt environment, which has no mass",
+    _tissue(lambda law: law.has_mass),
+)
+MEMORY = _F(
+    "{0.name!r}, which remembers,",
+    "environments.{0.name}.model",
+    "use elastic or kelvin-voigt environments",
+    _tissue(lambda law: law.remembers),
+)
+PRELOADED = _F(
+    "{0.name!r}, known within its preload only,",
+    "environments.{0.name}.model",
+    "use elastic or kelvin-voigt environments",
+    _tissue(lambda law: law.preloaded),
+)
+DAMPED = _F(
+    "{0.name!r}, which has damping,",
+    "environments.{0.name}.model",
+    "use an elastic environment",
+    _tissue(lambda law: not law.is_spring),
+)
+TISSUE_RANGE = _F(
+    "the range of environment {0.name!r}",
+    "environments.{0.name}",
+    "give the environment its nominal values only",
+    _tissue(lambda law: not law.fixed),
+)
+AT_ONCE = _F(
+    "several things that {0!r} touches at once",
+    "controllers.{0}.contacts",
+    "let every contact be one environment",
+    _controller(lambda c: any(not isinstance(contact, str) for contact in c.contacts)),
+)
+HEAVY_AT_ONCE = _F(
+    "{0.name!r}, which remembers or has a mass, touched at once with others",
+    "controllers.{0.controller}.contacts",
+    "use elastic or kelvin-voigt environments there",
+    _part(lambda law: law.remembers or law.has_mass),
+)
+LAGGING_AT_ONCE = _F(
+    "{0.name!r} alone, which has damping or a preload, while {0.contact} are touched at once",
+    "controllers.{0.controller}.contacts",
+    "use elastic environments there",
+    _part(lambda law: not law.is_losable),
+)
+SEVERAL_CONTACTS = _F(
+    "several contacts of {0!r}",
+    "controllers.{0}.contacts",
+    "write a spec for each environment",
+    lambda s: (
+        None
+        if s.switching.names_contacts
+        else _first(name for name, c in s.controllers.items() if len(c.contacts) > 1)
+    ),
+)
+
+OTHERS = _F(
+    "{0!r}, which is no impedance controller,",
+    "controllers.{0}.type",
+    "use impedance controllers",
+    _controller(lambda c: c.commands != "velocity"),
+)
+DAMPED_FORCE = _F(
+    "force control {0[0]!r} in contact with {0[1]!r}, which has damping or remembers",
+    "controllers.{0[0]}",
+    "use an elastic environment for force controllers",
+    _damped_force,
+)
+PARALLEL = _F(
+    "{0!r}, a parallel controller,",
+    "controllers.{0}.type",
+    "use impedance, position and force controllers",
+    _controller(lambda c: not c.sampled),
+)
+UNPARALLEL = _F(
+    "{0!r}, a controller of another type,",
+    "controllers.{0}.type",
+    "write a spec for each type",
+    _controller(lambda c: c.sampled),
+)
+SPRUNG = _F(
+    "the spring Kt of {0}", "controllers.{0}.Kt", "leave Kt out", _controller(lambda c: c.sprung)
+)
+UNSPRUNG = _F(
+    "{0!r}, which has none,",
+    "controllers.{0}",
+    "give all of them a spring",
+    _controller(lambda c: not c.sprung),
+)
+GAIN_RANGE = _F(
+    "the range of {0[1]} of {0[0]!r}",
+    "controllers.{0[0]}.{0[1]}",
+    "give the gain one value only",
+    _gain_range,
+)
+BLEEDING = _F(
+    "{0!r}, whose integral bleeds,",
+    "controllers.{0}.type",
+    "use one kind of controller",
+    _bleeding,
+)
+IDLE = _F(
+    "a mixture of controllers", "idle_states", "use one kind of controller", _given("idle_states")
+)
+IDLE_RESET = _F(
+    "a reset of idle states",
+    "idle_states.reset",
+    "remove reset",
+    lambda s: s.idle_states is not None and s.idle_states.reset,
+)
+OFFSET = _F(
+    "the offset of {0!r}",
+    "controllers.{0}.offset",
+    "use `offset: none`",
+    _controller(lambda c: c.own_offset not in (None, "none")),
+)
+FILTER = _F(
+    "a filter of the force",
+    "sensor.filter",
+    "leave filter out",
+    _given("sensor.filter"),
+)
+
+DISTURBED = _F(
+    "bounds under disturbances", "disturbances", "leave disturbances out", _given("disturbances")
+)
+COMMAND = _F(
+    "a velocity command",
+    "disturbances.command",
+    "leave command out",
+    _given("disturbances.command"),
+)
+ANGLE = _F(
+    "the rounding of angles",
+    "disturbances.largest_angle",
+    "leave largest_angle out",
+    _given("disturbances.largest_angle"),
+)
+RULES = _F(
+    "rules of switching",
+    "switching",
+    "use `switching: arbitrary`, which allows for more",
+    lambda s: not s.switching.is_arbitrary,
+)
+DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _dwell(sampled=False))
+SAMPLED_DWELL = _F("a dwell time", "switching.{0}", "leave {0} out", _dwell(sampled=True))
+CONTACT_RULES = _F(
+    "rules of switching about controllers in one contact each",
+    "switching",
+    "name controllers alone in the rules",
+    lambda s: s.switching.names_contacts,
+)
+CONSTANT_FORCE = _F(
+    "a constant force that settles",
+    "goals.constant_force",
+    "remove the goal",
+    _given("goals.constant_force"),
+)
+SATURATED = _F(
+    "decay although signals saturate",
+    "goals.initial_force",
+    "remove the goal",
+    _given("goals.initial_force"),
+)

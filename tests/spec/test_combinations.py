@@ -1,0 +1,218 @@
+"""Every row of the table of what is not modelled together refuses a spec that has its features."""
+
+import json
+import re
+from itertools import combinations
+from string import Formatter
+
+import pytest
+
+from nrs_design.errors import AssemblyError, SpecError
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.pipeline.design import run_design
+from nrs_design.spec import doubt_spec, parse_spec, read_spec
+from nrs_design.spec import features as f
+from nrs_design.spec.check import Row
+from nrs_design.spec.combinations import CHANGING, COMBINATIONS
+from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
+from nrs_design.spec.load import SPEC_KINDS, model_of
+from nrs_design.spec.model import SpecModel
+
+IMPEDANCE = {
+    "type": "impedance",
+    "environment": "soft",
+    "Mt": "0.01 kg*m^2",
+    "Bt": "2.15 N*m*s/rad",
+}
+FORCE = {"type": "force", "environment": "soft", "proportional_gain": "0.02 rad/(N*m)"}
+PI = FORCE | {"type": "pi-force", "integral_gain": "0.5 rad/(N*m*s)"}
+ELASTIC = {"model": "elastic", "stiffness": "43 N*m/rad"}
+PARALLEL = PI | {"type": "parallel"}
+SAMPLING = {"period": "2 ms", "delay": 0}
+LOAD = {"load_inertia": "1.213 kg*m^2"}
+TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
+BASE = {
+    "kind": "interaction-design",
+    "name": "combined",
+    "actuator": {"gain": "4.8417e-4 rad/s/rpm", "time_constant": "0.0351 s"},
+    "motion_loop": {"damping_ratio": 0.707, "settling_time": "0.1404 s"},
+    "limits": {"velocity": "8 deg/s", "torque": "0.3 N*m", "bandwidth": "2 Hz"},
+    "environments": {"soft": ELASTIC},
+    "controllers": {"first": IMPEDANCE, "second": IMPEDANCE | {"Bt": "4 N*m*s/rad"}},
+    "contact": "kept",
+    "switching": "arbitrary",
+}
+
+
+def tissue(model, **more):
+    return {"environments": {"soft": {"model": model} | more}}
+
+
+def first(**more):
+    return {"controllers": {"first": more}}
+
+
+# What a spec must say to have a feature, merged into the plainest one, in this order.
+CHANGES = {
+    f.SPRUNG: {"controllers": {name: {"Kt": "0.5 N*m/rad"} for name in ("first", "second")}},
+    f.UNSPRUNG: {"controllers": {"second": IMPEDANCE}},
+    f.OTHERS: {"controllers": {"second": FORCE}},
+    f.PARALLEL: {"controllers": {"first": PARALLEL, "second": PARALLEL}},
+    f.UNPARALLEL: {"controllers": {"second": FORCE}},
+    f.BLEEDING: {"controllers": {"second": PI}, "idle_states": {"decay": "20 1/s"}},
+    f.OFFSET: {"controllers": {"second": FORCE | {"offset": "measured"}}},
+    f.IDLE: {"idle_states": {"decay": "20 1/s"}},
+    f.IDLE_RESET: {"idle_states": {"decay": "20 1/s", "reset": True}},
+    f.SAMPLED: {"sampling": SAMPLING},
+    f.CONTINUOUS: {},
+    f.TWO_PERIODS: {"sampling": SAMPLING | {"outer_period": "4 ms"}},
+    f.LOSABLE: {"contact": "losable"},
+    f.NOT_KEPT: {"contact": "losable"},
+    f.FORCE_COORDINATES: {"coordinates": "force"},
+    f.GIVEN_LOOP: {
+        "motion_loop": {
+            "transfer_function": {"numerator": [28.4, 1619], "denominator": [1, 57, 1619]}
+        }
+    },
+    f.MOTOR_RANGE: {
+        "actuator": {"time_constant": {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"]}}
+    },
+    f.LOADED: {"actuator": LOAD},
+    f.LOADED_ALONE: {"actuator": LOAD},
+    f.COUPLED: {"actuator": LOAD, "coupling": {"inertia": ["0 kg*m^2", "0.1 kg*m^2"], "axes": 3}},
+    f.HAND: tissue("hand", damping="7 N*m*s/rad", mass="0.1 kg*m^2"),
+    f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
+    f.PRELOADED: tissue(
+        "hunt-crossley",
+        damping="1 N*m*s/rad",
+        exponent=1.2,
+        about="0.02 rad",
+        preload=["0.01 rad", "0.03 rad"],
+    ),
+    f.DAMPED: tissue("kelvin-voigt", damping="1 N*m*s/rad"),
+    f.DAMPED_FORCE: tissue("kelvin-voigt", damping="1 N*m*s/rad")
+    | {"controllers": {"second": FORCE}},
+    f.TISSUE_RANGE: {
+        "environments": {
+            "soft": {"stiffness": {"nominal": "43 N*m/rad", "range": ["40 N*m/rad", "46 N*m/rad"]}}
+        }
+    },
+    f.AT_ONCE: TWO | first(contacts=[["soft", "stiff"]]),
+    f.HEAVY_AT_ONCE: {
+        "environments": {
+            "soft": ELASTIC,
+            "stiff": {"model": "maxwell", "stiffness": "9 N*m/rad", "damping": "1 N*m*s/rad"},
+        }
+    }
+    | first(contacts=[["soft", "stiff"]]),
+    f.LAGGING_AT_ONCE: {
+        "environments": {
+            "soft": ELASTIC,
+            "stiff": {"model": "kelvin-voigt", "stiffness": "9 N*m/rad", "damping": "1 N*m*s/rad"},
+        }
+    }
+    | first(contacts=[["soft", "stiff"]]),
+    f.SEVERAL_CONTACTS: TWO | first(contacts=["soft", "stiff"]),
+    f.GAIN_RANGE: first(
+        Bt={"nominal": "2.15 N*m*s/rad", "range": ["2 N*m*s/rad", "2.3 N*m*s/rad"]}
+    ),
+    f.FILTER: {"sensor": {"filter": {"cutoff": "30 Hz"}}},
+    f.DISTURBED: {"disturbances": {"command": "8 deg/s"}},
+    f.COMMAND: {"disturbances": {"command": "8 deg/s"}},
+    f.ANGLE: {"disturbances": {"largest_angle": "20 deg"}},
+    f.RULES: {"switching": {"transitions": [["first", "second"]]}},
+    f.DWELL: {"switching": {"dwell_time": "1 s"}},
+    f.SAMPLED_DWELL: {"switching": {"dwell_time": "1 s"}},
+    f.CONTACT_RULES: {"switching": {"transitions": [["first/soft", "second/soft"]]}},
+    f.CONSTANT_FORCE: {"goals": {"constant_force": "settles"}},
+    f.SATURATED: {"limits": {"command": "2000 rpm"}, "goals": {"initial_force": "0.1 N*m"}},
+}
+
+
+def merged(tree, changes):
+    """The text of a spec; a part that says its type or model takes the place of another."""
+    if not (isinstance(tree, dict) and isinstance(changes, dict)) or "type" in changes:
+        return changes
+    return tree | {key: merged(tree.get(key), value) for key, value in changes.items()}
+
+
+def spec_with(*features):
+    tree = BASE
+    for feature, changes in CHANGES.items():
+        if feature in features:
+            tree = merged(tree, changes)
+    return json.dumps(tree, indent=1)
+
+
+def test_every_feature_has_its_change():
+    named = {v for v in vars(f).values() if isinstance(v, type(f.SAMPLED))}
+    used = {feature for row in COMBINATIONS for feature in row.features}
+    assert named == set(CHANGES) == used
+
+
+def test_the_plainest_spec_has_no_feature_that_needs_a_change():
+    plain = parse_spec(spec_with())
+    found = {feature for feature in CHANGES if feature.find(plain)}
+    assert found == {f.CONTINUOUS, f.UNSPRUNG, f.UNPARALLEL}
+
+
+@pytest.mark.parametrize("row", COMBINATIONS, ids=lambda row: row.message)
+def test_what_is_not_modelled_together_is_refused(row):
+    """With the words of the row, at a line of the file, and with something to do."""
+    with pytest.raises(SpecError) as caught:
+        parse_spec(spec_with(*row.features))
+    pattern = re.sub(r"\\\{.*?\}", ".+", re.escape(row.message))
+    said = [fault for fault in caught.value.faults if re.search(pattern, fault.message)]
+    assert said
+    for fault in said:
+        assert fault.line > 1
+        assert fault.remedy
+        assert "{" not in fault.message
+
+
+@pytest.mark.parametrize("features", CHANGING, ids=lambda items: items[0].phrase)
+def test_no_dwell_time_is_searched_where_something_may_change(features):
+    assert parse_spec(spec_with()).find_dwell_obstacle() is None
+    found = parse_spec(spec_with(*features)).find_dwell_obstacle()
+    assert "a dwell time beside" in found.message
+    assert found.remedy
+
+
+@pytest.mark.slow
+def test_every_pair_that_is_read_makes_a_system_or_is_warned_of(tmp_path):
+    path = tmp_path / "combined.nrs.yaml"
+    made = 0
+    for pair in combinations(CHANGES, 2):
+        path.write_text(spec_with(*pair), encoding="utf-8")
+        try:
+            loaded = read_spec(path)
+        except SpecError:
+            continue
+        doubts = " ".join(doubt.message for doubt in doubt_spec(loaded.spec))
+        designed = run_design(loaded)
+        if "certify-switching refuses" in doubts:
+            with pytest.raises(AssemblyError):
+                assemble_spec(loaded, designed, designed.spec.coordinates)
+            continue
+        made += 1
+        assert assemble_spec(loaded, designed, designed.spec.coordinates).modes
+    assert made > 100
+
+
+def rows_of(model):
+    yield from model.checks
+    for inner in model.__subclasses__():
+        yield from rows_of(inner)
+
+
+def test_every_row_of_every_table_can_be_filled():
+    """A brace that is none of a place would stop the reading of a spec that is to be refused."""
+    for kind in SPEC_KINDS:
+        model_of(kind)
+    rows = {id(row): row for row in (*rows_of(SpecModel), *INTERACTION_CHECKS)}.values()
+    assert len(rows) > 100
+    for row in rows:
+        assert isinstance(row, Row)
+        for text in (row.at, row.message, row.remedy):
+            for _, name, *_ in Formatter().parse(text):
+                assert name is None or re.match(r"\d|s\b", name), text

@@ -178,9 +178,10 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     those of the package; the others are left to `tests.proof.truth`.
     """
     discrete = system.time is Time.DISCRETE
-    if not (isinstance(evidence, CommonQuadratic) or evidence.names_unstable_mode):
+    is_mode = evidence.kind == "growing-sequence" and evidence.names_unstable_mode
+    if not (isinstance(evidence, CommonQuadratic) or is_mode):
         return truth.holds(system, evidence)
-    if evidence.names_unstable_mode:
+    if is_mode:
         ((name, _),) = evidence.steps
         (mode,) = [mode for mode in system.modes if mode.name == name]
         may_stay = truth.bounds_of(system, name)[1] is None

@@ -1,46 +1,17 @@
-"""A law of contact that a table lacks is refused; one that all tables have keeps its own words."""
+"""A new law of contact is named by its spec alone, and keeps its own words."""
 
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
-import pytest
 
-from nrs_design.errors import InternalError
-from nrs_design.models import contact
 from nrs_design.models.contact import Elastic, HuntCrossley
-from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_certification, run_design
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.spec import read_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import ElasticSpec, HuntCrossleySpec
-from nrs_design.switched.assumptions import preload_texts
 from tests.support import ROBOT, SOFT_TISSUE
-
-
-class StiffeningSpec(HuntCrossleySpec):
-    """A law within a preload, as a spec writes it."""
-
-    model: Literal["stiffening"]
-
-
-class SpringySpec(ElasticSpec):
-    """A linear law, as a spec writes it."""
-
-    model: Literal["springy"]
-
-
-class TakenForElasticSpec(SpringySpec):
-    """One that says which linear law stands for it, although none is known of its own."""
-
-    @property
-    def linear_model(self):
-        return "elastic"
-
-
-class RememberingSpec(SpringySpec):
-    remembers = True
 
 
 @dataclass(frozen=True)
@@ -56,7 +27,23 @@ class Stiffening(HuntCrossley):
 
 @dataclass(frozen=True)
 class Springy(Elastic):
+    """A linear law of another name."""
+
     name = "springy"
+
+
+class StiffeningSpec(HuntCrossleySpec):
+    """A law within a preload, as a spec writes it."""
+
+    nonlinear = Stiffening
+    model: Literal["stiffening"]
+
+
+class SpringySpec(ElasticSpec):
+    """A linear law, as a spec writes it."""
+
+    law = Springy
+    model: Literal["springy"]
 
 
 def written(file, model):
@@ -72,29 +59,7 @@ def written(file, model):
 CONCHA = ROBOT / "concha.nrs.yaml"
 
 
-@pytest.mark.parametrize(
-    ("file", "model"),
-    [(CONCHA, StiffeningSpec), (SOFT_TISSUE, SpringySpec), (SOFT_TISSUE, TakenForElasticSpec)],
-)
-def test_a_law_in_the_spec_alone_is_refused(file, model):
-    """Neither proved nor simulated as another one, and not under its words."""
-    loaded = written(file, model)
-    for refused in (run_design, run_certification, lambda one: build_plant(one.spec)):
-        with pytest.raises(
-            InternalError, match=r"no law of contact '(stiffening|springy)'|no linear law 'springy'"
-        ):
-            refused(loaded)
-    with pytest.raises(InternalError, match="no law of contact"):
-        [*preload_texts(loaded.spec, 1)]
-
-
-def known(monkeypatch, table, law):
-    more = MappingProxyType({**getattr(contact, table), law.name: law})
-    monkeypatch.setattr(contact, table, more)
-
-
-def test_a_law_in_the_tables_keeps_its_words_from_spec_to_run(monkeypatch):
-    known(monkeypatch, "LAWS", Stiffening)
+def test_a_law_keeps_its_words_from_spec_to_run():
     loaded = written(CONCHA, StiffeningSpec)
     result = run_certification(loaded)
     assert result.certification.verdict == "proved"
@@ -112,24 +77,6 @@ def test_a_law_in_the_tables_keeps_its_words_from_spec_to_run(monkeypatch):
     assert torque[0] > 1.2 * torque[1] > 0
 
 
-def test_a_linear_law_in_the_tables_is_itself(monkeypatch):
-    known(monkeypatch, "LINEAR_LAWS", Springy)
+def test_a_linear_law_is_itself():
     (environment,) = build_plant(written(SOFT_TISSUE, SpringySpec).spec).environments
     assert (environment.law, environment.nonlinear) == (Springy, None)
-
-
-@pytest.mark.parametrize(
-    ("model", "fact"), [(RememberingSpec, "remembers"), (TakenForElasticSpec, "linear_model")]
-)
-def test_a_spec_that_says_other_facts_than_the_law_is_refused(monkeypatch, model, fact):
-    known(monkeypatch, "LINEAR_LAWS", Springy)
-    with pytest.raises(InternalError, match=f"'springy' differ in {fact}"):
-        build_plant(written(SOFT_TISSUE, model).spec)
-
-
-def test_a_law_that_is_not_linear_needs_a_preload(monkeypatch):
-    """Its linear ranges hold there only."""
-    known(monkeypatch, "LAWS", Stiffening)
-    model = type("Unbounded", (StiffeningSpec,), {"preloaded": False})
-    with pytest.raises(InternalError, match="'stiffening' differ in preloaded"):
-        build_plant(written(CONCHA, model).spec)

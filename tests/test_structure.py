@@ -275,7 +275,7 @@ def test_a_report_assembles_and_searches_nothing():
 
 
 VERBS = {
-    ("nrs_design.models.plant", "build_plant"),
+    ("nrs_design.spec.build_plant", "build_plant"),
     ("nrs_design.design.design", "design_controllers"),
     ("nrs_design.design.analysis", "analyze_design"),
     ("nrs_design.switched.assemble", "assemble"),

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from nrs_design.controllers.float32 import exact_decimal, to_float32
+from nrs_design.models.interval import Interval
 from nrs_design.spec import ControllerSpec, GainSpec
-from nrs_design.spec.interval import Interval
 
 
 def gain_interval(gain: GainSpec, shipped: Fraction) -> Interval:

@@ -22,7 +22,7 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
     spec : InteractionDesignSpec
         Requirements and bounds.
     plant : Plant
-        As `nrs_design.models.plant.build_plant` gives it.
+        As `nrs_design.spec.build_plant.build_plant` gives it.
 
     Raises
     ------

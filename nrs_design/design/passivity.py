@@ -26,10 +26,10 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.cut_loop import ContinuousAxis, Place, multiply
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import pi
 
 from nrs_design.errors import AssemblyError
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,17 +1,14 @@
-"""What the spec says about the world: the actuator and the environments, in exact SI numbers."""
+"""The world of one axis: the actuator and the environments, in exact SI numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
-from nrs_design.models.contact import linear_law_of, nonlinear_law_of
-from nrs_design.models.contact.environment import Environment, touch_at_once
+from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
-from nrs_design.spec import EnvironmentSpec, InteractionDesignSpec, RangedQuantity
-from nrs_design.spec.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,45 +60,3 @@ class Plant:
         )
         ranges = self.actuator_ranges and self.actuator_ranges.scaled(scale)
         return replace(self, environments=tuple(environments), actuator_ranges=ranges)
-
-
-def build_plant(spec: InteractionDesignSpec) -> Plant:
-    """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
-    gain, time_constant = map(_interval, (spec.actuator.gain, spec.actuator.time_constant))
-    ranges = ActuatorRanges(gain, time_constant, spec.actuator.command)
-    stated = spec.motion_loop.transfer_function
-    loop = None
-    if stated is not None:
-        loop = MotionLoop(stated.numerator, stated.denominator, given=True)
-    load = spec.actuator.load_inertia
-    return Plant(
-        ranges.nominal,
-        tuple(build_environments(spec)),
-        loop,
-        None if ranges.fixed else ranges,
-        None if load is None else load.exact,
-    )
-
-
-def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
-    """Yield every environment of a spec, then what several are that are touched at once."""
-    known = {name: _environment(name, written) for name, written in spec.environments.items()}
-    yield from known.values()
-    contacts = (contact for c in spec.controllers.values() for contact in c.contacts)
-    for contact in dict.fromkeys(contacts):
-        if not isinstance(contact, str):
-            parts = tuple(known[name] for name in contact)
-            losable = spec.contact != "kept" and all(
-                spec.environments[n].is_losable for n in contact
-            )
-            yield touch_at_once(parts, losable=losable)
-
-
-def _interval(written: RangedQuantity) -> Interval:
-    return Interval(written.nominal.exact, *(end.exact for end in written.range))
-
-
-def _environment(name: str, spec: EnvironmentSpec) -> Environment:
-    law, turned = linear_law_of(spec), spec.linear_at_pivot()
-    ranges = tuple(turned[key] for key in law.keys)
-    return Environment(name, law, ranges, nonlinear=nonlinear_law_of(spec))

@@ -126,7 +126,7 @@ def run_design(loaded: LoadedSpec) -> Designed | None:
     if spec.kind != "interaction-design":
         return None
     from nrs_design.design.design import design_controllers
-    from nrs_design.models.plant import build_plant
+    from nrs_design.spec.build_plant import build_plant
 
     with placed(loaded):
         plant = build_plant(spec)

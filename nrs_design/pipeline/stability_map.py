@@ -9,13 +9,13 @@ from fractions import Fraction
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
 from nrs_design.pipeline.certification import Result, assemble_spec
 from nrs_design.pipeline.design import placed
 from nrs_design.pipeline.margins import quick_limits
 from nrs_design.progress import Progress, silent
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.spec.interval import Interval
 
 # The largest stiffness of every contact, over the declared one.
 FACTORS = (

@@ -125,9 +125,9 @@ def run_subsets(
     progress : callable
         Told what is left out.
     """
-    from nrs_design.models.plant import build_plant
     from nrs_design.search.certify import certify
     from nrs_design.spec.aspects import aspects_of
+    from nrs_design.spec.build_plant import build_plant
 
     designed = result.designed
     if designed is None:

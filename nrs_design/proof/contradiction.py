@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
+from nrs_design.proof.saturation import MOST_SIGNALS, CutOff, Start
 from nrs_design.proof.system import SwitchedSystem
 
 
@@ -97,14 +100,14 @@ def _find_odd_sample_time(system: SwitchedSystem) -> str | None:
 
 
 def _find_odd_channel(system: SwitchedSystem) -> str | None:
-    n, free = system.order, () if system.contact is None else system.contact.free
+    n = system.order
     sized = [(c.name, M, (n, 1)) for c in system.channels for M in c.columns]
     sized += [(o.name, M, (1, n)) for o in system.outputs for M in o.rows]
     for name, M, shape in sized:
         if not M.is_well_formed or M.shape != shape:
             return f"{name} does not have the size of the state"
     for channel in system.channels:
-        if channel.bound <= 0 or len(channel.columns) != len(system.modes) + len(free):
+        if channel.bound <= 0 or len(channel.columns) != len(system.every_mode):
             return f"{channel.name} has no positive bound, or not one column for every mode"
     if not all(output.rows for output in system.outputs):
         return "an output has no rows"
@@ -117,27 +120,17 @@ def _find_odd_channel(system: SwitchedSystem) -> str | None:
 def _find_odd_rounding(system: SwitchedSystem) -> str | None:
     if system.roundings and system.time is Time.CONTINUOUS:
         return "the arithmetic rounds, but there are no steps"
-    if system.roundings and not system.is_uniform:
-        return "the arithmetic rounds, but the modes are not of one size"
     width = system.order + len(system.channels)
-    for item in system.roundings:
-        if (odd := _find_odd_parts(system, item, width)) is not None:
-            return f"the rounding of {item.name} {odd}"
-    names = [item.name for item in system.roundings]
-    return "two roundings have one name" if len(set(names)) < len(names) else None
+    widths = [width] * len(system.roundings)
+    return _find_odd_errors(system, system.roundings, "the rounding of ", widths)
 
 
 def _find_odd_coupling(system: SwitchedSystem) -> str | None:
     if system.axes is not None and (system.axes < 1 or not system.couplings):
         return "there is no axis, or axes are counted that do not act on each other"
-    if system.couplings and not system.is_uniform:
-        return "axes act on each other, but their modes are not of one size"
     width = system.order + len(system.channels) + len(system.roundings)
-    for item in system.couplings:
-        if (odd := _find_odd_parts(system, item, width)) is not None:
-            return f"the coupling by {item.name} {odd}"
-    names = [item.name for item in system.couplings]
-    return "two couplings have one name" if len(set(names)) < len(names) else None
+    widths = [width] * len(system.couplings)
+    return _find_odd_errors(system, system.couplings, "the coupling by ", widths)
 
 
 def _find_odd_clock(system: SwitchedSystem) -> str | None:
@@ -147,8 +140,8 @@ def _find_odd_clock(system: SwitchedSystem) -> str | None:
         return "modes take turns without steps, in rounds of less than two, or of unlike size"
     if not system.switching.is_arbitrary:
         return "modes take turns, and have rules of switching besides"
-    first, free = set(system.clock.first), () if system.contact is None else system.contact.free
-    groups = [{mode.name for mode in part} for part in (system.modes, free) if part]
+    first = set(system.clock.first)
+    groups = [{mode.name for mode in part} for part in (system.modes, system.free) if part]
     if not first <= set().union(*groups):
         return "a mode that does not exist is to take its turn"
     if not all(first & group and group - first for group in groups):
@@ -159,23 +152,50 @@ def _find_odd_clock(system: SwitchedSystem) -> str | None:
 def _find_odd_saturation(system: SwitchedSystem) -> str | None:
     if system.saturation is None:
         return None
-    if not system.is_uniform:
-        return "signals saturate, but the modes are not of one size"
-    free = () if system.contact is None else system.contact.free
-    return system.saturation.find_oddity(system.order, len(system.modes), len(free))
+    signals = system.saturation.signals
+    if not 1 <= len(signals) <= MOST_SIGNALS:
+        return f"no signal saturates, or more than {MOST_SIGNALS} do"
+    widths = range(system.order, system.order + len(signals))
+    if (odd := _find_odd_errors(system, signals, "", widths)) is not None:
+        return odd
+    for signal in signals:
+        if signal.limit <= 0:
+            return f"the limit of {signal.name} is not positive"
+    return _find_odd_start(system, system.saturation.start)
 
 
-def _find_odd_parts(system: SwitchedSystem, item: Rounding | Coupling, width: int) -> str | None:
-    """Say why columns and rows are not those of every mode and free mode, or None."""
-    n, free = system.order, () if system.contact is None else system.contact.free
-    sized = [*((M, (n, 1)) for M in item.columns), *((M, (1, width)) for M in item.rows)]
-    if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
-        return "does not have the size of the state"
-    if not len(item.columns) == len(item.rows) == len(system.modes) + len(free):
-        return "has not one column and row for every mode"
-    if any(row.numerators[0][n - 1] for row in item.rows[len(system.modes) :]):
-        return "depends on the deflection in free motion"
+def _find_odd_start(system: SwitchedSystem, start: Start) -> str | None:
+    states = start.states
+    if not states or not all(x.is_well_formed and x.shape == (system.order, 1) for x in states):
+        return f"{start.name} does not have the size of the state"
+    if not all(any(map(any, x.numerators)) for x in states):
+        return f"{start.name} stands for a state that is zero"
+    # Where contact is lost, V is not x'Qx.
+    if system.free and any(x.numerators[-1][0] < 0 for x in states):
+        return f"{start.name} stands for a state without contact"
     return None
+
+
+def _find_odd_errors(
+    system: SwitchedSystem,
+    items: Sequence[Rounding | Coupling | CutOff],
+    said: str,
+    widths: Iterable[int],
+) -> str | None:
+    """Say why columns and rows are not those of every mode and free mode, or None."""
+    n = system.order
+    if items and not system.is_uniform:
+        return f"{said}{items[0].name} is of modes that are not of one size"
+    for item, width in zip(items, widths, strict=True):
+        sized = [*((M, (n, 1)) for M in item.columns), *((M, (1, width)) for M in item.rows)]
+        if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
+            return f"{said}{item.name} does not have the size of the state"
+        if not len(item.columns) == len(item.rows) == len(system.every_mode):
+            return f"{said}{item.name} has not one column and row for every mode"
+        if any(row.numerators[0][n - 1] for row in item.rows[len(system.modes) :]):
+            return f"{said}{item.name} depends on the deflection in free motion"
+    names = [item.name for item in items]
+    return f"{said}{names[0]} is said twice" if len(set(names)) < len(names) else None
 
 
 def _is_motion(A: RationalMatrix, order: int, time: Time) -> bool:

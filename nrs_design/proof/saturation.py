@@ -55,41 +55,6 @@ class Saturation:
     signals: tuple[CutOff, ...]  # Each may depend on those before it
     start: Start  # How motions begin
 
-    def find_oddity(self, order: int, modes: int, free: int) -> str | None:
-        """TRUSTED: say what makes no sense for so many states, modes and free modes, or None.
-
-        Parameters
-        ----------
-        order : int
-            Number of states.
-        modes, free : int
-            How many there are in contact, and free.
-        """
-        if not self.signals or len({signal.name for signal in self.signals}) < len(self.signals):
-            return "no signal saturates, or two that do have one name"
-        if len(self.signals) > MOST_SIGNALS:
-            return f"more than {MOST_SIGNALS} signals saturate"
-        for i, signal in enumerate(self.signals):
-            sized = [(M, (order, 1)) for M in signal.columns]
-            sized += [(M, (1, order + i)) for M in signal.rows]
-            if not all(M.is_well_formed and M.shape == shape for M, shape in sized):
-                return f"{signal.name} does not have the size of the state"
-            if not len(signal.columns) == len(signal.rows) == modes + free:
-                return f"{signal.name} has not one column and row for every mode"
-            if signal.limit <= 0:
-                return f"the limit of {signal.name} is not positive"
-            if any(row.numerators[0][order - 1] for row in signal.rows[modes:]):
-                return f"{signal.name} depends on the deflection in free motion"
-        states = self.start.states
-        if not states or not all(x.is_well_formed and x.shape == (order, 1) for x in states):
-            return f"{self.start.name} does not have the size of the state"
-        if not all(any(map(any, x.numerators)) for x in states):
-            return f"{self.start.name} stands for a state that is zero"
-        # Where contact is lost, V is not x'Qx.
-        if free and any(x.numerators[-1][0] < 0 for x in states):
-            return f"{self.start.name} stands for a state without contact"
-        return None
-
     def between(
         self, A: RationalMatrix, k: int, held: Sequence[Sequence[Fraction]]
     ) -> Iterator[RationalMatrix]:

@@ -12,12 +12,12 @@ import numpy as np
 from nrs_design.errors import DataError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractContactLaw, Element
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.build_control import build_control
 from nrs_design.simulation.scenario import Errors, Profile, Scenario, Surface
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.environment import EnvironmentSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.scenarios import (
     AXES,
     LONGEST,

@@ -12,11 +12,11 @@ from nrs_design.controllers.controller_design import Controller, ControllerDesig
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.models.actuator import Actuator
+from nrs_design.models.interval import Interval
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.build_scenario import Pick, drawn_laws
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.scenarios import LARGEST_SEED
 
 

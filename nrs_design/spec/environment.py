@@ -4,15 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field
 
+from nrs_design.models.contact import (
+    AbstractLinearLaw,
+    AbstractNonlinearLaw,
+    Elastic,
+    Hand,
+    HuntCrossley,
+    KelvinBoltzmann,
+    KelvinVoigt,
+    Maxwell,
+)
+from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
@@ -45,20 +55,14 @@ _COVERS = (
 
 _LENGTHS = "write lengths with a lever_arm, and angles without one"
 
-Number = TypeVar("Number", float, Fraction)
-
 
 class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     """What all environments have in common; parameters of the law are the ranged quantities."""
 
-    # Whether the force depends on more than the deflection and the velocity of the moment.
-    remembers: ClassVar[bool] = False
-    # Whether a constant deflection keeps a force.
-    has_rest: ClassVar[bool] = True
-    # Whether its ranges hold while the deflection stays in a preload, off its surface, and no more.
-    preloaded: ClassVar[bool] = False
-    # Whether a mass moves with the contact.
-    has_mass: ClassVar[bool] = False
+    # The law that designs and proofs take, and its own where that is not linear: the former stands
+    # for it while the deflection stays in a preload, off its surface, and no more.
+    law: ClassVar[type[AbstractLinearLaw]]
+    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = None
 
     model: str
 
@@ -100,6 +104,26 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         return all(quantity.fixed for quantity in self.parameters().values())
 
     @property
+    def remembers(self) -> bool:
+        """Whether the force depends on more than the deflection and the velocity of the moment."""
+        return self.law.remembers
+
+    @property
+    def has_rest(self) -> bool:
+        """Whether a constant deflection keeps a force."""
+        return self.law.has_rest
+
+    @property
+    def has_mass(self) -> bool:
+        """Whether a mass moves with the contact."""
+        return self.law.has_mass
+
+    @property
+    def preloaded(self) -> bool:
+        """Whether its ranges hold in a preload only."""
+        return self.nonlinear is not None
+
+    @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
         return not self.remembers
@@ -113,11 +137,6 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     def preload_range(self) -> tuple[Quantity, Quantity] | None:
         """The lowest and highest deflection of the preload, if there is one."""
         return None
-
-    @property
-    def linear_model(self) -> str:
-        """The linear law that stands for it."""
-        return self.model
 
     def linear_at_pivot(self) -> dict[str, Interval]:
         """Return the parameters of that law with their ranges for a rotation."""
@@ -168,12 +187,16 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 class ElasticSpec(AbstractEnvironmentSpec):
     """Elastic environment, ``F = k delta`` (thesis 2.5)."""
 
+    law: ClassVar[type[AbstractLinearLaw]] = Elastic
+
     model: Literal["elastic"] = Field(description="law of the environment: elastic, F = k delta")
     stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
 
 
 class KelvinVoigtSpec(AbstractEnvironmentSpec):
     """Kelvin-Voigt environment, ``F = k delta + b ddelta`` (thesis 2.5)."""
+
+    law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
 
     model: Literal["kelvin-voigt"] = Field(
         description="law of the environment: kelvin-voigt, F = k delta + b ddelta/dt"
@@ -190,7 +213,7 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
 class HandSpec(AbstractEnvironmentSpec):
     """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
 
-    has_mass: ClassVar[bool] = True
+    law: ClassVar[type[AbstractLinearLaw]] = Hand
 
     model: Literal["hand"] = Field(
         description="law of the environment: hand, F = k delta + b ddelta/dt + m d2delta/dt2; it "
@@ -217,8 +240,7 @@ class HandSpec(AbstractEnvironmentSpec):
 class MaxwellSpec(AbstractEnvironmentSpec):
     """Maxwell environment, a spring and a damper in a row: ``F + (b/k) dF = b ddelta``."""
 
-    remembers: ClassVar[bool] = True
-    has_rest: ClassVar[bool] = False
+    law: ClassVar[type[AbstractLinearLaw]] = Maxwell
 
     model: Literal["maxwell"] = Field(
         description="law of the environment: maxwell, F + (b/k) dF/dt = b ddelta/dt; it has no "
@@ -231,7 +253,7 @@ class MaxwellSpec(AbstractEnvironmentSpec):
 class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
     """Kelvin-Boltzmann environment, the standard linear solid (thesis 2.5)."""
 
-    remembers: ClassVar[bool] = True
+    law: ClassVar[type[AbstractLinearLaw]] = KelvinBoltzmann
 
     model: Literal["kelvin-boltzmann"] = Field(
         description="law of the environment: kelvin-boltzmann, a spring k2 in a row with a spring "
@@ -249,7 +271,8 @@ class KelvinBoltzmannSpec(AbstractEnvironmentSpec):
 class HuntCrossleySpec(AbstractEnvironmentSpec):
     """Hunt-Crossley environment, ``F = rho delta^phi + lam delta^phi ddelta`` (thesis 2.18)."""
 
-    preloaded: ClassVar[bool] = True
+    law: ClassVar[type[AbstractLinearLaw]] = KelvinVoigt
+    nonlinear: ClassVar[type[AbstractNonlinearLaw] | None] = HuntCrossley
 
     model: Literal["hunt-crossley"] = Field(
         description="law of the environment: hunt-crossley, F = (rho + lam ddelta/dt) delta^phi, "
@@ -331,11 +354,6 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
         exponent = pick(Interval(self.exponent.nominal, *self.exponent.range))
         return {**tangent, "exponent": exponent, "about": self.about.si / arm}
 
-    @property
-    def linear_model(self) -> str:
-        """A spring beside a damper."""
-        return "kelvin-voigt"
-
     def linear_at_pivot(self) -> dict[str, Interval]:
         """Return the box of stiffness and damping over the preload, rounded outwards."""
         tangent, about = self.exact_at_pivot(), self.about.rational_part
@@ -354,11 +372,6 @@ def _quantities(turned: Interval, unit: str) -> RangedQuantity:
     values = (turned.nominal, turned.low, turned.high)
     nominal, low, high = (Quantity(f"{float(v):.6g} {unit}", v, unit) for v in values)
     return RangedQuantity(nominal=nominal, range=(low, high))
-
-
-def turn(value: Number, radius: Number) -> Number:
-    """Convert a linear stiffness, damping or mass to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
-    return value * radius**2
 
 
 def unit_at_pivot(quantity: Quantity) -> str:

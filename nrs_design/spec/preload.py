@@ -19,10 +19,10 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
 
+from nrs_design.models.interval import Interval
 from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.range_checks import RANGE_CHECKS
 

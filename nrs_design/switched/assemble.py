@@ -83,7 +83,7 @@ def assemble_from_text(
     if spec.kind == "robot":
         raise AssemblyError("a robot spec has no modes")
     from nrs_design.controllers.gains import design_from_gains
-    from nrs_design.models.plant import build_plant
+    from nrs_design.spec.build_plant import build_plant
 
     design = design_from_gains(spec, gains)
     return assemble(spec, plant or build_plant(spec), design, coordinates, scale)
@@ -131,7 +131,7 @@ def assemble(
     spec : InteractionDesignSpec
         With the name, the rules of switching and the ranges of gains.
     plant : Plant
-        As `nrs_design.models.plant.build_plant` makes it of this spec.
+        As `nrs_design.spec.build_plant.build_plant` makes it of this spec.
     design : ControllerDesign
         The gains that ship.
     coordinates : {"deflection", "force"} or None

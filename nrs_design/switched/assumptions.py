@@ -9,11 +9,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.controllers.float32 import exact_decimal
+from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.environment_estimator import EstimatorSpec, decide
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter
@@ -185,10 +185,8 @@ def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assu
     scale : Fraction
         By how much their ranges are stretched: less than declared do not cover the law.
     """
-    from nrs_design.models.contact import nonlinear_law_of
-
     for name, environment in spec.environments.items():
-        law = nonlinear_law_of(environment)
+        law = environment.nonlinear
         if law is None or environment.preload_range is None or name not in spec.touched:
             continue
         low, high = (end.text for end in environment.preload_range)

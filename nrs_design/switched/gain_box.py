@@ -11,9 +11,9 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gain_range import gain_interval
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.errors import AssemblyError
+from nrs_design.models.interval import Interval
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 

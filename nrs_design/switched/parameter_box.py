@@ -18,7 +18,7 @@ from itertools import product, starmap
 from types import MappingProxyType
 
 from nrs_design.errors import InternalError
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 
 Rows = Sequence[Sequence[Fraction]]
 RowsAt = Callable[[Mapping[str, Fraction]], Rows]

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.errors import InternalError
+from nrs_design.models.interval import Interval
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.parameter_box import Box
 
 Pair = tuple[str, str]

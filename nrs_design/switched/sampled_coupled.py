@@ -16,10 +16,10 @@ from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.proof.channels import Channel, Coupling
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.coupled import AxesCoupling, check_gravity, not_below
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 from nrs_design.switched.sampled_inputs import SampledMode, known_entries

@@ -8,12 +8,12 @@ from fractions import Fraction
 
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.sampling import DisturbancesSpec
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_frame import INPUTS, Frame

@@ -6,8 +6,8 @@ from fractions import Fraction
 from math import ceil, floor
 
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
 from nrs_design.proof.taylor import exponential_between
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.parameter_box import Box, Triangle
 
 # Binary digits of the enclosure of an exponential: its ends are one number in doubles, by which a

@@ -27,11 +27,11 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import JointMotionLoop, MotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.controllers import Offset
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.modes import (

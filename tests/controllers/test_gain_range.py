@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
 from nrs_design.errors import CertificateError, DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.pipeline import run_design
 from nrs_design.spec import LoadedSpec, Quantity, parse_spec
 from nrs_design.spec.gain_fields import GainSpec
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.assemble import assemble_from_text
 
 TEXT = """\

@@ -10,8 +10,8 @@ from nrs_design.design.laws.impedance import desired_impedance
 from nrs_design.design.laws.law import to_transfer_function
 from nrs_design.errors import DesignError
 from nrs_design.models.motion_loop import MotionLoop
-from nrs_design.models.plant import build_plant
 from nrs_design.spec import load_spec, parse_spec
+from nrs_design.spec.build_plant import build_plant
 from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE
 
 

@@ -25,7 +25,7 @@ from nrs_design.design.measures import (
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 from tests.design.classical import displayed_impedance_at, loop_margins
 from tests.design.motion_loops import EXACT, PLACE, axis_with
 

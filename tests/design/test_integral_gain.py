@@ -12,8 +12,8 @@ from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.laws.pi_force import integral_gain, with_integral
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.errors import DesignError
-from nrs_design.models.plant import build_plant
 from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
 from tests.simulation.interactions import POSITION, text_of
 
 GAIN, LAG = 2060 * 4.8417e-4, 0.0351  # thesis 4.1 and 4.3

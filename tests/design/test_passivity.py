@@ -14,8 +14,8 @@ from nrs_design.controllers.sensor import LowPass
 from nrs_design.design.passivity import first_root, real_part
 from nrs_design.design.passivity import passive_band as band_of
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.cut_loop import ContinuousAxis
 from nrs_design.switched.joint import Joint
 from nrs_design.thesis import thesis

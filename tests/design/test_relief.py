@@ -11,7 +11,7 @@ from nrs_design.design.relief import doubt_stiffness, enough_damping
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.models.contact.environment import Environment
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 from tests.design.motion_loops import PLACE, axis_with
 
 F = Fraction

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from nrs_design.errors import NrsDesignError
-from nrs_design.exporters.c import render as render_c
 from nrs_design.exporters.deployed import find_differences
 from nrs_design.exporters.export import export_design
-from nrs_design.exporters.json_record import render as render_json
-from nrs_design.exporters.monitor import render as render_monitor
+from nrs_design.exporters.formats.c import render as render_c
+from nrs_design.exporters.formats.json import render as render_json
+from nrs_design.exporters.formats.monitor import render as render_monitor
 from nrs_design.spec import read_spec
 from nrs_design.spec.coupling import CouplingSpec
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, ends_soon

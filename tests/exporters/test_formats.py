@@ -2,14 +2,13 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
-from nrs_design.exporters import FORMATS
+from nrs_design.exporters import format_names, format_of, rendered
 from nrs_design.exporters.export import Execution, export_design
 
 
@@ -24,18 +23,14 @@ def proved(request, design):
     return request.getfixturevalue(f"{kind}_export")
 
 
-def rendered(name, export):
-    return import_module(f"nrs_design.exporters.{FORMATS[name].module}").render(export)
-
-
 def exported(name, design, proved):
     """The export of a design, proved or not, as the format takes it."""
-    if not FORMATS[name].executable or proved.record.sample_time is not None:
+    if not format_of(name).executable or proved.record.sample_time is not None:
         return proved
     return export_design(design, execution=Execution(Fraction(2, 1000), unproved=True))
 
 
-@pytest.mark.parametrize("name", [name for name, item in FORMATS.items() if item.executable])
+@pytest.mark.parametrize("name", [name for name in format_names() if format_of(name).executable])
 def test_names_that_are_none_in_c_are_refused_by_every_program(name, sampled_export, monkeypatch):
     from nrs_design.exporters import program
 
@@ -47,20 +42,20 @@ def test_names_that_are_none_in_c_are_refused_by_every_program(name, sampled_exp
         rendered(name, sampled_export)
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", format_names())
 def test_every_file_is_of_the_table_and_the_same_each_time(name, design, proved):
     export = exported(name, design, proved)
     files = rendered(name, export)
-    assert set(files) == set(FORMATS[name].files)
+    assert set(files) == set(format_of(name).files)
     for ending, content in files.items():
-        beginning = FORMATS[name].files[ending]
+        beginning = format_of(name).files[ending]
         assert beginning
         assert content.startswith(beginning)
         assert Path(f"x{ending}").name == f"x{ending}"
     assert rendered(name, export) == files
 
 
-@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("name", format_names())
 def test_every_file_says_what_it_is_worth(name, design, proved):
     export = exported(name, design, proved)
     record = export.record

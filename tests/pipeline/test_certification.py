@@ -77,7 +77,7 @@ def test_a_gated_spec_is_built_once_and_optimized_once(tmp_path, monkeypatch):
     calls = calls_of(
         monkeypatch,
         # It is imported where it is called, so there is one place to look.
-        build_plant=("models.plant",),
+        build_plant=("spec.build_plant",),
         optimize_impedance=("design.constrained",),
         design_controllers=("design.design",),
     )

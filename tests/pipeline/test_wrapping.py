@@ -5,8 +5,8 @@ import sys
 from fractions import Fraction
 
 from nrs_design.design.design import design_controllers
-from nrs_design.models.plant import build_plant
 from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.quantity import Quantity
 from nrs_design.switched.assemble import assemble
 from tests.support import SOFT_TISSUE

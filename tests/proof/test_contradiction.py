@@ -277,7 +277,7 @@ def test_roundings_that_make_sense_and_others(changes, reason):
 
 def test_roundings_need_steps_of_one_size_and_names():
     twice = replace(ROUNDS, roundings=(ERROR, ERROR))
-    assert find_contradiction(twice) == "two roundings have one name"
+    assert find_contradiction(twice) == f"the rounding of {ERROR.name} is said twice"
     first = Rounding("F", (matrix([[1]]),), (ONE,))
     in_time = replace(family([[-1]]), roundings=(first,))
     assert find_contradiction(in_time) == "the arithmetic rounds, but there are no steps"
@@ -321,7 +321,7 @@ def test_couplings_that_make_sense_and_others(changes, reason):
 
 def test_couplings_need_one_size_and_names():
     twice = replace(LEANS, couplings=(LEANING, LEANING))
-    assert find_contradiction(twice) == "two couplings have one name"
+    assert find_contradiction(twice) == f"the coupling by {LEANING.name} is said twice"
     first = Coupling("links", (matrix([[1]]),), (ONE,))
     in_time = replace(family([[-1]]), couplings=(first,))
     assert find_contradiction(in_time) is None
@@ -388,7 +388,7 @@ def test_signals_that_saturate_fit_every_mode_of_one_size():
     assert find_contradiction(one_less) == "s1 has not one column and row for every mode"
     unlike = family([[-1]], [[-1, 0], [0, -1]])
     found = find_contradiction(replace(unlike, saturation=system.saturation))
-    assert found == "signals saturate, but the modes are not of one size"
+    assert found == "s1 is of modes that are not of one size"
 
 
 SIGNALS = saturating().saturation.signals
@@ -398,7 +398,7 @@ SIGNALS = saturating().saturation.signals
     ("changes", "reason"),
     [
         ({"signals": ()}, "no signal saturates"),
-        ({"signals": (SIGNALS[0], replace(SIGNALS[1], name="s1"))}, "two that do have one name"),
+        ({"signals": (SIGNALS[0], replace(SIGNALS[1], name="s1"))}, "s1 is said twice"),
         ({"signals": SIGNALS[1:]}, "s2 does not have the size of the state"),
         ({"signals": (replace(SIGNALS[0], limit=Fraction(0)),)}, "the limit of s1 is not positive"),
         (

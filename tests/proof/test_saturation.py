@@ -5,12 +5,15 @@ from fractions import Fraction
 
 import pytest
 
+from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation
-from tests.proof.systems import genuine, kept, matrix, pushed_away, saturating
+from tests.proof.systems import family, genuine, kept, matrix, pushed_away, saturating
 
 WHAT = pushed_away().saturation
+NEITHER = "no signal saturates, or more than 4 do"
 (SIGNAL,) = WHAT.signals
 
 
@@ -20,27 +23,23 @@ def several(count):
     return replace(WHAT, signals=tuple(signals))
 
 
-def test_up_to_four_signals_make_sense():
-    assert WHAT.find_oddity(1, 1, 0) is None
-    assert several(4).find_oddity(1, 1, 0) is None
-    assert several(5).find_oddity(1, 1, 0) == "more than 4 signals saturate"
+def oddity_of(system, what):
+    return find_contradiction(replace(system, saturation=what))
 
 
-@pytest.mark.parametrize("signals", [(), (SIGNAL, SIGNAL)])
-def test_there_is_a_signal_and_each_has_its_name(signals):
-    assert "no signal saturates" in replace(WHAT, signals=signals).find_oddity(1, 1, 0)
+def test_up_to_four_signals_of_different_names_make_sense():
+    system = pushed_away()
+    for count, oddity in ((1, None), (4, None), (5, NEITHER), (0, NEITHER)):
+        assert oddity_of(system, several(count)) == oddity
+    named = tuple(replace(signal, name="s") for signal in several(2).signals)
+    assert oddity_of(system, replace(WHAT, signals=named)) == "s is said twice"
 
 
 # Two states, two modes in contact and a free one; a column that has a length but is none.
-LOST, HELD = saturating().saturation, kept(saturating()).saturation
+LOST = saturating().saturation
 RAGGED = RationalMatrix(((1,), (1, 1)))
 SIZE = "s2 does not have the size of the state"
 EVERY = "s2 has not one column and row for every mode"
-
-
-def test_signals_in_two_states_make_sense():
-    assert LOST.find_oddity(2, 2, 1) is None
-    assert HELD.find_oddity(2, 2, 0) is None
 
 
 @pytest.mark.parametrize(
@@ -64,13 +63,13 @@ def test_signals_in_two_states_make_sense():
 def test_every_signal_fits_the_system(part, entries, oddity):
     first, second = LOST.signals
     odd = replace(LOST, signals=(first, replace(second, **{part: entries})))
-    assert odd.find_oddity(2, 2, 1) == oddity
+    assert oddity_of(saturating(), odd) == oddity
 
 
 def test_a_limit_may_be_any_positive_number():
     first, second = LOST.signals
     short = replace(second, limit=Fraction(1, 1000))
-    assert replace(LOST, signals=(first, short)).find_oddity(2, 2, 1) is None
+    assert oddity_of(saturating(), replace(LOST, signals=(first, short))) is None
 
 
 @pytest.mark.parametrize(
@@ -79,19 +78,20 @@ def test_a_limit_may_be_any_positive_number():
 )
 def test_every_motion_begins_in_a_state(states):
     odd = replace(LOST, start=replace(LOST.start, states=states))
-    assert odd.find_oddity(2, 2, 1) == "force does not have the size of the state"
+    assert oddity_of(saturating(), odd) == "force does not have the size of the state"
 
 
 def test_a_motion_may_begin_anywhere_where_contact_is_kept():
     """And where it may be lost, in contact with nothing deflected."""
     behind, touching, pressed = matrix([[1], [-1]]), matrix([[1], [0]]), matrix([[0], [1]])
 
-    def oddity(what, free, *states):
-        return replace(what, start=replace(what.start, states=states)).find_oddity(2, 2, free)
+    def oddity(system, *states):
+        what = system.saturation
+        return oddity_of(system, replace(what, start=replace(what.start, states=states)))
 
-    assert oddity(HELD, 0, behind) is None
-    assert oddity(LOST, 1, touching) is None
-    assert oddity(LOST, 1, pressed, behind) == "force stands for a state without contact"
+    assert oddity(kept(saturating()), behind) is None
+    assert oddity(saturating(), touching) is None
+    assert oddity(saturating(), pressed, behind) == "force stands for a state without contact"
 
 
 def test_the_last_state_is_the_deflection():
@@ -103,12 +103,14 @@ def test_the_last_state_is_the_deflection():
     ):
         states = (matrix(start),)
         what = Saturation((signal,), replace(WHAT.start, states=states))
-        assert what.find_oddity(3, 1, 1) == oddity
+        still = [[0] * 3] * 3
+        system = replace(family(still), contact=Contact((Mode("free", matrix(still)),)))
+        assert oddity_of(system, what) == oddity
 
 
 def test_a_motion_that_begins_at_zero_says_nothing():
     nowhere = replace(WHAT, start=replace(WHAT.start, states=(matrix([[1]]), matrix([[0]]))))
-    assert "stands for a state that is zero" in nowhere.find_oddity(1, 1, 0)
+    assert "stands for a state that is zero" in oddity_of(pushed_away(), nowhere)
 
 
 def test_a_motion_begins_in_contact_where_that_can_be_lost():

@@ -155,7 +155,7 @@ def changed(**changes: object) -> SwitchedSystem:
         (changed(rows=(matrix([[1, 1]]),) * 3), "depends on the deflection in free motion"),
         (
             replace(changed(), roundings=changed().roundings * 2),
-            "two roundings have one name",
+            "is said twice",
         ),
         (replace(family([[-1]]), roundings=rounded(0, 0).roundings), "there are no steps"),
     ],

@@ -220,6 +220,9 @@ def test_how_contact_is_lost_is_written_beside_the_assumptions():
     fields = json.loads(json.dumps(system_fields(system)))
     assert (fields["contact"]["loss"], fields["assumptions"]) == ("as it goes", [])
     assert read_system(system.name, fields) == system
+    for odd in ({"contact": 3}, {"contact": None}, {"clock": []}):
+        with pytest.raises(TypeError, match="expected an object"):
+            read_system(system.name, {**fields, **odd})
     for odd in ({"lost": ""}, {"loss": None}, {"free": None}):
         with pytest.raises((TypeError, ValueError)):
             read_system(system.name, {**fields, "contact": {**fields["contact"], **odd}})

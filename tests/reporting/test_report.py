@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -16,7 +15,7 @@ from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.spec import read_spec
-from tests.reporting.conftest import KINDS, ROOT, cases, report_of
+from tests.reporting.conftest import ROOT, cases, report_of
 from tests.support import SOFT_TISSUE
 
 FIGURES = {
@@ -31,7 +30,6 @@ FIGURES = {
         "quadratic",
         "mode-rates",
         "run",
-        "deflection",
         "release",
     ],
     "force": [
@@ -107,9 +105,8 @@ def test_every_axis_is_labelled_with_its_unit(report, case):
         axes = item.figure.axes
         run = item.name in ("run", "one-period")
         last = item.name == "release"
-        below = (
-            axes[-1] if last else axes[1] if run or item.name == "quadratics" else axes[0]
-        ).get_xlabel()
+        lowest = axes[-1] if last or run else axes[1] if item.name == "quadratics" else axes[0]
+        below = lowest.get_xlabel()
         labels = [below, axes[0].get_ylabel()]
         assert all(labels), item.name
         if item.name == "blocks":
@@ -163,12 +160,6 @@ def test_worst_values_stand_beside_the_goals(tmp_path):
     assert "insertion: factor off the desired impedance 2.066 (usual: at most 2)" in text
 
 
-def test_source_of_the_motion_loop_is_named(report):
-    text = words(report("proved"))
-    assert "G(s) = (0.99739 s + 56.82" in text
-    assert "whose derivative gain and zero the spec gives" in text
-
-
 def test_proved_report_says_what_is_not_covered(report):
     text = words(report("proved"))
     for topic in ("Sampling", "Friction", "saturation", "contact", "outside the declared ranges"):
@@ -205,12 +196,6 @@ def test_refuted_report_shows_the_witness_and_no_bound(report):
     assert "Lyapunov evidence" not in words(refuted)
 
 
-def test_marginal_mode_neither_grows_nor_decays(report):
-    norm = lines(figure(report("marginal"), "run"))["run"].get_ydata()
-    assert norm == pytest.approx(1.0)
-    assert "not Schur" in report("marginal").claim
-
-
 def test_inconclusive_report_says_so_plainly(report):
     inconclusive = report("inconclusive")
     text = words(inconclusive)
@@ -222,7 +207,7 @@ def test_inconclusive_report_says_so_plainly(report):
     assert "Every mode by itself is stable" in text
     assert "proved bound" not in str(list(lines(figure(inconclusive, "run"))))
     assert "says nothing about stability" in text
-    assert "A longer dwell time" in text
+    assert "a longer dwell time or fewer transitions" in text
 
 
 def test_unstable_mode_that_must_be_left_is_not_called_stable(report):
@@ -239,33 +224,6 @@ def test_simulated_run_stays_below_its_bound(report, case):
     curves = lines(figure(report(case), "run"))
     bound = next(line for label, line in curves.items() if label.startswith("proved bound"))
     assert (curves["run"].get_ydata() <= bound.get_ydata() * (1 + 1e-9)).all()
-
-
-@pytest.mark.slow
-def test_rungs_are_listed_without_times_unless_asked_for(tmp_path):
-    path = tmp_path / "polynomial.nrs.yaml"
-    path.write_text(f"kind: switched-system\nname: p\n{KINDS['polynomial']}")
-    result = run_certification(read_spec(path))
-    tables = []
-    for times in (False, True):
-        made = build_report(result, times=times)
-        (table,) = next(part.blocks for part in made.sections if part.title == "Rungs tried")
-        tables.append(table)
-    attempts = [(a.step, a.outcome) for a in result.certification.attempts]
-    assert [table.columns for table in tables] == [
-        ("Rung", "Outcome"),
-        ("Rung", "Outcome", "Time [ms]"),
-    ]
-    assert [row[:2] for row in tables[1].rows] == attempts == list(tables[0].rows)
-    assert all(float(row[2]) >= 0 for row in tables[1].rows)
-
-
-@pytest.mark.slow
-def test_without_evidence_only_the_gains_are_shown():
-    result = run_certification(read_spec(ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml"))
-    bare = build_report(result)
-    assert "What the gains achieve is not shown" in words(bare)
-    assert "sensitivity" not in [item.name for item in bare.illustrations]
 
 
 @pytest.mark.slow
@@ -315,12 +273,6 @@ def test_many_modes_are_shortened(tmp_path):
     many = build_report(run_certification(read_spec(path)))
     assert "The 40 modes, the 24 slowest of them" in words(many)
     assert "24 with the least slack" in words(many)
-
-
-def test_titles_and_names_stay_with_the_spec(report):
-    discrete = report("discrete")
-    assert discrete.name == "sampled"
-    assert replace(discrete, title="").title == ""
 
 
 SAID = {
@@ -412,21 +364,6 @@ def test_head_and_box_fit_the_kind_of_evidence(report, case):
     assert [text for text in box if text not in said] == []
 
 
-def test_dwell_time_excludes_mixtures_and_arbitrary_words(report):
-    text = words(report("dwell"))
-    assert "convex combinations" not in text
-    assert "whatever switches happen" not in text
-    assert "convex combinations" in words(report("polynomial"))
-
-
-def test_every_statement_is_claimed_in_the_head(report):
-    assert "degree 4" in report("polynomial").claim
-    (remark,) = report("polynomial").remarks
-    assert remark.startswith("No positive definite Q satisfies A'Q + QA < 0")
-    assert report("inconclusive").remarks == (remark,)
-    assert report("discrete").remarks == ()
-
-
 def test_polynomial_shows_its_size_and_nested_levels(report):
     part = next(p for p in report("polynomial").sections if p.title == "Lyapunov evidence")
     rows = dict(part.blocks[1].rows)
@@ -509,25 +446,6 @@ def test_obstruction_weights_sum_to_one(report):
     assert sum(float(row[1]) for row in table.rows) == pytest.approx(1, abs=1e-3)
 
 
-def test_blocks_are_summarized(report):
-    part = next(p for p in report("blocks").sections if p.title == "Block triangular structure")
-    table = next(block for block in part.blocks if isinstance(block, Table))
-    assert [row[1] for row in table.rows] == ["x1, x2", "x3", "x4"]
-    assert [row[2] for row in table.rows] == [
-        "common polynomial of degree 4",
-        "common quadratic function",
-        "common quadratic function",
-    ]
-    assert all(float(row[3].removesuffix(" (rounded down)")) > 0 for row in table.rows)
-    assert "Block 1 (x1, x2) has none." in words(report("blocks"))
-
-
-def test_unstable_mode_of_its_own_size_is_simulated_alone(report):
-    run = lines(figure(report("unequal"), "run"))["run"].get_ydata()
-    assert run.max() > 50
-    assert "Mode full is not Hurwitz" in report("unequal").claim
-
-
 def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
     path = tmp_path / "c.nrs.yaml"
     path.write_text(
@@ -538,21 +456,6 @@ def test_declared_rules_that_a_proof_does_not_need_are_named(tmp_path):
     text = words(build_report(run_certification(read_spec(path))))
     assert "The proof does not need the declared rules of switching" in text
     assert "The run switches freely, which is more than the spec allows." in text
-
-
-@pytest.mark.slow
-def test_ranges_under_a_polynomial_in_discrete_time(tmp_path):
-    path = tmp_path / "ranges.nrs.yaml"
-    path.write_text(
-        "kind: switched-system\nname: ranges\ntime: discrete\n"
-        'parameters:\n  k: {nominal: "1/2", range: ["2/5", "3/5"]}\nmodes:\n'
-        '  - {name: a, A: [[k, "3/5"], [0, "3/5"]]}\n  - {name: b, A: [["3/5", 0], [k, "3/5"]]}\n'
-        "switching: arbitrary\n"
-    )
-    for method, constant in ((Method.POLYNOMIAL, True), (Method.LMI, False)):
-        text = words(build_report(run_certification(read_spec(path), method=method)))
-        assert "all values between the corners are covered as well" in text
-        assert ("Between the corners, the bound holds up to a constant factor." in text) is constant
 
 
 MANY = """\
@@ -583,19 +486,6 @@ def robot_with(count, folder):
     ]
     path.write_text(MANY + "\n".join([*lines, "switching: arbitrary", ""]))
     return report_of(path)
-
-
-@pytest.mark.slow
-def test_fourteen_modes_have_their_full_names_and_their_own_look(tmp_path):
-    many = robot_with(7, tmp_path)
-    names = [
-        f"insertion-{i}/{e}" for i in range(7) for e in ("nasal-concha", "silicone-soft-phantom")
-    ]
-    curves = lines(figure(many, "eigenvalues"))
-    assert set(names) <= set(curves)
-    assert len({(curves[n].get_color(), curves[n].get_marker()) for n in names}) == 14
-    rates = figure(many, "mode-rates").figure.axes[0].get_yticklabels()
-    assert sorted("".join(row.get_text().splitlines()) for row in rates) == sorted(names)
 
 
 def test_curves_that_coincide_are_told_apart(tmp_path):
@@ -694,7 +584,3 @@ def test_a_sampled_loop_stays_within_what_is_certified(tmp_path):
         assert curves["simulated run"].get_xdata()[1] == pytest.approx(0.002)
     factor = float(result.certification.evidence.rate)
     assert bound[-1] / bound[0] == pytest.approx(factor ** (len(bound) - 1))
-
-
-def test_no_run_in_units_of_given_matrices(report):
-    assert all(item.name != "release" for item in report("dwell").illustrations)

@@ -39,7 +39,7 @@ def test_three_modes_of_which_every_two_are_harmless():
     system = family(A, B, C)
     assert search(family(A, B)) is None
     evidence = search(system)
-    assert len(evidence.weights) == 3
+    assert len(evidence.steps) == 3
     assert evidence.find_fault(system) is None
 
 
@@ -80,6 +80,6 @@ def test_ever_finer_shares_are_proposed():
     """One average, with ever finer shares."""
     proposed = list(search_mixture(Family.of(shears())))
     assert all(isinstance(candidate, Candidate) for candidate in proposed)
-    shares = [dict(candidate.evidence.weights)["m0"] for candidate in proposed]
+    shares = [dict(candidate.evidence.steps)["m0"] for candidate in proposed]
     pairs = zip(shares, mixture.DENOMINATORS, strict=True)
     assert all(share.denominator <= denominator for share, denominator in pairs)

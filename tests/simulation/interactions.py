@@ -4,11 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from nrs_design.design.design import design_controllers
-from nrs_design.models.plant import build_plant
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
 from nrs_design.simulation.sampled import sampled_axis, simulate_sampled
 from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.sampling import SamplingSpec
 
 # Motor, motion loop and limits of thesis 4.1, 4.3 and 6.3.1; gains of 6.3.2.1.

@@ -8,9 +8,9 @@ import pytest
 from nrs_design.controllers.replica import step
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.design.design import design_controllers
-from nrs_design.models.plant import build_plant
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
 from tests.simulation.interactions import FORCE, IMPEDANCE, PLACED, text_of
 
 MIXED = IMPEDANCE | {"force": FORCE}

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from nrs_design.errors import SpecError
 from nrs_design.models.contact import HuntCrossley
-from nrs_design.models.plant import build_plant
+from nrs_design.models.interval import Interval
 from nrs_design.spec import parse_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.environment import HuntCrossleySpec
-from nrs_design.spec.interval import Interval
 from nrs_design.spec.preload import ExponentSpec, power_box
 from tests.support import ROOT
 

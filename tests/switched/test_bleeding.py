@@ -9,9 +9,9 @@ from flint import fmpq_mat
 from scipy.integrate import solve_ivp
 
 from nrs_design.design.design import design_controllers
-from nrs_design.models.plant import build_plant
 from nrs_design.search.certify import certify
 from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, text_of
 from tests.support import ROOT

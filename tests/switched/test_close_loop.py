@@ -25,9 +25,9 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment, touch_at_once
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import combine
 from nrs_design.models.plant import Plant
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.close_loop import close_loop
 from nrs_design.switched.modes import velocity_mode
 from nrs_design.switched.shared_state import shared_state

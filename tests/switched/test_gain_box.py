@@ -12,13 +12,13 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import realize
-from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
-from nrs_design.spec.interval import Interval
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import DECLARED, assemble_from_text
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import to_force_coordinates, velocity_mode

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.switched.parameter_box import Box, Triangle
 
 F = Fraction

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import InternalError
+from nrs_design.models.interval import Interval
 from nrs_design.spec import parse_spec
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.assemble import assemble_from_text
 from nrs_design.switched.parameters import (
     UncertainParameter,

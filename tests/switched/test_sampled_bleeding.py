@@ -7,8 +7,8 @@ from nrs_design.certificates.verify import verify
 from nrs_design.controllers.laws import IntegralForce, PositionControl
 from nrs_design.design.design import design_controllers
 from nrs_design.errors import SpecError
-from nrs_design.models.plant import build_plant
 from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.sampled_law import list_law
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of

@@ -15,9 +15,9 @@ from scipy.linalg import expm
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
+from nrs_design.models.interval import Interval
 from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.certify import Limits, certify
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.coupled import AxesCoupling
 from nrs_design.switched.sampled_coupled import pushes
 from tests.search.support import thesis_robot

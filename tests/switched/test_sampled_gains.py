@@ -7,7 +7,7 @@ import pytest
 from nrs_design.controllers.laws import Admittance, ProportionalForce
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_gains import SampledGains

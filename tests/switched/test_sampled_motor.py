@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
 from nrs_design.proof.taylor import exponential_between
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS, motor_box
 

@@ -16,11 +16,11 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.motion_loop import close_motion_loop, realize
-from nrs_design.models.plant import build_plant
 from nrs_design.pipeline import run_design
 from nrs_design.proof.exact import characteristic_polynomial
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
+from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.modes import position_mode, velocity_mode
 from tests.support import ROOT

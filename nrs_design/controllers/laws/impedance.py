@@ -15,10 +15,10 @@ from nrs_design.controllers.operations import Operation, Value
 from nrs_design.controllers.parts import BEYOND, FORCE, HAND, StepGain, StepPart
 from nrs_design.controllers.step_analysis import UNIT
 from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec.controllers import Command, ImpedanceControllerSpec
-from nrs_design.spec.interval import Interval
 
 ONE = Fraction(1)
 # Below it, single precision keeps fewer digits.

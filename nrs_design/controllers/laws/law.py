@@ -18,9 +18,9 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.parts import PROPORTIONAL, StepPart
 from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
-from nrs_design.spec.interval import Interval
 
 S = TypeVar("S", bound=AbstractControllerSpec)
 # What a law gives the motion loop, and the rates of its states.

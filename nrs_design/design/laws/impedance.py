@@ -39,10 +39,10 @@ from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
-from nrs_design.spec.interval import Interval
 from nrs_design.switched.cut_loop import ContinuousAxis
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from nrs_design.errors import DesignError
-from nrs_design.models.plant import build_environments
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec, kinds
+from nrs_design.spec.build_plant import build_environments
 from nrs_design.spec.controllers import contact_names, touched_in
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.quantity import parse_quantity

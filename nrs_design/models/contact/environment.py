@@ -11,7 +11,7 @@ from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.contact.elastic import Elastic
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
 from nrs_design.models.contact.law import AbstractLinearLaw, AbstractNonlinearLaw
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,7 +80,7 @@ class HuntCrossley(AbstractNonlinearLaw):
 
     @classmethod
     def preload_text(cls, environment: str, low: str, high: str) -> str:
-        """Say that chords from any rest stay in the box of `nrs_design.spec.preload`.
+        """Say that chords from any rest stay in the box of the modes.
 
         Parameters
         ----------

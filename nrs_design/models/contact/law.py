@@ -12,9 +12,8 @@ from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from nrs_design.models.interval import turn
 from nrs_design.models.linear_form import LinearForm
-from nrs_design.spec import kinds
-from nrs_design.spec.environment import turn
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.motion import Array, Motion
@@ -22,9 +21,9 @@ if TYPE_CHECKING:
 STIFFNESS, DAMPING, MASS = "stiffness", "damping", "mass"
 # Units of a linear motion and of a rotation about the pivot.
 _UNITS = {
-    STIFFNESS: (kinds.LINEAR_STIFFNESS.units[0], kinds.STIFFNESS.units[0]),
-    DAMPING: (kinds.LINEAR_DAMPING.units[0], kinds.DAMPING.units[0]),
-    MASS: (kinds.MASS.units[0], kinds.INERTIA.units[0]),
+    STIFFNESS: ("N/m", "N*m/rad"),
+    DAMPING: ("N*s/m", "N*m*s/rad"),
+    MASS: ("kg", "kg*m^2"),
 }
 
 # A measured or designed value, or an exact one.

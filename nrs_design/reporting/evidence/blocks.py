@@ -19,20 +19,14 @@ from nrs_design.reporting.evidence.runs import (
     BESIDE,
     EUCLIDEAN,
     GREEDY,
-    bound_line,
-    freely,
-    horizon,
+    Greedy,
     phase_plane,
     simulated,
-    some_modes,
     trials_per_step,
-    until_small,
 )
 from nrs_design.reporting.figures.blocks import draw_blocks
-from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.modes import hardest_modes
-from nrs_design.simulation.greedy import greedy_run, relative_norms
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import worst_direction
 
@@ -120,18 +114,11 @@ class BlocksPage(AbstractPage):
         if proved is None or self.evidence.shows is not Shows.STABILITY:
             return self._deciding.run()
         system, identity, rate = self.system, np.eye(self.system.order), float(proved)
-        hardest = hardest_modes(system, None, trials_per_step(system))
-        norm, (step, steps) = quadratic_norm(identity), horizon(hardest, rate)
+        hardest = replace(hardest_modes(system, None, trials_per_step(system)), contact=None)
         initial = worst_direction(hardest, identity)
-        response = greedy_run(replace(hardest, contact=None), norm, initial, step, steps)
-        response = until_small(response, relative_norms(response, norm))
-        line = bound_line(response, rate, system.time, "slope of the slowest block, ")
-        run = Illustration(
-            "run",
-            BESIDE,
-            f"{GREEDY} {_RUN}{freely(system)}{some_modes(system, hardest)}",
-            draw_run(response, relative_norms(response, norm), line, hardest, EUCLIDEAN),
-        )
+        greedy = Greedy(system, hardest, quadratic_norm(identity), initial, rate)
+        line = "slope of the slowest block, "
+        response, run = greedy.draw(BESIDE, f"{GREEDY} {_RUN}", EUCLIDEAN, line)
         return simulated(run, *phase_plane(hardest, response, None))
 
     @property

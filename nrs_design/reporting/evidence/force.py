@@ -9,18 +9,12 @@ from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.norms import matrix_blocks
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import (
-    contact_figure,
-    freely,
-    horizon,
+    Greedy,
     simulated,
-    some_modes,
     trials_per_step,
-    until_small,
 )
-from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.simulation.constant_force import pushed_in, pushed_norm
-from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
 from nrs_design.simulation.norms import scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 
@@ -41,6 +35,8 @@ _RUN = (
     "stiffness, as if the point of rest stayed where it is. That is more than the claim is about. "
     "It is a bad run, not the worst one; V never rises."
 )
+
+_LABEL = "root of V over its first value [1]"
 
 
 class ForcePage(AbstractPage):
@@ -72,33 +68,23 @@ class ForcePage(AbstractPage):
             "The run is no part of the proof."
         )
         matrices = matrix_blocks(self.offer.forms, self.system.states, "constant-force-quadratic")
-        blocks = (Paragraph(text), *matrices, *self._illustrations())
+        blocks = (Paragraph(text), *matrices, self._illustration())
         return (Section("Contact under a constant force", blocks),)
 
     def run(self) -> Section:
         """Draw the function along a run from the air, and when there is contact."""
-        return simulated(*self._illustrations())
+        return simulated(self._illustration())
 
-    def _illustrations(self) -> tuple[Illustration, ...]:
+    def _illustration(self) -> Illustration:
         (numerators,), (slope,) = (form.Q for form in self.offer.forms), self.offer.numbers
         (Q,) = scaled_matrices(numerators)
         largest = max(abs(entry) for row in numerators for entry in row)
         norm = pushed_norm(Q, float(slope / largest))
         hardest = hardest_modes(self.system, Q, trials_per_step(self.system))
         driven = pushed_in(hardest)
-        flying = all_modes(driven)
         initial = np.zeros(driven.order)
         initial[-2:] = 1.0, -1.0
-        step, steps = horizon(flying, float(mode_rates(hardest, Q).min()))
-        response = greedy_run(driven, norm, initial, step, steps)
-        response = until_small(response, relative_norms(response, norm))
-        label = "root of V over its first value [1]"
-        return (
-            Illustration(
-                "constant-force-run",
-                "Run under a constant force",
-                f"{_RUN}{freely(self.system)}{some_modes(self.system, hardest)}",
-                draw_run(response, relative_norms(response, norm), None, flying, label),
-            ),
-            contact_figure(self.system, response, "constant-force-deflection"),
-        )
+        slowest = float(mode_rates(hardest, Q).min())
+        greedy = Greedy(self.system, driven, norm, initial, slowest)
+        title, name = "Run under a constant force", "constant-force-run"
+        return greedy.draw(title, _RUN, _LABEL, name=name)[1]

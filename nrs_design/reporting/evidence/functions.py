@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -9,16 +10,22 @@ import numpy as np
 from nrs_design.proof.bounds import at_most
 from nrs_design.reporting.document import Block, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
-from nrs_design.reporting.evidence.norms import largest_norm, matrix_blocks, norm_with_free_motion
+from nrs_design.reporting.evidence.norms import (
+    largest_norm,
+    matrix_blocks,
+    norm_with_free_motion,
+    step_norms,
+)
 from nrs_design.reporting.evidence.offers import Form
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.rates import rate_blocks
 from nrs_design.reporting.evidence.runs import (
     ONE_AXIS,
+    Greedy,
     bounded_run,
     extremes,
-    rounds_run,
     ruled_run,
+    slowest_in_a_round,
     trials_per_step,
 )
 from nrs_design.reporting.formatting import number
@@ -100,10 +107,11 @@ class FunctionsPage(AbstractPage):
         if self._ruled:
             return ruled_run(system, forms, rate, leaving=bool(self.offer.leaving))
         if system.clock is not None:
-            return rounds_run(system, forms, rate)
+            norms = step_norms(forms, system)
+            greedy = Greedy(system, system, norms, slowest_in_a_round(system, norms), rate)
+            return bounded_run(greedy, "in the norm of its step")
         if system.couplings:
             system = extremes(system)
-        note = ONE_AXIS if self.system.couplings else ""
         quadratic, single = self._form.degree == 1, len(forms) == 1
         label = "in the norm of Q" if quadratic else f"in V^(1/{2 * self._form.degree})"
         norm = largest_norm(forms, system.order)
@@ -116,16 +124,14 @@ class FunctionsPage(AbstractPage):
             initial = sampled_direction(hardest, norm, fine_step(hardest))
         if self._lost:
             norm = norm_with_free_motion(forms, system.order)
+            initial = initial if initial[-1] > 0 else -initial
+        else:
+            hardest = replace(hardest, contact=None)
         return bounded_run(
-            system,
-            hardest,
-            norm,
-            initial,
-            rate,
+            Greedy(system, hardest, norm, initial, rate),
             label if single else "(largest norm)",
-            note,
+            ONE_AXIS if self.system.couplings else "",
             levels=(1.0,) if quadratic else _NESTED,
-            lost=self._lost,
         )
 
     @property

@@ -17,7 +17,7 @@ from nrs_design.reporting.document import Block, Illustration, Paragraph, Sectio
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.offers import Growth, offer_of
 from nrs_design.reporting.evidence.page import AbstractPage
-from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, plane
+from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, phase_plane
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, plural, roots
@@ -165,7 +165,7 @@ class GrowthPage(AbstractPage):
             "mode is used, which the switching allows.",
             draw_run(response, euclidean_norms(response), line, single, EUCLIDEAN),
         )
-        yield from plane(single, response)
+        yield from phase_plane(single, response, None)
 
     def _average(self) -> Iterator[Block]:
         """Switch fast, with the shares of the average."""
@@ -199,7 +199,7 @@ class GrowthPage(AbstractPage):
             f"switching, the nearer it comes to the average, the dashed line. {grown}",
             draw_run(run.response, euclidean_norms(run.response), line, system, EUCLIDEAN),
         )
-        yield from plane(system, run.response)
+        yield from phase_plane(system, run.response, None)
 
     def _through_contact(self, low: float) -> Iterator[Block]:
         """Repeat the sequence, along the motion that grows."""
@@ -251,7 +251,7 @@ class GrowthPage(AbstractPage):
             "norm.",
             draw_run(first, euclidean_norms(first), None, system, EUCLIDEAN),
         )
-        yield from plane(system, run.response)
+        yield from phase_plane(system, run.response, None)
 
     def _witness(
         self, system: SwitchedSystem, run: PeriodicRun, caption: str, line: tuple[str, Array]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -12,7 +13,7 @@ from nrs_design.reporting.document import Illustration, Paragraph, Section, Tabl
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.norms import matrix_blocks
 from nrs_design.reporting.evidence.page import AbstractPage
-from nrs_design.reporting.evidence.runs import bounded_run, trials_per_step
+from nrs_design.reporting.evidence.runs import Greedy, bounded_run, trials_per_step
 from nrs_design.reporting.figures.lyapunov import draw_parameter_rates
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
@@ -77,13 +78,10 @@ class ParameterPage(AbstractPage):
         _, rates = parameter_rates(self.system, self._ends, values)
         p = float(values[rates.min(axis=1).argmin()])
         Q, fixed = _between(self._ends, p), modes_at(self.system, Fraction(p))
-        hardest = hardest_modes(fixed, Q, trials_per_step(fixed))
+        hardest = replace(hardest_modes(fixed, Q, trials_per_step(fixed)), contact=None)
+        initial, rate = worst_direction(hardest, Q), float(self._rate)
         return bounded_run(
-            fixed,
-            hardest,
-            quadratic_norm(Q),
-            worst_direction(hardest, Q),
-            float(self._rate),
+            Greedy(fixed, hardest, quadratic_norm(Q), initial, rate),
             "in the norm of Q(p)",
             f"The parameter stays at {p:.3g} of its range (0 low end, 1 high end), where the "
             "decay is slowest.",

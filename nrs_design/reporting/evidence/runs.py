@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import product
 from sys import float_info
 from typing import TYPE_CHECKING
@@ -15,9 +15,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Section
-from nrs_design.reporting.evidence.norms import step_norms
 from nrs_design.reporting.evidence.offers import Form
-from nrs_design.reporting.figures.contact import draw_deflection
 from nrs_design.reporting.figures.run import (
     MOTION_STATES,
     draw_mode_levels,
@@ -86,6 +84,16 @@ _ACTIVE = (
     "the factor c."
 )
 _RISES = " In a mode that must be left it may rise above the bound; at the next switch it is below."
+_BAD = "One bad run"
+_UNPROVED = (
+    "There is no bound: nothing is proved. Decay in this run is no sign of stability, and growth "
+    "over a short time is no proof of instability."
+)
+_UNPROVED_ROUNDS = (
+    "Simulated run in kept contact from a deflection: at every step the adversary takes the mode, "
+    "of those whose turn it is, after which the Euclidean norm is largest. There is no bound: "
+    "nothing is proved."
+)
 EUCLIDEAN = "|x(t)| / |x(0)|, Euclidean norm [1]"
 AGAINST = "Switching against the proved bound"
 BESIDE = "Switching beside the proved rate"
@@ -98,130 +106,84 @@ def simulated(*blocks: Block) -> Section:
     return Section("Simulated switching", blocks)
 
 
+@dataclass(frozen=True, eq=False)
+class Greedy:
+    """A run of the greedy adversary, and the norm in which it is drawn."""
+
+    system: SwitchedSystem  # All modes, for the caption
+    played: SwitchedSystem  # Modes that take part; without `contact` where it is kept
+    norms: Norm | Sequence[Norm]  # With a clock, one for each step of a round
+    initial: Array  # Shape (n,)
+    rate: float | None = None  # Proved, or of what is drawn; None: the run is as long as any
+
+    def draw(
+        self, title: str, said: str, label: str, line: str = "", name: str = "run"
+    ) -> tuple[SwitchedRun, Illustration]:
+        """Return the run, and its norm over time.
+
+        Parameters
+        ----------
+        title, said : str
+            Of the figure, and its caption.
+        label : str
+            Of the norm.
+        line : str
+            Which line has the rate, such as ``proved bound,``; empty for none.
+        name : str
+            Of the figure.
+        """
+        drawn, rate = all_modes(self.played), self.rate
+        step, steps = horizon(drawn, rate) if rate else (fine_step(drawn), _UNKNOWN_STEPS)
+        response = greedy_run(self.played, self.norms, self.initial, step, steps)
+        if rate:
+            response = until_small(response, relative_norms(response, self.norms))
+        values = relative_norms(response, self.norms)
+        bound = bound_line(response, rate, drawn.time, line) if rate and line else None
+        caption = f"{said}{freely(self.system)}{some_modes(self.system, self.played)}"
+        deflection = "" if self.played.contact is None else drawn.states[-1]
+        figure = draw_run(response, values, bound, drawn, label, deflection)
+        return response, Illustration(name, title, caption, figure)
+
+
 def bounded_run(
-    system: SwitchedSystem,
-    hardest: SwitchedSystem,
-    norm: Norm,
-    initial: Array,
-    rate: float,
-    label: str,
-    note: str = "",
-    levels: tuple[float, ...] = (1.0,),
-    *,
-    lost: bool = False,
+    greedy: Greedy, label: str, note: str = "", levels: tuple[float, ...] = (1.0,)
 ) -> Section:
-    """Let the greedy adversary run under arbitrary switching, and draw it below its bound.
+    """Draw a greedy run below its bound, and its path in the plane where contact is kept.
 
     Parameters
     ----------
-    system, hardest : SwitchedSystem
-        All modes, and those that take part.
-    norm : callable
-        Root of the Lyapunov function; of states in contact and free, if contact may be lost.
-    initial : ndarray, shape (n,)
-        Where the run begins; in contact, that or its opposite.
-    rate : float
-        The proved one.
+    greedy : Greedy
+        With the proved rate.
     label : str
         Which norm it is, such as ``in the norm of Q``.
     note : str
         A sentence of the caption about the run.
     levels : tuple of float
         Level curves to draw in the plane, relative to the start.
-    lost : bool
-        Contact is lost and made as the run says.
     """
-    if lost:
-        played, drawn = hardest, all_modes(hardest)
-        initial = initial if initial[-1] > 0 else -initial
-        how, holds, letter = _BOUNCING, f"{_HOLDS} and any loss of contact.", "w"
-    else:
-        played = drawn = replace(hardest, contact=None)
-        how, holds, letter = GREEDY, f"{_HOLDS}.", "x"
-    step, steps = horizon(drawn, rate)
-    response = greedy_run(played, norm, initial, step, steps)
-    response = until_small(response, relative_norms(response, norm))
+    played = greedy.played
+    how, letter = GREEDY, "x"
+    if played.clock is not None:
+        how, letter = _ROUNDS, "w"
+    elif played.contact is not None:
+        how, letter = _BOUNCING, "w"
+    holds = f"{_HOLDS}{' and any loss of contact' if played.contact is not None else ''}."
     said = " ".join(text for text in (how, note, holds) if text)
-    run = Illustration(
-        "run",
-        AGAINST,
-        f"{said}{freely(system)}{some_modes(system, hardest)}",
-        draw_run(
-            response,
-            relative_norms(response, norm),
-            bound_line(response, rate, system.time, "proved bound, "),
-            drawn,
-            f"|{letter}(t)| / |{letter}(0)| {label} [1]",
-        ),
-    )
-    if lost:
-        return simulated(run, contact_figure(system, response))
-    return simulated(run, *phase_plane(hardest, response, norm, levels))
+    label = f"|{letter}(t)| / |{letter}(0)| {label} [1]"
+    response, run = greedy.draw(AGAINST, said, label, "proved bound, ")
+    if played.contact is not None or not callable(greedy.norms):
+        return simulated(run)
+    return simulated(run, *phase_plane(played, response, greedy.norms, levels))
 
 
-def contact_figure(
-    system: SwitchedSystem, response: SwitchedRun, name: str = "deflection"
-) -> Illustration:
-    """Draw when contact is lost during a run.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the deflection as its last state.
-    response : SwitchedRun
-        The run.
-    name : str
-        Of the figure.
-    """
-    depth = response.state[:, -1]
-    unit = "steps" if system.time is Time.DISCRETE else "s"
-    return Illustration(
-        name,
-        "Contact during this run",
-        "Deflection of the same run; shaded where the environment is not touched.",
-        draw_deflection(response.time, depth / np.abs(depth).max(), system.states[-1], unit),
-    )
-
-
-def rounds_run(system: SwitchedSystem, forms: Sequence[Form], rate: float) -> Section:
-    """Draw a run in the norms of the steps of a round, below its bound, and when contact is lost.
-
-    Parameters
-    ----------
-    system : SwitchedSystem
-        With the clock.
-    forms : sequence of Form
-        One for each step of a round.
-    rate : float
-        The proved one, per step.
-    """
-    each = step_norms(forms, system)
-    _, steps = horizon(system, rate)
-    response = greedy_run(system, each, _slowest(system, each), 1.0, steps)
-    response = until_small(response, relative_norms(response, each))
-    run = Illustration(
-        "run",
-        AGAINST,
-        f"{_ROUNDS} {_HOLDS}.",
-        draw_run(
-            response,
-            relative_norms(response, each),
-            bound_line(response, rate, Time.DISCRETE, "proved bound, "),
-            all_modes(system),
-            "|w(t)| / |w(0)| in the norm of its step [1]",
-        ),
-    )
-    return simulated(run, *(() if system.contact is None else (contact_figure(system, response),)))
-
-
-def _slowest(system: SwitchedSystem, each: list[Norm]) -> Array:
+def slowest_in_a_round(system: SwitchedSystem, norms: Sequence[Norm]) -> Array:
     """Return the state in contact, among some, that keeps the most over a round."""
-    rng, size = np.random.default_rng(0), len(each)
-    directions = rng.standard_normal((_DIRECTIONS, system.order)) / each[0](np.eye(system.order))
+    rng, size = np.random.default_rng(0), len(norms)
+    directions = rng.standard_normal((_DIRECTIONS, system.order)) / norms[0](np.eye(system.order))
     directions[:, -1] = np.abs(directions[:, -1])
 
     def kept(x: Array) -> float:
-        return float(relative_norms(greedy_run(system, each, x, 1.0, size), each)[-1])
+        return float(relative_norms(greedy_run(system, norms, x, 1.0, size), norms)[-1])
 
     return max(directions, key=kept)
 
@@ -291,44 +253,24 @@ def _mode_levels(
 
 def unbounded_run(system: SwitchedSystem) -> Section:
     """Draw a bad run of a system of which nothing is proved."""
+    identity, kept = np.eye(system.order), replace(system, contact=None)
     if system.clock is not None:
-        return _unbounded_rounds(system)
+        norms = [quadratic_norm(identity)] * system.clock.length
+        _, run = Greedy(kept, kept, norms, identity[-1]).draw(_BAD, _UNPROVED_ROUNDS, EUCLIDEAN)
+        return simulated(run)
     arbitrary = system.switching.is_arbitrary
-    hardest = hardest_modes(system, None, trials_per_step(system) if arbitrary else _RULED_MODES)
-    step = fine_step(hardest)
-    functions = euclidean(hardest)
+    hardest = hardest_modes(kept, None, trials_per_step(system) if arbitrary else _RULED_MODES)
     if arbitrary:
-        norm, identity = quadratic_norm(np.eye(system.order)), np.eye(system.order)
-        initial = worst_direction(hardest, identity)
-        kept = replace(hardest, contact=None)
-        response = greedy_run(kept, norm, initial, step, _UNKNOWN_STEPS)
+        greedy = Greedy(kept, hardest, quadratic_norm(identity), worst_direction(hardest, identity))
+        response, run = greedy.draw(_BAD, f"{GREEDY} {_UNPROVED}", EUCLIDEAN)
     else:
-        response = admissible_run(hardest, functions, step, _UNKNOWN_STEPS)
-    run = Illustration(
-        "run",
-        "One bad run",
-        f"{GREEDY if arbitrary else RULED} There is no bound: nothing is proved. Decay in this "
-        "run is no sign of stability, and growth over a short time is no proof of instability."
-        f"{some_modes(system, hardest)}",
-        draw_run(response, active_norms(hardest, response, functions), None, hardest, EUCLIDEAN),
-    )
+        functions = euclidean(hardest)
+        response = admissible_run(hardest, functions, fine_step(hardest), _UNKNOWN_STEPS)
+        values = active_norms(hardest, response, functions)
+        figure = draw_run(response, values, None, hardest, EUCLIDEAN)
+        said = f"{RULED} {_UNPROVED}{some_modes(system, hardest)}"
+        run = Illustration("run", _BAD, said, figure)
     return simulated(run, *phase_plane(hardest, response, None))
-
-
-def _unbounded_rounds(system: SwitchedSystem) -> Section:
-    """Draw a bad run in kept contact of modes that take turns."""
-    kept, norm = replace(system, contact=None), quadratic_norm(np.eye(system.order))
-    norms = [norm] * (1 if system.clock is None else system.clock.length)
-    response = greedy_run(kept, norms, np.eye(system.order)[-1], 1.0, _UNKNOWN_STEPS)
-    run = Illustration(
-        "run",
-        "One bad run",
-        "Simulated run in kept contact from a deflection: at every step the adversary takes the "
-        "mode, of those whose turn it is, after which the Euclidean norm is largest. There is no "
-        "bound: nothing is proved.",
-        draw_run(response, relative_norms(response, norms), None, kept, EUCLIDEAN),
-    )
-    return simulated(run)
 
 
 def extremes(system: SwitchedSystem) -> SwitchedSystem:
@@ -426,7 +368,7 @@ def phase_plane(
     Parameters
     ----------
     system : SwitchedSystem
-        The modes.
+        The modes; of another number of states, nothing is drawn.
     response : SwitchedRun
         The run.
     norm : Norm or None
@@ -434,38 +376,14 @@ def phase_plane(
     levels : tuple of float
         Of the curves that are drawn.
     """
+    if system.order != 2 or not system.is_uniform:
+        return ()
     inside = " It cannot leave the dashed level curve of V." if norm is not None else ""
     if len(levels) > 1:
         inside += " The dotted ones are level curves further in: no run crosses one outward."
-    return plane(system, response, f"{inside}{jumps(system)}", norm, levels)
-
-
-def plane(
-    system: SwitchedSystem,
-    response: SwitchedRun,
-    more: str = "",
-    norm: Norm | None = None,
-    levels: tuple[float, ...] = (),
-) -> tuple[Illustration, ...]:
-    """Draw a run of two states with more words in its caption; nothing for other numbers.
-
-    Parameters
-    ----------
-    system, response, norm, levels
-        As for `phase_plane`.
-    more : str
-        Words for the end of the caption.
-    """
-    if system.order != 2 or not system.is_uniform:
-        return ()
-    return (
-        Illustration(
-            "phase-plane",
-            _PLANE,
-            f"{_PATH} {plane_axes(system)}{more}",
-            draw_phase_plane(response, system, norm, levels),
-        ),
-    )
+    caption = f"{_PATH} {plane_axes(system)}{inside}{jumps(system)}"
+    figure = draw_phase_plane(response, system, norm, levels)
+    return (Illustration("phase-plane", _PLANE, caption, figure),)
 
 
 def plane_axes(system: SwitchedSystem) -> str:

@@ -47,8 +47,9 @@ def draw_run(
     bound: tuple[str, Array] | None,
     system: SwitchedSystem,
     label: str,
+    deflection: str = "",
 ) -> Figure:
-    """Draw a norm over time, its proved bound, and below them the mode that is active.
+    """Draw a norm over time, its proved bound, the deflection, and the mode that is active.
 
     Parameters
     ----------
@@ -62,12 +63,15 @@ def draw_run(
         Names of the modes, and the time axis.
     label : str
         Which norm it is.
+    deflection : str
+        Name of the last state, where that is a deflection that shows when contact is lost.
     """
     groups = groups_of(response, _names(system))
     labels, height = row_labels([group.name for group in groups])
     rows = height * len(groups)
-    figure = new_figure(3.6 + rows)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2.6, rows])
+    heights = [2.6, *([1.4] if deflection else []), rows]
+    figure = new_figure(1.0 + sum(heights))
+    above, *between, below = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     discrete = system.time is Time.DISCRETE
     shape = {"marker": "o", "markersize": 2.5} if discrete and len(norm) <= 80 else {}
     above.semilogy(
@@ -76,12 +80,27 @@ def draw_run(
     if bound is not None:
         above.semilogy(response.time, bound[1], "--", color=VERMILLION, label=bound[0])
     above.set_ylabel(label)
+    for axes in between:
+        _draw_deflection(axes, response, deflection)
     if discrete:
         below.locator_params(axis="x", integer=True)
     draw_modes(below, response, groups, labels)
     below.set_xlabel("Time [steps]" if discrete else "Time [s]")
     legend(figure, above)
     return figure
+
+
+def _draw_deflection(axes: Axes, response: SwitchedRun, name: str) -> None:
+    """Draw the deflection over its largest value, shaded while there is no contact."""
+    depth = response.state[:, -1]
+    axes.plot(response.time, depth / np.abs(depth).max(), color=BLUE, label=name)
+    axes.axhline(0.0, color=INK, linewidth=0.8)
+    free, place = (depth <= 0).tolist(), axes.get_xaxis_transform()
+    axes.fill_between(
+        response.time, 0, 1, where=free, transform=place, color=MUTED, alpha=0.25, linewidth=0
+    )
+    axes.set_ylabel("Deflection over\nits largest value [1]")
+    axes.set_title(f"{name}; shaded: no contact", loc="left", fontsize=9.5)
 
 
 @styled

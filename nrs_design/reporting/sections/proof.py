@@ -184,7 +184,7 @@ def _inconclusive(certification: Certification) -> tuple[Block, ...]:
     texts.append(f"{may}, or some switching signal may make it unstable.")
     where = certification.refuted_in
     title = "Neither proved nor refuted" if where is None else f"Open; refuted {where}"
-    return (Bullets(title, tuple(texts)), _what_may_help(certification))
+    return (Bullets(title, tuple(texts)),)
 
 
 def _every_mode_is_stable(certification: Certification) -> bool:
@@ -192,19 +192,3 @@ def _every_mode_is_stable(certification: Certification) -> bool:
         attempt.step.endswith("every mode") and attempt.outcome.endswith("all stable")
         for attempt in certification.attempts
     )
-
-
-def _what_may_help(certification: Certification) -> Bullets:
-    system = certification.system
-    texts = [
-        "Narrower parameter ranges or fewer contacts per controller, where the robot allows it; "
-        "more damping; modes that are more alike.",
-        "A longer search: a larger --budget, more --memory or a higher --max-degree, whichever "
-        "the list of rungs says has ended it.",
-    ]
-    if system.switching.dwell_time == 0 or system.time is Time.DISCRETE:
-        texts.append("A dwell time, or fewer transitions, where the machine can enforce them.")
-    else:
-        texts.append("A longer dwell time, or fewer transitions, where the machine enforces them.")
-    texts.append("Do not ship the design on this report: a gate must treat it as a failure.")
-    return Bullets("What may help", tuple(texts))

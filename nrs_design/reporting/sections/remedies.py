@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 REMEDIES = "What would help"
 MARGINS = "Margins of the proof"
+_DESIGN = (
+    "Change the design: narrower parameter ranges or fewer contacts per controller, more damping, "
+    "modes that are more alike; a longer dwell time or fewer transitions, where the machine can "
+    "enforce them."
+)
 
 
 def remedies_section(
@@ -48,7 +53,7 @@ def remedies_section(
     dwell = margins is not None and margins.dwell is not None
     steps = next_steps(result, margin=box, shortest_dwell=dwell, subsets=subsets is not None)
     if steps:
-        blocks.append(Bullets("Next steps", steps))
+        blocks.append(Bullets("Next steps", (*steps[:-1], _DESIGN, steps[-1])))
     return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None
 
 

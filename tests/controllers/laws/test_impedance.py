@@ -13,7 +13,7 @@ from nrs_design.controllers.float32 import is_float32, to_float32
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.laws.impedance import lasting_gain
 from nrs_design.errors import DesignError
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 
 PERIOD = Fraction(1, 500)
 LAW = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15")))

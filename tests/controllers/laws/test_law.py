@@ -7,8 +7,8 @@ import pytest
 
 from nrs_design.controllers.laws import AbstractCompliantLaw, Admittance, ProportionalForce
 from nrs_design.errors import DesignError
+from nrs_design.models.interval import Interval
 from nrs_design.spec import PositionControllerSpec
-from nrs_design.spec.interval import Interval
 
 
 @dataclass(frozen=True, slots=True)

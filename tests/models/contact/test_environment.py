@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment, touch_at_once
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 
 F = Fraction
 SPAN = Interval(F(2), F(1), F(3))

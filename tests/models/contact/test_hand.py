@@ -8,8 +8,8 @@ import pytest
 from nrs_design.errors import AssemblyError, DesignError, InternalError
 from nrs_design.models.contact import LAWS, LINEAR_LAWS, Hand, KelvinVoigt, Motion
 from nrs_design.models.contact.environment import Environment, touch_at_once
+from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import coordinates
-from nrs_design.spec.interval import Interval
 
 HAND = Hand(57.0, 7.0, 0.2)
 

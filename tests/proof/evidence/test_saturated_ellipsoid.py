@@ -178,10 +178,10 @@ UNEVEN = replace(
         (changed(columns=(matrix([[1], [1]]),)), "s does not have the size of the state"),
         (changed(rows=(matrix([[1, 1]]),)), "s does not have the size of the state"),
         (without_signals(), "no signal saturates"),
-        (without_signals(SIGNAL, SIGNAL), "two that do have one name"),
+        (without_signals(SIGNAL, SIGNAL), "s does not have the size of the state"),
         (
             without_signals(*(replace(SIGNAL, name=f"s{i}") for i in range(5))),
-            "more than 4 signals saturate",
+            "more than 4 do",
         ),
         (
             replace(

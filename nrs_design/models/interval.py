@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TypeVar
+
+Number = TypeVar("Number", float, Fraction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,3 +38,8 @@ class Interval:
         """Return the interval stretched about its nominal value; with 0, that value only."""
         ends = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
         return Interval(self.nominal, *ends)
+
+
+def turn(value: Number, radius: Number) -> Number:
+    """Convert a linear stiffness, damping or mass to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
+    return value * radius**2

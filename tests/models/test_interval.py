@@ -1,6 +1,6 @@
 from fractions import Fraction
 
-from nrs_design.spec.interval import Interval
+from nrs_design.models.interval import Interval
 
 F = Fraction
 

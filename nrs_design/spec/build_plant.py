@@ -1,0 +1,56 @@
+"""From a spec to its plant: text and units end here, exact numbers in SI begin."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.contact.environment import Environment, touch_at_once
+from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import MotionLoop
+from nrs_design.models.plant import Plant
+from nrs_design.spec.environment import AbstractEnvironmentSpec
+from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.quantity_fields import RangedQuantity
+
+
+def build_plant(spec: InteractionDesignSpec) -> Plant:
+    """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
+    gain, time_constant = map(_interval, (spec.actuator.gain, spec.actuator.time_constant))
+    ranges = ActuatorRanges(gain, time_constant, spec.actuator.command)
+    stated = spec.motion_loop.transfer_function
+    loop = None
+    if stated is not None:
+        loop = MotionLoop(stated.numerator, stated.denominator, given=True)
+    load = spec.actuator.load_inertia
+    return Plant(
+        ranges.nominal,
+        tuple(build_environments(spec)),
+        loop,
+        None if ranges.fixed else ranges,
+        None if load is None else load.exact,
+    )
+
+
+def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
+    """Yield every environment of a spec, then what several are that are touched at once."""
+    known = {name: _environment(name, written) for name, written in spec.environments.items()}
+    yield from known.values()
+    contacts = (contact for c in spec.controllers.values() for contact in c.contacts)
+    for contact in dict.fromkeys(contacts):
+        if not isinstance(contact, str):
+            parts = tuple(known[name] for name in contact)
+            losable = spec.contact != "kept" and all(
+                spec.environments[n].is_losable for n in contact
+            )
+            yield touch_at_once(parts, losable=losable)
+
+
+def _interval(written: RangedQuantity) -> Interval:
+    return Interval(written.nominal.exact, *(end.exact for end in written.range))
+
+
+def _environment(name: str, spec: AbstractEnvironmentSpec) -> Environment:
+    turned = spec.linear_at_pivot()
+    ranges = tuple(turned[key] for key in spec.law.keys)
+    return Environment(name, spec.law, ranges, nonlinear=spec.nonlinear)

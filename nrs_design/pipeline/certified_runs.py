@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.errors import CertificateError
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
@@ -95,21 +93,3 @@ def hold_rate(
         end_of_command(one.scenario),
         tuple(reasons),
     )
-
-
-def read_valid_certificate(file: Path, designed: Designed) -> Certificate:
-    """Return what a certificate file holds, checked exactly against the spec.
-
-    Raises
-    ------
-    CertificateError
-        If it is not one, or does not hold for this spec.
-    """
-    from nrs_design.certificates.verify import verify
-
-    found = verify(file, designed.loaded, plant=designed.plant)
-    if found.certificate is None or found.fault is not None:
-        raise CertificateError(
-            str(found.fault), path=file, remedy="make it anew with certify-switching"
-        )
-    return found.certificate

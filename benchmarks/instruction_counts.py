@@ -17,11 +17,11 @@ from benchmarks.measure import Finding, Size
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c import header_text, source_text
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.vectors import make_vectors
+from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.pipeline import run_design
-from nrs_design.robot.exporters import robot_c
+from nrs_design.robot.exporters import c as robot_c
 from nrs_design.robot.exporters.robot_tree import RobotExport
 from nrs_design.robot.models import build_robot
 from nrs_design.robot.pipeline import run_robot_laws

@@ -176,11 +176,13 @@ class Study:
         >>> force.output.name, force.value > case.limits["force"]
         ('force', True)
         """
-        from nrs_design.pipeline.certified_runs import read_valid_certificate
         from nrs_design.pipeline.worst_case import run_worst_case
 
         designed = self._interaction()
-        proof = None if certificate is None else read_valid_certificate(Path(certificate), designed)
+        proof = None
+        if certificate is not None:
+            file = Path(certificate)
+            proof = pipeline.read_valid_certificate(file, self.loaded, designed)
         return run_worst_case(designed, proof, seed=seed, rounds=rounds)
 
     def export(self, certificate: str | Path | None = None) -> Export:

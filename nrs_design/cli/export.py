@@ -13,7 +13,7 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
-from nrs_design.exporters import FORMATS, ROBOT_FORMATS, Format
+from nrs_design.exporters import ROBOT_FORMATS, Format, format_names, format_of
 
 if TYPE_CHECKING:
     from nrs_design.exporters.export import Execution, Export
@@ -34,7 +34,7 @@ def export(
         Path | None, typer.Argument(metavar="SPEC", help="Spec file (*.nrs.yaml).")
     ] = None,
     format_: Annotated[
-        str, typer.Option("--format", help=f"Format: {', '.join(FORMATS)}; see --list.")
+        str, typer.Option("--format", help=f"Format: {', '.join(format_names())}; see --list.")
     ] = "json",
     list_: Annotated[
         bool, typer.Option("--list", help="List the formats, what each is for and what it needs.")
@@ -75,7 +75,7 @@ def export(
         raise NrsDesignError("no spec is named", remedy="name one, or list the formats with --list")
     chosen = _format(format_)
     execution = _execution(chosen, sample_time, unproved=unproved)
-    return _export_design(spec, chosen, certificate, out, execution)
+    return _export_design(spec, format_, certificate, out, execution)
 
 
 def _list() -> Answer:
@@ -86,7 +86,10 @@ def _list() -> Answer:
             "needs": item.needs,
             "files": [f"NAME{ending}" for ending in item.files],
         }
-        for name, item in (*FORMATS.items(), *ROBOT_FORMATS.items())
+        for name, item in (
+            *((name, format_of(name)) for name in format_names()),
+            *ROBOT_FORMATS.items(),
+        )
     ]
     entries.append(ROS2)
     rows = [(entry["name"], entry["purpose"], entry["needs"]) for entry in entries]
@@ -97,20 +100,20 @@ def _list() -> Answer:
 
 
 def _format(name: str) -> Format:
-    group = "robot" if name in ROBOT_FORMATS.keys() - FORMATS.keys() else name
+    group = "robot" if name in ROBOT_FORMATS.keys() - set(format_names()) else name
     if group in ("robot", "ros2"):
         raise NrsDesignError(
             f"{name} is not a format of this command", remedy=f"use `nrs-design {group} export`"
         )
-    if name not in FORMATS:
+    if name not in format_names():
         from nrs_design.spec.faults import did_you_mean
 
         raise NrsDesignError(
             f"there is no format {name!r}",
-            remedy=f"{did_you_mean(name, FORMATS, 'one of')}; `nrs-design export --list` explains "
-            "them",
+            remedy=f"{did_you_mean(name, format_names(), 'one of')}; `nrs-design export --list` "
+            "explains them",
         )
-    return FORMATS[name]
+    return format_of(name)
 
 
 def _execution(chosen: Format, sample_time: str | None, *, unproved: bool) -> Execution | None:
@@ -140,7 +143,7 @@ def _seconds(text: str) -> Fraction:
 
 def _export_design(
     spec: Path,
-    chosen: Format,
+    format_: str,
     certificate: Path | None,
     out: Path,
     execution: Execution | None,
@@ -151,7 +154,7 @@ def _export_design(
     from nrs_design.pipeline import placed
     from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded, chosen = read_spec(spec), format_of(format_)
     name = loaded.spec.name
     files = places(chosen, name, out)
     beside = next(iter(files.values())).parent / f"{name}.cert.json"
@@ -167,11 +170,11 @@ def _export_design(
     if result.record is not None:
         # A design of which there is no program is told at its place in the spec.
         with placed(loaded):
-            remarks = _write(result, chosen, files, None if certificate else proof, spec)
+            remarks = _write(result, format_, files, None if certificate else proof, spec)
     written = list(files.values()) if result.record else []
     summary = _summary(name, result, written, proof)
     return Answer(
-        lambda: summary | ({"remarks": remarks} if chosen.remarks else {}),
+        lambda: summary | {"remarks": remarks},
         lambda: _show(name, result, written, proof, remarks),
         exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED),
         # Nothing was written, which is an error of its own.
@@ -197,23 +200,21 @@ def _show(
 
 
 def _write(
-    result: Export, chosen: Format, files: dict[str, Path], proof: Path | None, spec: Path
+    result: Export, format_: str, files: dict[str, Path], proof: Path | None, spec: Path
 ) -> tuple[str, ...]:
     """Write the certificate first: there is never an export without its proof; return remarks."""
-    from importlib import import_module
-
     from nrs_design.certificates.certificate import dump
+    from nrs_design.exporters import remarks_on, rendered
     from nrs_design.exporters.write import write_files
     from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import origin_of
 
-    module = import_module(f"nrs_design.exporters.{chosen.module}")
-    contents = module.render(result)
+    contents = rendered(format_, result)
     if proof is not None and result.certificate is not None:
         text = dump(result.certificate, origin_of(spec, proof))
         write_output(proof, text, replaces=CERTIFICATE)
-    write_files(chosen, files, contents)
-    return tuple(module.remarks(contents)) if chosen.remarks else ()
+    write_files(format_of(format_), files, contents)
+    return remarks_on(format_, contents)
 
 
 def _summary(name: str, result: Export, written: list[Path], proof: Path) -> dict[str, Any]:

@@ -88,11 +88,10 @@ def _proof(
     designed: Designed, file: Path | None, step: Progress, *, bound: bool
 ) -> Certificate | None:
     """Return the certificate whose bounds are shown, if there is one."""
-    from nrs_design.pipeline import run_certification
-    from nrs_design.pipeline.certified_runs import read_valid_certificate
+    from nrs_design.pipeline import read_valid_certificate, run_certification
 
     if file is not None:
-        return read_valid_certificate(file, designed)
+        return read_valid_certificate(file, designed.loaded, designed)
     if not bound or designed.spec.disturbances is None:
         return None
     step("certifying its bounds")

@@ -1,8 +1,8 @@
 """A law as a short list of single-precision operations: what a processor computes once a sample.
 
 The list is the one definition of the law. From it follow its exact linear map and how often every
-term is rounded (`nrs_design.controllers.step_analysis`), the C (`nrs_design.exporters.c`) and the
-same steps in NumPy (`nrs_design.controllers.replica`).
+term is rounded (`nrs_design.controllers.step_analysis`), the C (`nrs_design.exporters.formats.c`)
+and the same steps in NumPy (`nrs_design.controllers.replica`).
 
 An operation is one of `Kind`. Every one rounds once, as IEEE 754 says, square roots and quotients
 too; a saturation does not round, and a table that is interpolated rounds as `replica` does. None is

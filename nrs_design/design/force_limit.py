@@ -12,13 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nrs_design.design.transfer import FloatArray, TransferFunction, static_gain
+from nrs_design.design.largest_value import largest
+from nrs_design.design.transfer import TransferFunction, controllable_form, static_gain
 from nrs_design.errors import DesignError
 from nrs_design.spec.controllers import Offset
 
-# Time constants and samples of the slowest and fastest pole that a run is looked at for.
-_LONG, _FINE = 12.0, 50.0
-_MOST = 20_000
 # How far G(0) may be from 1 by rounding.
 _REST = 1e-9
 
@@ -87,10 +85,8 @@ def peak_force(
     """
     if approach.offset == "none":
         return None
-    from scipy.linalg import expm
-
     lead = _lead(motion, approach)
-    A, C = _realize(motion)
+    A, C = controllable_form(motion.numerator, motion.denominator)
     n = len(C)
     # The rates of the motion loop on a ramp are constant; the command then jumps by -e, or not.
     start = np.zeros(n + 1)
@@ -103,38 +99,8 @@ def peak_force(
     closed[n, :n] = stiffness * C
     closed[n - 1, n] = -approach.integral
     rates = np.linalg.eigvals(closed if approach.integral else closed[:n, :n])
-    step = 1 / (_FINE * float(np.abs(rates).max()))
-    count = min(_MOST, int(_LONG / (step * float(np.abs(rates.real).min()))))
-    transition, state, beyond = expm(step * closed), start, 0.0
-    for _ in range(count):
-        before, state = state, transition @ state
-        beyond = max(beyond, _crest(before, state, step, stiffness * C))
-    return float(approach.force + beyond)
-
-
-def _crest(before: FloatArray, after: FloatArray, step: float, rate: FloatArray) -> float:
-    """Return the largest force within a step: cubic between its ends, by values and slopes."""
-    force = np.array([before[-1], after[-1]])
-    slope = step * np.array([rate @ before[:-1], rate @ after[:-1]])
-    if not slope[0] > 0 > slope[1]:
-        return float(force.max())
-    rise = force[1] - force[0]
-    cubic = np.array([slope.sum() - 2 * rise, 3 * rise - 2 * slope[0] - slope[1], *slope[:1]])
-    at = np.roots(cubic * [3, 2, 1])
-    inside = [float(t.real) for t in at if abs(t.imag) < _REST and 0 <= t.real <= 1]
-    return max(float(force[0] + np.polyval([*cubic, 0.0], t)) for t in (*inside, 0.0, 1.0))
-
-
-def _realize(motion: TransferFunction) -> tuple[FloatArray, FloatArray]:
-    """Return A and C of the controllable canonical form."""
-    denominator = np.asarray(motion.denominator) / motion.denominator[0]
-    n = len(denominator) - 1
-    A = np.eye(n, k=1)
-    A[-1] = -denominator[:0:-1]
-    C = np.zeros(n)
-    numerator = np.asarray(motion.numerator)[::-1] / motion.denominator[0]
-    C[: len(numerator)] = numerator
-    return A, C
+    beyond = largest(closed, np.eye(n + 1)[n], start, rates.astype(np.complex128))
+    return approach.force + max(beyond, 0.0)
 
 
 def _lead(motion: TransferFunction, approach: Approach) -> float:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.sensor import LowPass
+from nrs_design.design.transfer import controllable_form
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.models.plant import Plant
@@ -279,9 +280,5 @@ def _of_transfer(
     out: tuple[str, str],
 ) -> LinearPart:
     """Return the controllable canonical form of a strictly proper transfer function."""
-    n, leading = len(denominator) - 1, denominator[0]
-    A, B, C = np.eye(n, k=1), np.zeros((n, 1)), np.zeros((1, n))
-    A[-1] = [float(-c / leading) for c in reversed(denominator[1:])]
-    B[-1] = 1.0
-    C[0, : len(numerator)] = [float(c / leading) for c in reversed(numerator)]
-    return LinearPart(name, A, B, C, np.zeros((1, 1)), given, (out,))
+    A, C = controllable_form(numerator, denominator)
+    return LinearPart(name, A, np.eye(len(A))[:, -1:], C[None], np.zeros((1, 1)), given, (out,))

@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import zip_longest
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,7 @@ from nrs_design.errors import DesignError
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 BoolArray = NDArray[np.bool_]
+Number = TypeVar("Number", float, Fraction)
 
 
 @dataclass(frozen=True)
@@ -121,13 +123,21 @@ def white_noise_power(numerator: Sequence[float], denominator: Sequence[float]) 
     n = len(denominator) - 1
     if len(numerator) > n:
         return None
-    A = np.diag(np.ones(n - 1), 1)
-    A[-1] = -np.array(denominator[:0:-1]) / denominator[0]
-    C = np.zeros(n)
-    C[: len(numerator)] = np.array(numerator[::-1]) / denominator[0]
+    A, C = controllable_form(numerator, denominator)
     entry = np.zeros((n, n))
     entry[-1, -1] = 1.0
     return float(C @ solve_continuous_lyapunov(A, -entry) @ C) / 2
+
+
+def controllable_form(
+    numerator: Sequence[Number], denominator: Sequence[Number]
+) -> tuple[FloatArray, FloatArray]:
+    """Return A and C of a strictly proper transfer function; B has a one in its last place."""
+    n, leading = len(denominator) - 1, denominator[0]
+    A, C = np.eye(n, k=1), np.zeros(n)
+    A[-1] = [-float(c / leading) for c in reversed(denominator[1:])]
+    C[: len(numerator)] = [float(c / leading) for c in reversed(numerator)]
+    return A, C
 
 
 def hurwitz(coefficients: ArrayLike) -> BoolArray:

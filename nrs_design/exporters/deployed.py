@@ -15,11 +15,11 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.units import gain_units
 from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
-from nrs_design.exporters import monitor
 from nrs_design.exporters.build import build_record
 from nrs_design.exporters.deployed_c import code_differences, macro_differences
 from nrs_design.exporters.deployed_model import model_differences
 from nrs_design.exporters.export import Export
+from nrs_design.exporters.formats import monitor
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord, Gain, dump_record

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from nrs_design.exporters.compiled import compiler
 from nrs_design.exporters.deployed_c import code_differences
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.fmu import contents, library_of
+from nrs_design.exporters.formats.fmu import contents, library_of
 from nrs_design.exporters.program import Program, program_of
 
 _MOST_ENTRIES = 16

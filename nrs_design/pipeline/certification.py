@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from nrs_design.search.method_run import MethodRun
     from nrs_design.spec import Spec
 
+_ANEW = "make it anew with certify-switching"
+
 
 @dataclass(frozen=True, slots=True)
 class Result:
@@ -68,14 +70,11 @@ def search_limits(
     """
     limits, asked = Limits(optimize_rate=optimize_rate), overrides or Overrides()
     declared = None if spec.kind == "robot" else spec.certification
-    if declared is not None and declared.max_degree is not None:
-        limits = replace(limits, max_degree=declared.max_degree)
-    if declared is not None and declared.budget is not None:
-        limits = replace(limits, budget=float(declared.budget))
-    if asked.max_degree is not None:
-        limits = replace(limits, max_degree=asked.max_degree)
-    if asked.budget is not None:
-        limits = replace(limits, budget=asked.budget)
+    for said in (declared, asked):
+        if said is not None and said.max_degree is not None:
+            limits = replace(limits, max_degree=said.max_degree)
+        if said is not None and said.budget is not None:
+            limits = replace(limits, budget=float(said.budget))
     if asked.memory is not None:
         limits = replace(limits, memory=asked.memory * GIGABYTE)
     return limits
@@ -114,11 +113,7 @@ def run_certification(
     from nrs_design.search.certify import certify
 
     progress("design")
-    designed = run_design(loaded)
-    if designed is not None:
-        coordinates = coordinates or designed.spec.coordinates
-    with placed(loaded):
-        system = assemble_spec(loaded, designed, coordinates)
+    designed, coordinates, system = _assembled(loaded, coordinates)
     certification = certify(system, method, limits or search_limits(loaded.spec), progress)
     certificate = (
         Certificate(
@@ -157,7 +152,6 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
         designed here.
     """
     from nrs_design.certificates.certificate import verdict_of
-    from nrs_design.certificates.verify import verify
     from nrs_design.search.family import floats_in_silence
     from nrs_design.search.rate_limit import rate_limit
 
@@ -165,14 +159,11 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
     designed = run_design(loaded)
     progress(f"checking {file.name}")
     start = perf_counter()
-    found = verify(file, loaded, plant=None if designed is None else designed.plant)
+    kept = read_valid_certificate(file, loaded, designed)
     taken = perf_counter() - start
-    kept, fault = found.certificate, found.fault
-    if kept is not None and {n: dict(g) for n, g in kept.gains.items()} != _gains(designed):
-        fault = "it is about other gains than are designed here"
-    if kept is None or fault is not None:
-        remedy = "make it anew with certify-switching"
-        raise CertificateError(str(fault), path=file, remedy=remedy)
+    if {n: dict(g) for n, g in kept.gains.items()} != _gains(designed):
+        message = "it is about other gains than are designed here"
+        raise CertificateError(message, path=file, remedy=_ANEW)
     outcome = f"{file.name}: each of its statements was checked again exactly"
     with floats_in_silence():
         limit = rate_limit(kept.system)
@@ -186,6 +177,33 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
         limit,
     )
     return Result(loaded, designed, kept.coordinates, certification, kept)
+
+
+def read_valid_certificate(
+    file: Path, loaded: LoadedSpec, designed: Designed | None
+) -> Certificate:
+    """Return what a certificate file holds, checked exactly against its spec.
+
+    Parameters
+    ----------
+    file : Path
+        The certificate.
+    loaded : LoadedSpec
+        The spec.
+    designed : Designed or None
+        Whose plant is in hand.
+
+    Raises
+    ------
+    CertificateError
+        If it is no certificate, or does not hold for this spec.
+    """
+    from nrs_design.certificates.verify import verify
+
+    found = verify(file, loaded, plant=None if designed is None else designed.plant)
+    if found.certificate is None or found.fault is not None:
+        raise CertificateError(str(found.fault), path=file, remedy=_ANEW)
+    return found.certificate
 
 
 def run_comparison(
@@ -222,13 +240,20 @@ def run_comparison(
     from nrs_design.search.certify import certify
     from nrs_design.search.comparison import compare_methods
 
+    _, _, system = _assembled(loaded, coordinates)
+    with placed(loaded):
+        return system, compare_methods(partial(certify, system), limits, progress)
+
+
+def _assembled(
+    loaded: LoadedSpec, coordinates: str | None
+) -> tuple[Designed | None, str | None, SwitchedSystem]:
+    """Design a spec and assemble its modes; coordinates are by default those of the spec."""
     designed = run_design(loaded)
     if designed is not None:
         coordinates = coordinates or designed.spec.coordinates
     with placed(loaded):
-        system = assemble_spec(loaded, designed, coordinates)
-        runs = compare_methods(partial(certify, system), limits, progress)
-        return system, runs
+        return designed, coordinates, assemble_spec(loaded, designed, coordinates)
 
 
 def _gains(designed: Designed | None) -> Gains:

@@ -1,13 +1,11 @@
-"""What a certificate says beside a run, and whether it is about that run."""
+"""Certified bounds and rates beside a simulated run, and why they may not apply to it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.errors import CertificateError
 from nrs_design.pipeline.design import Designed
 
 if TYPE_CHECKING:
@@ -40,7 +38,7 @@ class CertifiedRate:
 def hold_bounds(
     designed: Designed, certificate: Certificate, simulated: Simulated
 ) -> tuple[CertifiedBound, ...]:
-    """Hold what is certified against a run.
+    """Return the certified bounds with the reasons why they do not apply to a run.
 
     Parameters
     ----------
@@ -69,7 +67,7 @@ def hold_bounds(
 def hold_rate(
     designed: Designed, certificate: Certificate, simulated: Simulated
 ) -> CertifiedRate | None:
-    """Hold the certified rate of decay, if there is one, against the end of a run.
+    """Return the certified rate, if any, with the reasons why it does not apply to a run.
 
     Parameters
     ----------
@@ -95,21 +93,3 @@ def hold_rate(
         end_of_command(one.scenario),
         tuple(reasons),
     )
-
-
-def read_valid_certificate(file: Path, designed: Designed) -> Certificate:
-    """Return what a certificate file holds, checked exactly against the spec.
-
-    Raises
-    ------
-    CertificateError
-        If it is not one, or does not hold for this spec.
-    """
-    from nrs_design.certificates.verify import verify
-
-    found = verify(file, designed.loaded, plant=designed.plant)
-    if found.certificate is None or found.fault is not None:
-        raise CertificateError(
-            str(found.fault), path=file, remedy="make it anew with certify-switching"
-        )
-    return found.certificate

@@ -22,7 +22,7 @@ _TITLES = {
 
 
 def comparison_report(found: Comparison) -> Report:
-    """Say everything about a comparison."""
+    """Return the report of a comparison."""
     count = len(found.differences)
     return Report(
         name="comparison",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Linked(str):
-    """Text of a cell that a line of the spec says, or that follows from it.
+    """Text with a link to a line of the spec.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Linked(str):
 
 
 class Derived(str):
-    """Text that a section of the report derives.
+    """Text with a link to the section of the report that derives it.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Derived(str):
 
 
 class Sentence(str):
-    """Text of which parts lead somewhere.
+    """Text with hyperlinks.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def parts_of(text: str) -> tuple[str, ...]:
 
 
 class State(StrEnum):
-    """What a light shows; its text says it too."""
+    """State of a light; its text says the same."""
 
     GOOD = "good"
     DOUBTFUL = "doubtful"
@@ -93,7 +93,7 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Light:
-    """One thing that a reader looks for first, and how it stands."""
+    """Status of one topic at the top of the page."""
 
     name: str  # What it is about, such as ``Proof``
     state: State  # Which colour and sign it has
@@ -169,7 +169,7 @@ class Report:
     claim: str  # What the certificate states about stability, or that nothing is known
     # What else is shown, such as that no common quadratic function exists.
     remarks: tuple[str, ...]
-    # Label and value: hashes, versions, rates; values may lead somewhere as cells do.
+    # Label and value: hashes, versions, rates; values may have links.
     facts: tuple[tuple[str, str], ...]
     sections: tuple[Section, ...]  # In reading order
     # Last line of the page.

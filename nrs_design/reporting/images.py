@@ -109,7 +109,7 @@ def _is_numeric(axes: Axes) -> bool:
 
 
 def to_svg_file(figure: Figure) -> str:
-    """Return the text of an SVG file of its own, which says so; the same for the same figure."""
+    """Return a standalone SVG file, marked as ours; the same text for the same figure."""
     declaration, _, rest = _savefig(figure).partition("\n")
     return f"{declaration}\n{SVG_MARK}{rest}"
 

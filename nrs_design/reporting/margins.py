@@ -42,8 +42,8 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     sampled = isinstance(spec, InteractionDesignSpec) and spec.sampling is not None
     if sampled and _refutes(margins):
         yield Sentence(
-            "what is refuted, is so in modes that enclose what the motor does, which may be those "
-            "of no motor in the range"
+            "refutations are for an over-approximation of the motor; no real motor in the range "
+            "need be unstable"
         )
 
 
@@ -124,7 +124,7 @@ def _listed(items: Iterator[tuple[str, ...]]) -> list[str]:
 
 
 def _delays(bracket: Bracket, at: _At) -> tuple[str, ...]:
-    """Say up to which delay a proof reaches, and from which one on there is a refutation."""
+    """State the largest proved and the smallest refuted delay."""
     proved, refuted = (
         None if end is None else at(_samples(end), "sampling", "delay")
         for end in (bracket.proved, bracket.refuted)

@@ -1,4 +1,4 @@
-"""What to do next where nothing was proved, as commands to type."""
+"""Next steps where nothing was proved, as commands."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def next_steps(
     subsets: bool = False,
     spec: Path | None = None,
 ) -> tuple[str, ...]:
-    """Return what to do next, the most promising first; nothing where stability is proved.
+    """Return next steps, the most promising first; none where stability is proved.
 
     Parameters
     ----------

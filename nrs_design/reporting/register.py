@@ -1,7 +1,7 @@
-"""The assumptions of a system as a register: what each bounds, breaks and how it is tested.
+"""The assumptions of a system as a register: bound, consequence if false, and test of each.
 
-A sentence carries that from where it is made, see `nrs_design.switched.assumption`. One that
-was read from a certificate has its words alone, and the register says so.
+An `nrs_design.switched.assumption.Assumption` knows them. One that was read from a certificate is
+a plain string, and the register says that they are unknown.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Entry:
 def register_of(
     statements: Iterable[str], spec: InteractionDesignSpec | None = None
 ) -> tuple[Entry, ...]:
-    """Return the assumptions of a system with what is known of each, in their order.
+    """Return the register of assumptions, in their order.
 
     Motor and environments count as tested where the spec names measured records that they were
     identified from, and no doubt.

@@ -1,4 +1,4 @@
-"""The report as one HTML page that fetches nothing; its script only adds to what is there."""
+"""The report as one self-contained HTML page; without its script, all content remains."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Put the report together: what it says, in reading order."""
+"""Build the report: its sections in reading order."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def build_report(
     times: bool = False,
     date: datetime.date | None = None,
 ) -> Report:
-    """Say and draw everything about one spec.
+    """Build the report about one spec.
 
     Parameters
     ----------

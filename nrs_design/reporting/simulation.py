@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from decimal import ROUND_CEILING, Context
 from typing import Any
 
-# Less is a number that nobody tells from zero, in s.
+# Smaller numbers are shown as zero.
 _NOTHING = 1e-9
 
 

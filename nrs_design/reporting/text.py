@@ -1,4 +1,4 @@
-"""Names that others chose, as text that a page or a figure can show."""
+"""Names from users as text that a page or a figure can show."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers at the axes: every one in full, so that none is to be added or multiplied in the head."""
+"""Tick labels in full: no offset and no common factor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The worst runs that were found, in the units in which people read them."""
+"""The worst runs found, in display units."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _TURN = 180 / math.pi
 
 @dataclass(frozen=True, slots=True)
 class WorstValue:
-    """One quantity: the worst found, its limit and what is certified; SI."""
+    """Worst value found of one quantity, its limit and certified bound; SI."""
 
     # Such as ``force`` in ``N*m``.
     name: str
@@ -67,7 +67,7 @@ class WorstValue:
 
 
 def found_in(case: WorstCase) -> tuple[WorstValue, ...]:
-    """Return what was found, quantity by quantity.
+    """Return the worst value found of each quantity.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def worst_rows(case: WorstCase, lever_arm: float | None) -> list[list[str]]:
 
 
 def left_out(system: SwitchedSystem) -> str:
-    """Say what an adversary has not at hand.
+    """Say which effects the adversary does not use.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def left_out(system: SwitchedSystem) -> str:
 
 
 def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]:
-    """Return by what SI numbers of a quantity are multiplied for people, and their unit.
+    """Return the factor from SI to the display unit, and that unit.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]
 
 
 def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
-    """Draw a run: all quantities with limits and bounds, the command, and who was in control.
+    """Draw a run: all quantities with limits and bounds, the command and the active controller.
 
     Parameters
     ----------

@@ -112,7 +112,7 @@ def read_hash(value: object) -> str:
     return text
 
 
-Exact = Annotated[Fraction, ReadBy(read_exact), WithJsonSchema(NUMBER_SCHEMA)]
+Exact = Annotated[Fraction, ReadBy(read_exact, NUMBER_SCHEMA)]
 UnitFraction = Annotated[
     Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(NUMBER_SCHEMA)
 ]
@@ -126,13 +126,11 @@ BelowTwo = Annotated[
 ]
 Digits = Annotated[
     int,
-    ReadBy(read_digits),
-    WithJsonSchema({"type": "integer", "minimum": 1, "maximum": 7}),
+    ReadBy(read_digits, {"type": "integer", "minimum": 1, "maximum": 7}),
 ]
 AxisCount = Annotated[
     int,
-    ReadBy(read_axis_count),
-    WithJsonSchema({"type": "integer", "minimum": 1, "maximum": MAX_AXES}),
+    ReadBy(read_axis_count, {"type": "integer", "minimum": 1, "maximum": MAX_AXES}),
 ]
 Name = Annotated[
     str, _text(NAME_PATTERN), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})
@@ -158,16 +156,13 @@ def read_contact(value: object) -> Contact:
 
 TouchedAtOnce = Annotated[
     Contact,
-    ReadBy(read_contact),
-    WithJsonSchema(
-        {"anyOf": [*_LABEL["anyOf"], {"type": "array", "items": _LABEL, "minItems": 2}]}
+    ReadBy(
+        read_contact,
+        {"anyOf": [*_LABEL["anyOf"], {"type": "array", "items": _LABEL, "minItems": 2}]},
     ),
 ]
-Title = Annotated[
-    str, ReadBy(read_title), WithJsonSchema({"type": "string", "maxLength": MAX_TITLE})
-]
+Title = Annotated[str, ReadBy(read_title, {"type": "string", "maxLength": MAX_TITLE})]
 Hash = Annotated[
     str,
-    ReadBy(read_hash),
-    WithJsonSchema({"type": "string", "pattern": HASH_PATTERN}),
+    ReadBy(read_hash, {"type": "string", "pattern": HASH_PATTERN}),
 ]

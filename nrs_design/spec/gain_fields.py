@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBefore, SpecModel
 from nrs_design.spec.quantity import Quantity, QuantityKind, is_less
 from nrs_design.spec.quantity_fields import (
     AnyQuantity,
@@ -88,7 +88,7 @@ class GainSpec(SpecModel):
         return self.range is not None and is_less(*self.range)
 
 
-def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+def _gain(kind: QuantityKind, *, positive: bool = True, designed: bool = True) -> ReadBefore:
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
             return {"nominal": read_quantity(value, kind, positive=positive)}
@@ -111,7 +111,7 @@ def _gain(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
             )
         return quantity
 
-    return BeforeValidator(read)
+    return ReadBefore(read, _schema(kind, designed=designed))
 
 
 # Why the ends of a range are positive, by the name of the kind.
@@ -143,7 +143,7 @@ def _check_keys(entries: dict[str, object]) -> None:
             )
 
 
-def _schema(kind: QuantityKind, *, designed: bool = True) -> WithJsonSchema:
+def _schema(kind: QuantityKind, *, designed: bool) -> dict[str, Any]:
     single = quantity_schema(kind)
     known = {key: single | {"description": text} for key, text in _KEYS.items()}
     ends: dict[str, Any] = {"type": "array", "items": single, "minItems": 2, "maxItems": 2}
@@ -158,11 +158,9 @@ def _schema(kind: QuantityKind, *, designed: bool = True) -> WithJsonSchema:
         }
 
     chosen = [mapping("min", "max")] if designed else []
-    return WithJsonSchema({"anyOf": [single, *chosen, mapping("nominal")]})
+    return {"anyOf": [single, *chosen, mapping("nominal")]}
 
 
-InertiaGain = Annotated[GainSpec, _gain(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)]
-DampingGain = Annotated[GainSpec, _gain(kinds.IMPEDANCE, positive=True), _schema(kinds.IMPEDANCE)]
-SpringGain = Annotated[
-    GainSpec, _gain(kinds.SPRING, positive=True), _schema(kinds.SPRING, designed=False)
-]
+InertiaGain = Annotated[GainSpec, _gain(kinds.INERTIA, positive=False)]
+DampingGain = Annotated[GainSpec, _gain(kinds.IMPEDANCE)]
+SpringGain = Annotated[GainSpec, _gain(kinds.SPRING, designed=False)]

@@ -39,11 +39,27 @@ class ReadBy:
     ----------
     read : callable
         Takes the value as it stands in the file; its errors are those of the field.
+    schema : dict, optional
+        JSON Schema of what may stand there.
     """
 
-    def __init__(self, read: Callable[[object], object]) -> None:
-        self.read = read
+    def __init__(
+        self, read: Callable[[object], object], schema: dict[str, Any] | None = None
+    ) -> None:
+        self.read, self.schema = read, schema
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
         """Return the schema that calls the function."""
         return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, core: Any, handler: Any) -> dict[str, Any]:
+        """Return the JSON Schema."""
+        return handler(core) if self.schema is None else dict(self.schema)
+
+
+class ReadBefore(ReadBy):
+    """Marks a field that is a model, whose short form a function writes out first."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> CoreSchema:
+        """Return the schema that calls the function, and then validates the model."""
+        return core_schema.no_info_before_validator_function(self.read, handler(source))

@@ -6,7 +6,7 @@ import re
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec.affine import Affine
@@ -73,23 +73,21 @@ def _read_range(value: object) -> tuple[Fraction, Fraction]:
     return _read_value(value[0], 0), _read_value(value[1], 1)
 
 
-_Value = Annotated[Fraction, ReadBy(_read_value), WithJsonSchema(NUMBER_SCHEMA)]
+_Value = Annotated[Fraction, ReadBy(_read_value, NUMBER_SCHEMA)]
 _Range = Annotated[
     tuple[Fraction, Fraction],
-    ReadBy(_read_range),
-    WithJsonSchema({"type": "array", "items": NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}),
+    ReadBy(_read_range, {"type": "array", "items": NUMBER_SCHEMA, "minItems": 2, "maxItems": 2}),
 ]
 ParameterName = Annotated[
     str,
-    ReadBy(read_parameter_name),
-    WithJsonSchema({"type": "string", "pattern": PARAMETER_PATTERN}),
+    ReadBy(read_parameter_name, {"type": "string", "pattern": PARAMETER_PATTERN}),
 ]
-Switch = Annotated[bool, ReadBy(_read_switch), WithJsonSchema({"type": "boolean"})]
+Switch = Annotated[bool, ReadBy(_read_switch, {"type": "boolean"})]
 Entry = Annotated[
     Affine,
-    ReadBy(read_entry),
-    WithJsonSchema(
-        {"anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "string", "pattern": EXPRESSION_PATTERN}]}
+    ReadBy(
+        read_entry,
+        {"anyOf": [*NUMBER_SCHEMA["anyOf"], {"type": "string", "pattern": EXPRESSION_PATTERN}]},
     ),
 ]
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import Field
 from pydantic_core import PydanticCustomError
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.faults import as_text, fault, reported
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
@@ -68,12 +68,11 @@ def quantity_schema(kind: QuantityKind) -> dict[str, Any]:
     return {"type": "string", "pattern": QUANTITY_PATTERN, "examples": [kind.example]}
 
 
-def _quantity(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBy:
-    return ReadBy(lambda value: read_quantity(value, kind, positive=positive, signed=signed))
+def _one(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBy:
+    def read(value: object) -> Quantity:
+        return read_quantity(value, kind, positive=positive, signed=signed)
 
-
-def _schema(kind: QuantityKind) -> WithJsonSchema:
-    return WithJsonSchema(quantity_schema(kind))
+    return ReadBy(read, quantity_schema(kind))
 
 
 # In the place of a quantity: as large as is found.
@@ -92,8 +91,9 @@ def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | str:
     return read_quantity(value, kind, positive=True)
 
 
-def _or_largest_schema(kind: QuantityKind) -> WithJsonSchema:
-    return WithJsonSchema({"anyOf": [quantity_schema(kind), {"const": LARGEST}]})
+def _or_largest(kind: QuantityKind) -> ReadBy:
+    schema = {"anyOf": [quantity_schema(kind), {"const": LARGEST}]}
+    return ReadBy(lambda value: _read_or_largest(value, kind), schema)
 
 
 def _as_is(value: object) -> Quantity:
@@ -107,8 +107,7 @@ def _as_is(value: object) -> Quantity:
 # Inside bounds and ranges: the field around them knows the kind and reads the text.
 AnyQuantity = Annotated[
     Quantity,
-    ReadBy(_as_is),
-    WithJsonSchema({"type": "string", "pattern": QUANTITY_PATTERN}),
+    ReadBy(_as_is, {"type": "string", "pattern": QUANTITY_PATTERN}),
 ]
 
 
@@ -146,20 +145,24 @@ class RangedQuantity(SpecModel):
         return self.range[0].rational_part == self.range[1].rational_part
 
 
-def _bounds(kind: QuantityKind, *, positive: bool) -> BeforeValidator:
+def _bounds(kind: QuantityKind) -> ReadBefore:
+    def reader(value: object) -> Quantity:
+        return read_quantity(value, kind, positive=True)
+
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
-            quantity = read_quantity(value, kind, positive=positive)
+            quantity = reader(value)
             return {"min": quantity, "max": quantity}
         return read_entries(value, ("min", "max"), reader)
 
+    keys = {"min": "smallest admissible value", "max": "largest admissible value"}
+    return ReadBefore(read, _pair_schema(kind, keys, ["min", "max"]))
+
+
+def _ranged(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBefore:
     def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive)
+        return read_quantity(value, kind, positive=positive, signed=signed)
 
-    return BeforeValidator(read)
-
-
-def _ranged(kind: QuantityKind, *, positive: bool, signed: bool = False) -> BeforeValidator:
     def read(value: object) -> object:
         if isinstance(value, str | Quantity):
             return {"nominal": reader(value)}
@@ -168,10 +171,15 @@ def _ranged(kind: QuantityKind, *, positive: bool, signed: bool = False) -> Befo
             entries["range"] = read_range(entries["range"], reader)
         return entries
 
-    def reader(value: object) -> Quantity:
-        return read_quantity(value, kind, positive=positive, signed=signed)
-
-    return BeforeValidator(read)
+    schema = _pair_schema(kind, {"nominal": "value that the design uses"}, ["nominal"])
+    schema["anyOf"][1]["properties"]["range"] = {
+        "type": "array",
+        "items": quantity_schema(kind),
+        "minItems": 2,
+        "maxItems": 2,
+        "description": "[lowest, highest] value that the proof covers",
+    }
+    return ReadBefore(read, schema)
 
 
 Reader = Callable[[object], Quantity]
@@ -222,105 +230,51 @@ def _pair_schema(kind: QuantityKind, keys: dict[str, str], required: list[str]) 
     return {"anyOf": [single, mapping]}
 
 
-def _bounds_schema(kind: QuantityKind) -> WithJsonSchema:
-    keys = {"min": "smallest admissible value", "max": "largest admissible value"}
-    return WithJsonSchema(_pair_schema(kind, keys, ["min", "max"]))
-
-
-def _ranged_schema(kind: QuantityKind) -> WithJsonSchema:
-    schema = _pair_schema(kind, {"nominal": "value that the design uses"}, ["nominal"])
-    schema["anyOf"][1]["properties"]["range"] = {
-        "type": "array",
-        "items": quantity_schema(kind),
-        "minItems": 2,
-        "maxItems": 2,
-        "description": "[lowest, highest] value that the proof covers",
-    }
-    return WithJsonSchema(schema)
-
-
-ActuatorGain = Annotated[Quantity, _quantity(kinds.ACTUATOR_GAIN), _schema(kinds.ACTUATOR_GAIN)]
-RangedActuatorGain = Annotated[
-    RangedQuantity, _ranged(kinds.ACTUATOR_GAIN, positive=True), _ranged_schema(kinds.ACTUATOR_GAIN)
-]
-Duration = Annotated[Quantity, _quantity(kinds.DURATION), _schema(kinds.DURATION)]
-RangedDuration = Annotated[
-    RangedQuantity, _ranged(kinds.DURATION, positive=True), _ranged_schema(kinds.DURATION)
-]
-DerivativeGain = Annotated[
-    Quantity, _quantity(kinds.DERIVATIVE_GAIN), _schema(kinds.DERIVATIVE_GAIN)
-]
-Decay = Annotated[Quantity, _quantity(kinds.DECAY, positive=False), _schema(kinds.DECAY)]
-DecayRate = Annotated[Quantity, _quantity(kinds.DECAY), _schema(kinds.DECAY)]
-Zero = Annotated[Quantity, _quantity(kinds.ZERO), _schema(kinds.ZERO)]
-AngularVelocity = Annotated[
-    Quantity, _quantity(kinds.ANGULAR_VELOCITY), _schema(kinds.ANGULAR_VELOCITY)
-]
-SignedAngularVelocity = Annotated[
-    Quantity, _quantity(kinds.ANGULAR_VELOCITY, signed=True), _schema(kinds.ANGULAR_VELOCITY)
-]
-Torque = Annotated[Quantity, _quantity(kinds.TORQUE), _schema(kinds.TORQUE)]
+ActuatorGain = Annotated[Quantity, _one(kinds.ACTUATOR_GAIN)]
+RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN)]
+Duration = Annotated[Quantity, _one(kinds.DURATION)]
+RangedDuration = Annotated[RangedQuantity, _ranged(kinds.DURATION)]
+DerivativeGain = Annotated[Quantity, _one(kinds.DERIVATIVE_GAIN)]
+Decay = Annotated[Quantity, _one(kinds.DECAY, positive=False)]
+DecayRate = Annotated[Quantity, _one(kinds.DECAY)]
+Zero = Annotated[Quantity, _one(kinds.ZERO)]
+AngularVelocity = Annotated[Quantity, _one(kinds.ANGULAR_VELOCITY)]
+SignedAngularVelocity = Annotated[Quantity, _one(kinds.ANGULAR_VELOCITY, signed=True)]
+Torque = Annotated[Quantity, _one(kinds.TORQUE)]
 TorqueOrLargest = Annotated[
     Quantity | str,
-    ReadBy(lambda value: _read_or_largest(value, kinds.INITIAL_TORQUE)),
-    _or_largest_schema(kinds.INITIAL_TORQUE),
+    _or_largest(kinds.INITIAL_TORQUE),
 ]
-SignedTorque = Annotated[Quantity, _quantity(kinds.TORQUE, signed=True), _schema(kinds.TORQUE)]
-TorqueRate = Annotated[Quantity, _quantity(kinds.TORQUE_RATE), _schema(kinds.TORQUE_RATE)]
-Bandwidth = Annotated[Quantity, _quantity(kinds.BANDWIDTH), _schema(kinds.BANDWIDTH)]
-LeverArm = Annotated[Quantity, _quantity(kinds.LEVER_ARM), _schema(kinds.LEVER_ARM)]
-RotationalStiffness = Annotated[Quantity, _quantity(kinds.SPRING), _schema(kinds.SPRING)]
-Impedance = Annotated[Quantity, _quantity(kinds.IMPEDANCE), _schema(kinds.IMPEDANCE)]
-IntegralForceGain = Annotated[
-    Quantity, _quantity(kinds.INTEGRAL_FORCE_GAIN), _schema(kinds.INTEGRAL_FORCE_GAIN)
-]
-ForceGain = Annotated[Quantity, _quantity(kinds.FORCE_GAIN), _schema(kinds.FORCE_GAIN)]
-Stiffness = Annotated[
-    RangedQuantity, _ranged(kinds.STIFFNESS, positive=True), _ranged_schema(kinds.STIFFNESS)
-]
-Damping = Annotated[
-    RangedQuantity, _ranged(kinds.DAMPING, positive=False), _ranged_schema(kinds.DAMPING)
-]
-PositiveDamping = Annotated[
-    RangedQuantity, _ranged(kinds.DAMPING, positive=True), _ranged_schema(kinds.DAMPING)
-]
-HandMass = Annotated[
-    RangedQuantity, _ranged(kinds.HAND_MASS, positive=False), _ranged_schema(kinds.HAND_MASS)
-]
-Deflection = Annotated[Quantity, _quantity(kinds.DEFLECTION), _schema(kinds.DEFLECTION)]
-Mass = Annotated[Quantity, _quantity(kinds.MASS, positive=False), _schema(kinds.MASS)]
-RangedMass = Annotated[
-    RangedQuantity, _ranged(kinds.MASS, positive=True), _ranged_schema(kinds.MASS)
-]
-RangedCoordinate = Annotated[
-    RangedQuantity, _ranged(kinds.LENGTH, positive=False, signed=True), _ranged_schema(kinds.LENGTH)
-]
-NoiseDensity = Annotated[Quantity, _quantity(kinds.NOISE_DENSITY), _schema(kinds.NOISE_DENSITY)]
-Force = Annotated[Quantity, _quantity(kinds.FORCE), _schema(kinds.FORCE)]
-Length = Annotated[Quantity, _quantity(kinds.LENGTH), _schema(kinds.LENGTH)]
-Coordinate = Annotated[Quantity, _quantity(kinds.LENGTH, signed=True), _schema(kinds.LENGTH)]
-Angle = Annotated[Quantity, _quantity(kinds.ANGLE), _schema(kinds.ANGLE)]
-SignedAngle = Annotated[Quantity, _quantity(kinds.ANGLE, signed=True), _schema(kinds.ANGLE)]
-MomentOfInertia = Annotated[
-    Quantity, _quantity(kinds.INERTIA, positive=False), _schema(kinds.INERTIA)
-]
-RotorInertia = Annotated[Quantity, _quantity(kinds.INERTIA), _schema(kinds.INERTIA)]
-ProductOfInertia = Annotated[
-    Quantity, _quantity(kinds.INERTIA, signed=True), _schema(kinds.INERTIA)
-]
-LinearVelocity = Annotated[
-    Quantity, _quantity(kinds.LINEAR_VELOCITY), _schema(kinds.LINEAR_VELOCITY)
-]
-LinearAcceleration = Annotated[Quantity, _quantity(kinds.ACCELERATION), _schema(kinds.ACCELERATION)]
-Gravity = Annotated[
-    Quantity, _quantity(kinds.ACCELERATION, positive=False), _schema(kinds.ACCELERATION)
-]
-AngularAcceleration = Annotated[
-    Quantity, _quantity(kinds.ANGULAR_ACCELERATION), _schema(kinds.ANGULAR_ACCELERATION)
-]
-Command = Annotated[Quantity, _quantity(kinds.COMMAND, positive=False), _schema(kinds.COMMAND)]
-LargestCommand = Annotated[Quantity, _quantity(kinds.COMMAND), _schema(kinds.COMMAND)]
-TorqueGradient = Annotated[
-    Quantity, _quantity(kinds.TORQUE_GRADIENT), _schema(kinds.TORQUE_GRADIENT)
-]
-LengthBounds = Annotated[Bounds, _bounds(kinds.LENGTH, positive=True), _bounds_schema(kinds.LENGTH)]
+SignedTorque = Annotated[Quantity, _one(kinds.TORQUE, signed=True)]
+TorqueRate = Annotated[Quantity, _one(kinds.TORQUE_RATE)]
+Bandwidth = Annotated[Quantity, _one(kinds.BANDWIDTH)]
+LeverArm = Annotated[Quantity, _one(kinds.LEVER_ARM)]
+RotationalStiffness = Annotated[Quantity, _one(kinds.SPRING)]
+Impedance = Annotated[Quantity, _one(kinds.IMPEDANCE)]
+IntegralForceGain = Annotated[Quantity, _one(kinds.INTEGRAL_FORCE_GAIN)]
+ForceGain = Annotated[Quantity, _one(kinds.FORCE_GAIN)]
+Stiffness = Annotated[RangedQuantity, _ranged(kinds.STIFFNESS)]
+Damping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, positive=False)]
+PositiveDamping = Annotated[RangedQuantity, _ranged(kinds.DAMPING)]
+HandMass = Annotated[RangedQuantity, _ranged(kinds.HAND_MASS, positive=False)]
+Deflection = Annotated[Quantity, _one(kinds.DEFLECTION)]
+Mass = Annotated[Quantity, _one(kinds.MASS, positive=False)]
+RangedMass = Annotated[RangedQuantity, _ranged(kinds.MASS)]
+RangedCoordinate = Annotated[RangedQuantity, _ranged(kinds.LENGTH, positive=False, signed=True)]
+NoiseDensity = Annotated[Quantity, _one(kinds.NOISE_DENSITY)]
+Force = Annotated[Quantity, _one(kinds.FORCE)]
+Length = Annotated[Quantity, _one(kinds.LENGTH)]
+Coordinate = Annotated[Quantity, _one(kinds.LENGTH, signed=True)]
+Angle = Annotated[Quantity, _one(kinds.ANGLE)]
+SignedAngle = Annotated[Quantity, _one(kinds.ANGLE, signed=True)]
+MomentOfInertia = Annotated[Quantity, _one(kinds.INERTIA, positive=False)]
+RotorInertia = Annotated[Quantity, _one(kinds.INERTIA)]
+ProductOfInertia = Annotated[Quantity, _one(kinds.INERTIA, signed=True)]
+LinearVelocity = Annotated[Quantity, _one(kinds.LINEAR_VELOCITY)]
+LinearAcceleration = Annotated[Quantity, _one(kinds.ACCELERATION)]
+Gravity = Annotated[Quantity, _one(kinds.ACCELERATION, positive=False)]
+AngularAcceleration = Annotated[Quantity, _one(kinds.ANGULAR_ACCELERATION)]
+Command = Annotated[Quantity, _one(kinds.COMMAND, positive=False)]
+LargestCommand = Annotated[Quantity, _one(kinds.COMMAND)]
+TorqueGradient = Annotated[Quantity, _one(kinds.TORQUE_GRADIENT)]
+LengthBounds = Annotated[Bounds, _bounds(kinds.LENGTH)]

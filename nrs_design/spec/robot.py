@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import sin
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
@@ -54,13 +54,10 @@ def _read_counts(value: object) -> int:
     return int(number)
 
 
-ElbowSign = Annotated[
-    int, ReadBy(_read_elbow_sign), WithJsonSchema({"type": "integer", "enum": [-1, 1]})
-]
+ElbowSign = Annotated[int, ReadBy(_read_elbow_sign, {"type": "integer", "enum": [-1, 1]})]
 Counts = Annotated[
     int,
-    ReadBy(_read_counts),
-    WithJsonSchema({"type": "integer", "minimum": 2, "maximum": MAX_COUNTS}),
+    ReadBy(_read_counts, {"type": "integer", "minimum": 2, "maximum": MAX_COUNTS}),
 ]
 
 

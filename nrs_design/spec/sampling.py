@@ -6,7 +6,7 @@ import re
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.check import Row
@@ -54,9 +54,9 @@ def _read_delay(value: object) -> tuple[int, int]:
 _SAMPLES = {"type": "integer", "minimum": 0, "maximum": LONGEST_DELAY}
 Delay = Annotated[
     tuple[int, int],
-    ReadBy(_read_delay),
-    WithJsonSchema(
-        {"anyOf": [_SAMPLES, {"type": "array", "items": _SAMPLES, "minItems": 2, "maxItems": 2}]}
+    ReadBy(
+        _read_delay,
+        {"anyOf": [_SAMPLES, {"type": "array", "items": _SAMPLES, "minItems": 2, "maxItems": 2}]},
     ),
 ]
 

@@ -114,11 +114,10 @@ Schedule = Annotated[
     ReadBy(_read_schedule),
     _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1),
 ]
-File = Annotated[str, ReadBy(_read_file), WithJsonSchema({"type": "string"})]
+File = Annotated[str, ReadBy(_read_file, {"type": "string"})]
 Seed = Annotated[
     int,
-    ReadBy(_read_seed),
-    WithJsonSchema({"type": "integer", "minimum": 0, "maximum": LARGEST_SEED}),
+    ReadBy(_read_seed, {"type": "integer", "minimum": 0, "maximum": LARGEST_SEED}),
 ]
 
 

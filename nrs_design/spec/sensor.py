@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
@@ -41,8 +41,7 @@ def _read_order(value: object) -> int:
 
 Order = Annotated[
     int,
-    ReadBy(_read_order),
-    WithJsonSchema({"type": "integer", "minimum": 1, "maximum": HIGHEST_ORDER}),
+    ReadBy(_read_order, {"type": "integer", "minimum": 1, "maximum": HIGHEST_ORDER}),
 ]
 
 

@@ -140,16 +140,15 @@ _TRANSITIONS_SCHEMA: dict[str, Any] = {
 class SwitchingSpec(SpecModel):
     """Rules for the switching signal; without any, it is arbitrary."""
 
-    dwell_time: Annotated[
-        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
-    ] = Field(default=None, description=_DWELL_TIME)
-    longest_dwell_time: Annotated[
-        DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)
-    ] = Field(default=None, description=_LONGEST_DWELL_TIME)
+    dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = Field(
+        default=None, description=_DWELL_TIME
+    )
+    longest_dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = (
+        Field(default=None, description=_LONGEST_DWELL_TIME)
+    )
     transitions: Annotated[
         tuple[Transition, ...] | None,
-        ReadBy(_read_transitions),
-        WithJsonSchema(_TRANSITIONS_SCHEMA),
+        ReadBy(_read_transitions, _TRANSITIONS_SCHEMA),
     ] = Field(default=None, description=_TRANSITIONS)
 
     @property

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.proof.bounds import lower, lower_float, upper_float
 from nrs_design.proof.text import exact_text
@@ -174,12 +174,10 @@ class ThresholdLogicSpec(SpecModel):
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
     ] = Field(description="switches from one controller to another; the first that may be made is")
-    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times), WithJsonSchema(DWELL_SCHEMA)] = (
-        Field(
-            default=None,
-            description="shortest time in s for which a controller is held whatever the signals "
-            "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
-        )
+    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = Field(
+        default=None,
+        description="shortest time in s for which a controller is held whatever the signals "
+        "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
     )
 
     def _unsaid(self) -> Iterator[tuple[Location, str]]:

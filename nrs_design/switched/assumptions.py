@@ -13,7 +13,6 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
-from nrs_design.spec.environment_estimator import EstimatorSpec, decide
 from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.sensor import Sensor
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec.environment_estimator import EstimatorSpec
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
@@ -241,6 +241,9 @@ def logic_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
 
 def _estimator_texts(spec: InteractionDesignSpec, logic: EstimatorSpec) -> Iterator[Assumption]:
     torque, shortest = logic.signals.torque, logic.shortest_contact.text
+    # A spec of given matrices does not pay for the models of a design.
+    from nrs_design.spec.environment_estimator import decide
+
     delay = rounded_up(decide(logic, spec.controllers, spec.environments).delay, "s")
     bound = f"changes of contact at least {shortest} apart"
     yield say("rules.environment", bound, shortest=shortest, delay=delay)

@@ -10,7 +10,7 @@ import pytest
 from nrs_design.certificates.certificate import content_id, dump
 from nrs_design.certificates.verify import verify
 from nrs_design.cli import main
-from nrs_design.exporters import FORMATS, ROBOT_FORMATS
+from nrs_design.exporters import ROBOT_FORMATS, format_names, format_of
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.pipeline import run_certification
 from nrs_design.spec import read_spec
@@ -186,11 +186,11 @@ def test_outputs_that_cannot_be(export, capsys):
 def test_list(export, capsys):
     assert export("--list") == 0
     text = capsys.readouterr().out
-    assert all(name in text for name in [*FORMATS, *ROBOT_FORMATS, "ros2"])
+    assert all(name in text for name in [*format_names(), *ROBOT_FORMATS, "ros2"])
     assert export("--list", "--json") == 0
     formats = json.loads(capsys.readouterr().out)["formats"]
-    assert [entry["name"] for entry in formats] == [*FORMATS, *ROBOT_FORMATS, "ros2"]
-    assert formats[0]["files"] == ["NAME.export.json"]
+    assert [entry["name"] for entry in formats] == [*format_names(), *ROBOT_FORMATS, "ros2"]
+    assert ["NAME.export.json"] in [entry["files"] for entry in formats]
     assert export() == 2
     assert "--list" in capsys.readouterr().err
 
@@ -211,13 +211,13 @@ def test_options_of_programs(export, capsys, monkeypatch):
     for option in (["--unproved"], ["--sample-time", "2 ms"]):
         assert export(SPEC, *option) == 2
         assert "for programs" in capsys.readouterr().err
-    program = replace(FORMATS["json"], executable=True)
-    monkeypatch.setattr("nrs_design.cli.export.FORMATS", {"program": program})
+    program = replace(format_of("json"), executable=True)
+    monkeypatch.setattr("nrs_design.cli.export.format_of", lambda name: program)
     for wrong in ("2", "0 s", "-1 ms", "2 Hz"):
-        assert export(SPEC, "--format", "program", "--sample-time", wrong) == 2
-    assert export(SPEC, "--format", "program", "--sample-time", "2 ms") == 3
+        assert export(SPEC, "--format", "json", "--sample-time", wrong) == 2
+    assert export(SPEC, "--format", "json", "--sample-time", "2 ms") == 3
     assert files() == []
-    arguments = (SPEC, "--format", "program", "--sample-time", "2 ms", "--unproved")
+    arguments = (SPEC, "--format", "json", "--sample-time", "2 ms", "--unproved")
     assert export(*arguments) == 3
     assert "soft-tissue: UNPROVED (the certificate is about cont" in capsys.readouterr().out
     assert files() == ["reports/soft-tissue.cert.json", "reports/soft-tissue.export.json"]
@@ -334,7 +334,7 @@ def test_a_file_that_no_format_writes_is_no_folder(export, capsys, sampled, name
 def test_a_co_simulation_model(export, capsys, sampled, monkeypatch):
     spec, certificate = sampled
     options = ("--certificate", certificate, "--format", "fmu")
-    monkeypatch.setattr("nrs_design.exporters.fmu.compiler", lambda: None)
+    monkeypatch.setattr("nrs_design.exporters.formats.fmu.compiler", lambda: None)
     assert export(spec, *options, "--out", "model.fmu") == 0
     assert "sources only" in capsys.readouterr().err
     assert export(spec, *options, "--out", "model.fmu", "--json") == 0

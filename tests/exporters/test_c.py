@@ -4,11 +4,11 @@ import re
 
 import pytest
 
-from nrs_design.exporters.c import header_text, render, source_text
 from nrs_design.exporters.c_names import CNames, harmless
+from nrs_design.exporters.formats.c import header_text, render, source_text
+from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.self_test import program_macro, self_test
-from nrs_design.exporters.vectors import make_vectors
 from tests.exporters.programs import (
     CORTEX,
     LAWS,

@@ -9,10 +9,10 @@ import pytest
 
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c import header_text, source_text
 from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
 from nrs_design.exporters.logic_cases import logic_document
-from nrs_design.exporters.vectors import make_vectors, vectors_text
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import STRICT, built, check_with_misra, compiler, emulated, run

@@ -8,7 +8,7 @@ import pytest
 
 from nrs_design.exporters.compiled import compiler
 from nrs_design.exporters.deployed_model import model_differences
-from nrs_design.exporters.fmu import contents, library_of, packed
+from nrs_design.exporters.formats.fmu import contents, library_of, packed
 from nrs_design.exporters.program import program_of
 
 XML = "modelDescription.xml"

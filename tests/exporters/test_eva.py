@@ -5,9 +5,9 @@ import shutil
 
 import pytest
 
-from nrs_design.exporters.c import header_text, render, source_text
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.monitor import render as render_monitor
+from nrs_design.exporters.formats.c import header_text, render, source_text
+from nrs_design.exporters.formats.monitor import render as render_monitor
 from tests.exporters.programs import LAWS, run
 
 pytestmark = pytest.mark.slow

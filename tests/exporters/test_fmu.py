@@ -16,10 +16,10 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
 from nrs_design.controllers.replica import step
-from nrs_design.exporters import FORMATS
-from nrs_design.exporters.c import header_text
+from nrs_design.exporters import format_of
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.fmu import (
+from nrs_design.exporters.formats.c import header_text
+from nrs_design.exporters.formats.fmu import (
     contents,
     description,
     guid_of,
@@ -29,8 +29,8 @@ from nrs_design.exporters.fmu import (
     variables_of,
     wrapper_text,
 )
+from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.program import Program
-from nrs_design.exporters.vectors import make_vectors
 from tests.exporters.programs import LAWS, STRICT, built, compiler
 
 T = 0.002
@@ -236,14 +236,14 @@ def replace_sha(record):
 
 
 def test_it_says_where_it_is_not_compiled(sampled_export, monkeypatch):
-    monkeypatch.setattr("nrs_design.exporters.fmu.compiler", lambda: None)
+    monkeypatch.setattr("nrs_design.exporters.formats.fmu.compiler", lambda: None)
     files = render(sampled_export)
     (remark,) = remarks(files)
     assert "sources only" in remark
     with zipfile.ZipFile(io.BytesIO(files[".fmu"])) as archive:
         assert "sources/fmu.c" in archive.namelist()
         assert "only sources" in archive.read("documentation/index.html").decode()
-    assert files[".fmu"].startswith(FORMATS["fmu"].files[".fmu"])
+    assert files[".fmu"].startswith(format_of("fmu").files[".fmu"])
 
 
 def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):

@@ -6,16 +6,16 @@ from dataclasses import replace
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.exporters import FORMATS
-from nrs_design.exporters.json_record import render
+from nrs_design.exporters import format_of
+from nrs_design.exporters.formats.json import render
 from nrs_design.exporters.record import ExportRecord
 
 
 def test_the_file_is_the_record(sampled_export):
     files = render(sampled_export)
-    assert files.keys() == FORMATS["json"].files.keys()
+    assert files.keys() == format_of("json").files.keys()
     (content,) = files.values()
-    assert content.startswith(*FORMATS["json"].files.values())
+    assert content.startswith(*format_of("json").files.values())
     assert ExportRecord.model_validate_json(content) == sampled_export.record
     # Everywhere the same bytes, and every number of them one that JSON has.
     assert content == content.decode("ascii").encode()

@@ -11,7 +11,7 @@ import scipy.io
 from nrs_design.certificates.certificate import dump
 from nrs_design.design.linear_parts import linear_parts
 from nrs_design.exporters.export import export_design
-from nrs_design.exporters.matlab import render
+from nrs_design.exporters.formats.mat import render
 from nrs_design.spec import read_spec
 from tests.design.test_linear_parts import filtered
 from tests.exporters.conftest import CONTINUOUS

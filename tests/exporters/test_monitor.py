@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from nrs_design.exporters.c import header_text as law_header
-from nrs_design.exporters.c import render as render_c
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.monitor import KINDS, header_text, render, source_text
+from nrs_design.exporters.formats.c import header_text as law_header
+from nrs_design.exporters.formats.c import render as render_c
+from nrs_design.exporters.formats.monitor import KINDS, header_text, render, source_text
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import Program
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
@@ -306,4 +306,4 @@ def test_a_compiler_that_knows_no_nan_is_refused(tmp_path, sampled_export, flag)
     built(gcc, *STRICT, "-c", source, "-o", tmp_path / "o")
     done = run(gcc, "-std=c99", flag, "-c", source, "-o", tmp_path / "o")
     assert done.returncode != 0
-    assert "what is not a number" in done.stderr
+    assert "NaN comparisons must be false" in done.stderr

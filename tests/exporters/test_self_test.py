@@ -2,11 +2,11 @@
 
 import pytest
 
-from nrs_design.exporters.c import header_text, source_text
 from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.self_test import program_macro, self_test
-from nrs_design.exporters.vectors import make_vectors
 from tests.exporters.programs import LAWS, STRICT, built, compiler, emulated, run
 
 # What a robot does before it moves: the exit code says which case is the first to differ.

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from nrs_design.exporters.c import header_text
 from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.formats.c import header_text
 from nrs_design.exporters.start import PLACED, SPRUNG, start_lines
 from nrs_design.simulation.step_program import StepProgram
 from tests.exporters.programs import LAWS, law

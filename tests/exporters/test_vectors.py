@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.replica import step
-from nrs_design.exporters.c import render as render_c
-from nrs_design.exporters.vectors import csv_text, make_vectors, render, vectors_text
+from nrs_design.exporters.formats.c import render as render_c
+from nrs_design.exporters.formats.vectors import csv_text, make_vectors, render, vectors_text
 from tests.exporters.programs import LAWS, compiler, run
 
 # An implementation that has nothing in common with the package but the formulas: each operation in

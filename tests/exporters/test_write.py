@@ -6,8 +6,8 @@ from nrs_design.errors import OutputError
 from nrs_design.exporters import Format
 from nrs_design.exporters.write import check_places, places, write_files
 
-ONE = Format("one", "", "", {".mat": b"MAT"})
-TWO = Format("two", "", "", {".c": b"/* ours", ".h": b"/* ours"})
+ONE = Format("", "", {".mat": b"MAT"})
+TWO = Format("", "", {".c": b"/* ours", ".h": b"/* ours"})
 CONTENTS = {".c": b"/* ours */ c", ".h": b"/* ours */ h"}
 
 

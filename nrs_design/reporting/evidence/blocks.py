@@ -1,9 +1,10 @@
-"""A block triangular family: its structure, and what is shown for each block."""
+"""A block triangular family: its structure, and the evidence for each block."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,13 +25,19 @@ from nrs_design.reporting.evidence.runs import (
     simulated,
     trials_per_step,
 )
-from nrs_design.reporting.figures.blocks import draw_blocks
 from nrs_design.reporting.formatting import shortened
 from nrs_design.reporting.sections.modes import hardest_modes
+from nrs_design.reporting.style import BLUE, SKY, VERMILLION, legend, new_axes, styled
+from nrs_design.reporting.text import wrapped_label
 from nrs_design.simulation.norms import quadratic_norm
 from nrs_design.simulation.switched import worst_direction
 
-_LISTED = 32
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+_LISTED, _NAMED = 32, 12
 _STRUCTURE = (
     "In every mode, the states of a block are driven by their own block and by later ones only. "
     "So the last block moves by itself, and each of the others follows it."
@@ -60,10 +67,7 @@ _RUN = (
 
 @dataclass(frozen=True)
 class BlocksPage(AbstractPage):
-    """The blocks, and in few words what is shown of each.
-
-    What refutes a block is said and drawn as its own page says it.
-    """
+    """The blocks with their evidence; a refuted block has the text and run of its own page."""
 
     page_of: Callable[[SwitchedSystem, AbstractEvidence], AbstractPage]  # of what a block shows
 
@@ -90,7 +94,7 @@ class BlocksPage(AbstractPage):
         system, title = self.system, "Block triangular structure"
         blocks: list[Block] = []
         if first:
-            figure = draw_blocks(system, self.offer.blocks)
+            figure = _draw_blocks(system, self.offer.blocks)
             drawn = Illustration("blocks", "Which states drive which", _CELLS, figure)
             blocks = [Paragraph(_STRUCTURE), drawn, self._table()]
         if self.evidence.shows is Shows.NO_COMMON_QUADRATIC:
@@ -127,7 +131,7 @@ class BlocksPage(AbstractPage):
         return self.page_of(self.system, self.offer.parts[0][1])
 
     def _parts(self) -> Iterator[tuple[int, SwitchedSystem, AbstractEvidence]]:
-        """Yield the number of a block, its family, and what is shown of it."""
+        """Yield the number of a block, its family, and its evidence."""
         for index, part in self.offer.parts:
             yield index, diagonal_block(self.system, self.offer.blocks[index]), part
 
@@ -150,3 +154,64 @@ def _rate(system: SwitchedSystem, part: AbstractEvidence) -> str:
     if rate is None:
         return ""
     return rounded_down(rate) if system.time is Time.CONTINUOUS else rounded_up(rate)
+
+
+@styled
+def _draw_blocks(system: SwitchedSystem, blocks: Sequence[Sequence[int]]) -> Figure:
+    """Draw which state drives which in any mode, with the diagonal blocks framed."""
+    order = [state for block in blocks for state in block]
+    label = np.repeat(np.arange(len(blocks)), [len(block) for block in blocks])
+    pattern = _pattern(system)[np.ix_(order, order)]
+    own = label[:, None] == label[None, :]
+    n = len(order)
+    figure, axes = new_axes(3.4 if n <= 4 else 4.6)
+    size = min(700.0, 26_000.0 / n**2)
+    _cells(axes, pattern & own, BLUE, size, "within a block")
+    _cells(axes, pattern & ~own, SKY, size, "from a later block")
+    _frames(axes, blocks)
+    names = [wrapped_label(system.states[i], 14) for i in order]
+    ticks = names if n <= _NAMED else [str(i + 1) for i in order]
+    shown = range(0, n, 1 + n // 40)
+    axes.set_xticks(shown, [ticks[i] for i in shown], rotation=0 if n <= 4 else 60)
+    axes.set_yticks(shown, [ticks[i] for i in shown])
+    axes.set_xlim(-0.7, n - 0.3)
+    axes.set_ylim(n - 0.3, -0.7)
+    axes.set_aspect("equal")
+    axes.grid(visible=False)
+    axes.set_xlabel("State that drives")
+    axes.set_ylabel("State driven")
+    legend(figure, axes, 3)
+    return figure
+
+
+def _pattern(system: SwitchedSystem) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    patterns = [[[v != 0 for v in row] for row in mode.A.numerators] for mode in system.modes]
+    return np.asarray(np.any(patterns, axis=0))
+
+
+def _cells(
+    axes: Axes,
+    cells: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
+    tint: str,
+    size: float,
+    label: str,
+) -> None:
+    rows, columns = np.nonzero(cells)
+    if len(rows):
+        axes.plot(columns, rows, "s", color=tint, markersize=np.sqrt(size))
+        # A marker of the legend's size, whatever the cells' own.
+        axes.plot([], [], "s", color=tint, label=label)
+
+
+def _frames(axes: Axes, blocks: Sequence[Sequence[int]]) -> None:
+    start = 0
+    for index, block in enumerate(blocks):
+        low, high = start - 0.5, start + len(block) - 0.5
+        axes.plot(
+            [low, high, high, low, low],
+            [low, low, high, high, low],
+            color=VERMILLION,
+            linewidth=1.6,
+            label="diagonal block" if index == 0 else None,
+        )
+        start += len(block)

@@ -39,12 +39,12 @@ class BoundPage(AbstractPage):
         return "bound on an output under a disturbance"
 
     def meaning(self) -> tuple[str, ...]:
-        """Say what is not left, and how it was decided."""
+        """State the invariant set, and how it was decided."""
         system = self.system
         return (_MEANING, *words.unneeded_rules(system), words.decision(system))
 
     def limits(self) -> tuple[str, ...]:
-        """Say what the bound is not."""
+        """State what the bound leaves open."""
         between = ("What happens between two steps.",) if self.is_discrete else ()
         return (
             "Other disturbances beside those named, and larger ones.",

@@ -1,4 +1,4 @@
-"""What the page of one statement says and draws."""
+"""The page of one statement."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nrs_design.simulation.norms import Array
 
 @dataclass(frozen=True)
 class AbstractPage(ABC):
-    """One statement for the reader: in a few words, in sentences, in numbers and as a run.
+    """Name, meaning, limits, tables and simulated run of one statement.
 
     The claim is that of the evidence, and no page repeats it.
     """

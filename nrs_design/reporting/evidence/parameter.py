@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nrs_design.proof.evidence.fields import rate_words
+from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence import words
 from nrs_design.reporting.evidence.norms import matrix_blocks
 from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import Greedy, bounded_run, trials_per_step
-from nrs_design.reporting.figures.lyapunov import draw_parameter_rates
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
+from nrs_design.reporting.style import INK, curve, legend, new_axes, styled
 from nrs_design.simulation.norms import Array, modes_at, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import worst_direction
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 _POINTS = 61
 _LISTED = 24
@@ -104,7 +111,7 @@ class ParameterPage(AbstractPage):
         slowest = np.argsort(rates.min(axis=0), kind="stable")
         drawn = np.sort(slowest[:_DRAWN])
         some = f" The {_DRAWN} slowest of {len(names)} modes." if len(names) > _DRAWN else ""
-        curves = draw_parameter_rates(
+        curves = _draw_parameter_rates(
             [names[i] for i in drawn], values, rates[:, drawn], self._rate
         )
         rows = tuple(
@@ -151,3 +158,21 @@ def parameter_rates(
 def _between(ends: list[Array], p: float) -> Array:
     low, high = ends
     return (1 - p) * low + p * high
+
+
+@styled
+def _draw_parameter_rates(
+    names: Sequence[str], values: Array, rates: Array, claimed: Fraction
+) -> Figure:
+    """Draw every mode's decay rate over a constant parameter beside the claimed one."""
+    figure, axes = new_axes(3.9)
+    for index, name in enumerate(names):
+        axes.plot(values, rates[:, index], label=name, **curve(index, len(names), len(values)))
+    label = f"claimed for all: {rate_words(claimed, Time.CONTINUOUS)}"
+    axes.axhline(float(claimed), color=INK, linestyle="--", linewidth=1.3, label=label)
+    axes.set_xlabel("Place in the parameter's range, 0 low end, 1 high end [1]")
+    axes.set_ylabel("Decay rate in the norm of Q [1/s]")
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1.15 * float(rates.max()))
+    legend(figure, axes)
+    return figure

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +13,15 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Block, Illustration, Table
 from nrs_design.reporting.evidence.offers import Form
-from nrs_design.reporting.figures.lyapunov import draw_mode_rates
 from nrs_design.reporting.formatting import number
+from nrs_design.reporting.style import BLUE, VERMILLION, legend, new_axes, row_labels, styled
 from nrs_design.simulation.norms import Array, polynomial_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import fine_step, transition_matrices
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 # A page holds no more; those with the least slack are shown.
 _LISTED = 24
@@ -71,7 +77,7 @@ def rate_blocks(
             "mode-rates",
             "Decrease in every mode",
             f"{explained} All lie {border}.{some}",
-            draw_mode_rates(names, rates[order], claimed, time, norm),
+            _draw_mode_rates(names, rates[order], claimed, time, norm),
         ),
     )
 
@@ -104,3 +110,28 @@ def _table(
     some = "" if len(rows) == len(system.modes) else f" ({len(rows)} with the least slack)"
     title = f"Rate of every mode alone{some}; claimed for all: {rate_words(claimed, system.time)}"
     return Table(title, ("Mode", f"{quantity} in {norm}{unit}", f"Slack{unit}"), tuple(rows))
+
+
+@styled
+def _draw_mode_rates(
+    names: Sequence[str], rates: Array, claimed: Fraction, time: Time, norm: str
+) -> Figure:
+    """Draw every mode's own rate in a norm beside the claimed one."""
+    continuous = time is Time.CONTINUOUS
+    labels, row = row_labels(names)
+    figure, axes = new_axes(1.0 + row * len(names))
+    rows = np.arange(len(names))
+    axes.plot(rates, rows, "o", color=BLUE, label="this mode alone")
+    bound, label = float(claimed), f"claimed for all: {rate_words(claimed, time)}"
+    axes.axvline(bound, color=VERMILLION, linestyle="--", label=label)
+    axes.set_yticks(rows, labels, fontsize=9)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    low, high = min(float(rates.min()), bound), max(float(rates.max()), bound)
+    room = 0.08 * (high - low) or 0.1 * abs(high)
+    axes.set_xlim(low - room, high + room)
+    quantity = f"Decay rate in {norm} [1/s]" if continuous else "Contraction per step [1]"
+    axes.locator_params(axis="x", nbins=4)
+    axes.set_xlabel(quantity)
+    axes.set_ylabel("Mode")
+    legend(figure, axes)
+    return figure

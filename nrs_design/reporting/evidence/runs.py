@@ -1,4 +1,4 @@
-"""Runs that look bad: below a proved bound, beside a proved rate, or without either."""
+"""Adversarial runs: below a proved bound, beside a proved rate, or without either."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ class Greedy:
     played: SwitchedSystem  # Modes that take part; without `contact` where it is kept
     norms: Norm | Sequence[Norm]  # With a clock, one for each step of a round
     initial: Array  # Shape (n,)
-    rate: float | None = None  # Proved, or of what is drawn; None: the run is as long as any
+    rate: float | None = None  # Sets the length of the run; None for a fixed length
 
     def draw(
         self, title: str, said: str, label: str, line: str = "", name: str = "run"
@@ -252,7 +252,7 @@ def _mode_levels(
 
 
 def unbounded_run(system: SwitchedSystem) -> Section:
-    """Draw a bad run of a system of which nothing is proved."""
+    """Draw an adversarial run of a system about which nothing is proved."""
     identity, kept = np.eye(system.order), replace(system, contact=None)
     if system.clock is not None:
         norms = [quadratic_norm(identity)] * system.clock.length
@@ -336,7 +336,7 @@ def trials_per_step(system: SwitchedSystem) -> int:
 
 
 def until_small(response: SwitchedRun, values: Array) -> SwitchedRun:
-    """Cut a run where it has come to rest for all that can be seen."""
+    """Cut a run where it has visibly come to rest."""
     small = np.flatnonzero(values < _SMALL)
     if not len(small):
         return response

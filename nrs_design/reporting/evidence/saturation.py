@@ -49,11 +49,11 @@ class SaturationPage(AbstractPage):
         return "decay from an ellipsoid although signals saturate"
 
     def meaning(self) -> tuple[str, ...]:
-        """Say what the set is, what follows, and how it was decided."""
+        """State the region of decay, and how it was decided."""
         return (_MEANING, *words.unneeded_rules(self.system), words.decision(self.system))
 
     def limits(self) -> tuple[str, ...]:
-        """Say what is not shown of other motions."""
+        """State what remains open about other motions."""
         return (
             "Motions that begin outside of the ellipsoid: they may decay as well.",
             "Commands of a hand and disturbances while signals saturate.",

@@ -147,7 +147,7 @@ def _draw_panel(axes: Axes, panel: Panel, column: PanelColumn, handles: dict[str
 def _thinned(
     curve: Curve, span: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return what is seen of a curve, with the least and the largest value of every part."""
+    """Thin a curve, keeping the least and the largest value of each part."""
     inside = (curve.t >= span[0]) & (curve.t <= span[1])
     t, y = curve.t[inside], curve.y[inside]
     if len(t) <= 2 * _PARTS:

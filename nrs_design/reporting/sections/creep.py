@@ -1,4 +1,4 @@
-"""The force signal: what may be wrong with it for long, and how the robot creeps by it."""
+"""Lasting errors of the force signal, and the creep that they cause."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Goals: what is asked for, what is reached at worst, and what is doubtful."""
+"""Goals beside the worst values reached and the proofs, and warnings."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _COLUMNS = ("Controller", "Measure", "Goal", "Worst", "At", "Result")
 
 
 def goals_section(result: Result, analysis: DesignAnalysis | None) -> Section | None:
-    """Set what is reached and what is proved beside the goals, and list the warnings.
+    """Compare goals with the worst values reached and with the proofs, and list warnings.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The head of the report: what is claimed, in short facts."""
+"""The head of the report: claim, remarks and facts."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def claim_of(certification: Certification) -> str:
 
 
 def remarks_of(certification: Certification) -> tuple[str, ...]:
-    """Return what else is shown, beside the claim that decides."""
+    """Return the claims of the other statements."""
     return tuple(
         statement.claim(certification.system)
         for statement in certification.statements
@@ -94,7 +94,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
 
 
 def _aside(certification: Certification) -> list[tuple[str, str]]:
-    """Return what is refuted beside a verdict that is open."""
+    """Return what is refuted although the verdict is inconclusive."""
     where = certification.refuted_in
     return [] if where is None else [("Refuted", Derived(where, MEANT))]
 
@@ -154,7 +154,7 @@ def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tup
 
 
 def _limit(certification: Certification) -> list[tuple[str, str]]:
-    """Return the other side of the proved rate: what no proof can exceed."""
+    """Return the bound on the rate that no proof can exceed."""
     limit, evidence = certification.rate_limit, certification.evidence
     if limit is None or evidence is None or evidence.shows is not Shows.STABILITY:
         return []

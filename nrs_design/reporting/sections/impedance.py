@@ -330,7 +330,7 @@ def _worst_loops(item: ImpedanceAnalysis) -> Loops:
 
 
 def band_factor(item: ImpedanceAnalysis) -> float:
-    """Return by which factor the displayed impedance may be off: the goal, or what is usual."""
+    """Return the factor within which the displayed impedance must be: the goal, or the usual."""
     goals = (f.goal for f in item.achieved if f.measure is IMPEDANCE_ERROR and f.goal)
     return next(goals, IMPEDANCE_ERROR.doubtful or 2.0)
 

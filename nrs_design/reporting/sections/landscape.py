@@ -1,4 +1,4 @@
-"""What the choice of an admittance gives up, and how much delay it bears."""
+"""Trade-offs between the gains of an admittance, and its delay margin over stiffness."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Designed
     from nrs_design.spec import LoadedSpec
 
-# More maps than these fill a page with what is nearly alike.
+# More maps are nearly alike.
 _DRAWN = 4
 _GAINS = ("Mt", "Bt")
 _TEXT = (
@@ -200,7 +200,7 @@ def _draw_levels(axes: Axes, found: CostMap) -> list[Text]:
     finite = found.cost[np.isfinite(found.cost)]
     if not len(finite) or np.quantile(finite, _UP_TO) <= finite.min():
         return []
-    # Closer together near the least cost, where the choice is made; not up to peaks at the border.
+    # Denser near the minimum; levels end below the peaks at the stability border.
     span = float(np.quantile(finite, _UP_TO)) - finite.min()
     levels = finite.min() + span * np.linspace(0, 1, _LEVELS + 1)[1:] ** 2
     lines = axes.contour(found.Mt, found.Bt, found.cost, levels=levels, colors=BLUE, linewidths=0.9)

@@ -89,7 +89,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> tuple[Block, ...]:
 
 
 def _bounds(certification: Certification) -> list[str]:
-    """State the bounds on outputs, beside the claim that decides."""
+    """State the bounds on outputs."""
     return [
         item.claim(certification.system)
         for item in certification.statements
@@ -98,7 +98,7 @@ def _bounds(certification: Certification) -> list[str]:
 
 
 def _beside(result: Result) -> list[str]:
-    """State what is shown of a constant force and of saturation, beside the claim that decides."""
+    """State the claims about a constant force and about saturation."""
     system, said = result.certification.system, list[str]()
     for item in result.certification.statements:
         if item.shows in (Shows.CONVERGENCE, Shows.REGION):

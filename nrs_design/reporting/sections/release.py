@@ -43,8 +43,8 @@ _SAMPLED = (
 )
 _REMEMBERED = "Tissue with a memory is pressed in at once, before it relaxes."
 _FOLLOWED = (
-    "Whoever follows a position is told at once to be at the surface, and whoever controls the "
-    "force to push with none: the command jumps, as that of an operator does not."
+    "At the start, the commanded position jumps to the surface and the commanded force to zero; an "
+    "operator would not command such jumps."
 )
 _TURNS = "Force samples and admittances take turns with the motion loop as the spec says."
 _ANYWHERE = "Contact may be lost at any deflection; there is no torque then."
@@ -97,7 +97,7 @@ def release_section(result: Result) -> Section | None:
 
 
 def _said(result: Result, system: SwitchedSystem, outputs: Outputs) -> str:
-    """Say where the run begins, who plays, and what it leaves out."""
+    """Say where the run begins, what the adversary chooses, and what the run leaves out."""
     designed = result.designed
     assert designed is not None
     contacts = designed.plant.among(designed.design.contacts)
@@ -132,7 +132,7 @@ def _panels(
     Q: Array | None,
     rate: float,
 ) -> list[tuple[BoundedSignal, str]]:
-    """Return what is drawn, each with its limit as the table writes it."""
+    """Return the panels, each with its limit as text for the table."""
     losable = system.contact is not None
     force, velocity = outputs.shares(run, losable=losable)
 

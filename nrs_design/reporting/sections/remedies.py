@@ -1,4 +1,4 @@
-"""How far what is proved reaches, and what to do next where nothing is."""
+"""Margins of the proof, and next steps where there is none."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _DESIGN = (
 def remedies_section(
     result: Result, margins: ProofMargins | None, subsets: tuple[Subset, ...] | None = None
 ) -> Section | None:
-    """Say how far the proof reaches and what to try; None where there is neither to say.
+    """Report the margins of the proof and the next steps; None without either.
 
     Parameters
     ----------
@@ -58,6 +58,6 @@ def remedies_section(
 
 
 def _begun(line: Sentence) -> Sentence:
-    """Begin a line with a large letter, and end it."""
+    """Capitalize a line and add its full stop."""
     first, *rest = line.parts
     return Sentence(f"{first[0].upper()}{first[1:]}", *rest, ".")

@@ -87,7 +87,7 @@ def _ends(loaded: LoadedSpec, found: StabilityMap, row: int, verdict: Verdict) -
     factor = max(held) if verdict is Verdict.PROVED else min(held)
     outside = verdict is Verdict.REFUTED
     return [
-        # What is proved is shown no wider than it is, what is refuted no narrower.
+        # Proved ranges are rounded inward, refuted ones outward.
         linked(
             loaded,
             f"{(lower if outside else upper)(low)} to "
@@ -118,7 +118,7 @@ def _draw_stability_map(found: StabilityMap) -> Figure:
         axes.text(column, row, sign, ha="center", va="center", fontsize=9, color=INK)
     for verdict in dict.fromkeys(found.verdicts.values()):
         label = f"{_LOOKS[verdict][3]}: {_LOOKS[verdict][2]}"
-        # Outside of what is drawn: for the legend alone.
+        # Outside the axes: for the legend alone.
         axes.add_patch(_cell(verdict, (-9.0, -9.0), label))
     if 1 in found.factors and found.delay in found.delays:
         corner = (found.factors.index(1) - 0.5, found.delays.index(found.delay) - 0.5)

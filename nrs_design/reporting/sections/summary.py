@@ -72,7 +72,7 @@ def summary_of(result: Result) -> tuple[str, str]:
 
 
 def _grown(system: SwitchedSystem, evidence: AbstractEvidence) -> str:
-    """Say for which contact there is growth."""
+    """State whether the growth needs kept contact."""
     if system.contact is None and system.flights is None:
         return ""
     if evidence.covers_loss(system):
@@ -109,7 +109,7 @@ def _proved(result: Result, evidence: AbstractEvidence) -> str:
 
 
 def _saturated(result: Result) -> tuple[str, ...]:
-    """Say what is proved where signals saturate, which the rate before is not about."""
+    """State the proved decay under saturation; the rate above excludes saturation."""
     saturation = result.certification.system.saturation
     if saturation is None:
         return ()

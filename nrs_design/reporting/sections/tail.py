@@ -1,4 +1,4 @@
-"""The end of the report: what is taken for granted, what was tried, how to check again."""
+"""The end of the report: assumptions, rungs tried, how to check again, the spec."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 _LINES = 1500
 _STANDINGS = (
     "Tested: the spec names measured records that it was identified from, without doubts. Argued: "
-    "it follows from how the controller is made, if it is made so. Open: nobody has shown it here; "
-    "test it on the robot. The statements are those of the certificate, word for word."
+    "it follows from the construction of the controller. Open: neither tested nor argued; test it "
+    "on the robot. The statements are those of the certificate, word for word."
 )
 
 

@@ -1,4 +1,4 @@
-"""The worst runs that an adversary finds, between the limits of the spec and what is certified."""
+"""The worst runs found by an adversary, with limits and certified bounds."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _CAPTION = (
 
 
 def worst_case_section(result: Result) -> Section | None:
-    """Show what an adversary finds; None where the spec says nothing that disturbs the loop."""
+    """Show the worst runs found; None where the spec declares no disturbances."""
     designed = result.designed
     if designed is None or designed.spec.disturbances is None:
         return None

@@ -64,7 +64,7 @@ def export(
     from nrs_design.exporters.write import check_places, places, write_files
     from nrs_design.ownership import check_export, origin_of
     from nrs_design.pipeline import placed
-    from nrs_design.robot.exporters.robot_c import UNPROVED
+    from nrs_design.robot.exporters.c import UNPROVED
     from nrs_design.robot.exporters.robot_tree import RobotExport
     from nrs_design.robot.pipeline import run_robot
 
@@ -78,7 +78,7 @@ def export(
     origin = origin_of(spec, next(iter(files.values())))
     written: list[str] = []
     if unproved or not chosen.executable:
-        module = import_module(f"nrs_design.robot.exporters.{chosen.module}")
+        module = import_module(f"nrs_design.robot.exporters.{format_}")
         with progress(f"exporting {loaded.spec.name}"), placed(loaded):
             contents = module.render(RobotExport(loaded, robot, origin))
         write_files(chosen, files, contents)

@@ -329,6 +329,8 @@ def test_resets_and_unequal_modes_must_be_asked_for():
 
 
 def test_evidence_about_every_mode_holds_for_its_equals_too():
+    system, evidence = genuine("no-common-quadratic")
+    assert evidence.spread(system, twice(system)) is evidence
     system, evidence = genuine("common-quadratic")
     assert evidence.spread(system, twice(system)) == evidence
     assert evidence.find_fault(twice(system)) is None

@@ -3,8 +3,8 @@
 import numpy as np
 
 from nrs_design.controllers.replica import step
-from nrs_design.exporters.vectors import make_vectors
-from nrs_design.robot.exporters.robot_c import names_of
+from nrs_design.exporters.formats.vectors import make_vectors
+from nrs_design.robot.exporters.c import names_of
 
 _MAIN = """\
 #include "{spec}.h"

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.robot.exporters.robot_c import (
+from nrs_design.robot.exporters.c import (
     PURPOSES,
     UNPROVED,
     header_text,

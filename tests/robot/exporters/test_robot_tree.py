@@ -18,7 +18,7 @@ from tests.robot.exporters.robots import POSES
 @pytest.mark.parametrize("name", ROBOT_FORMATS)
 def test_every_format_begins_as_the_table_says(name, robot, loaded):
     format_ = ROBOT_FORMATS[name]
-    render = import_module(f"nrs_design.robot.exporters.{format_.module}").render
+    render = import_module(f"nrs_design.robot.exporters.{name}").render
     files = render(RobotExport(loaded, robot, "a.nrs.yaml"))
     assert set(files) == set(format_.files)
     for ending, content in files.items():

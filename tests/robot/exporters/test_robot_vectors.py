@@ -6,7 +6,7 @@ import numpy as np
 
 from nrs_design.controllers.replica import step
 from nrs_design.robot.exporters.robot_tree import RobotExport
-from nrs_design.robot.exporters.robot_vectors import text
+from nrs_design.robot.exporters.vectors import text
 from nrs_design.robot.models import build_robot
 
 

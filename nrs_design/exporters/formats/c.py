@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.step_logic import UNITS
+from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.c_step import FLAGS, declarations, definitions, guards
 from nrs_design.exporters.export import Export
@@ -18,6 +19,13 @@ from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.start import start_lines
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
+
+FORMAT = Format(
+    "C99 for a processor: init and step in single precision, no heap, no libm",
+    SAMPLED,
+    {".h": C_HEADER, ".c": C_SOURCE},
+    executable=True,
+)
 
 # What the mode logic sees, in words.
 _SEEN = {"command": "velocity command", "torque": "torque"}

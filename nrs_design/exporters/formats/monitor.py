@@ -9,12 +9,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
+from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
 from nrs_design.exporters.program import Program, program_of
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
+
+FORMAT = Format(
+    "C99 that tells when a running loop first leaves its proof; takes the header of c",
+    SAMPLED,
+    {"_monitor.h": C_MONITOR_HEADER, "_monitor.c": C_MONITOR},
+    executable=True,
+)
 
 KINDS = {
     "NONE": "Nothing was left",

@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+from nrs_design.exporters import DESIGN, Format
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import dump_record
+from nrs_design.output import EXPORT
+
+FORMAT = Format(
+    "gains with what is proved of them; the record that every format holds",
+    DESIGN,
+    {".export.json": EXPORT},
+)
 
 
 def render(export: Export) -> dict[str, bytes]:

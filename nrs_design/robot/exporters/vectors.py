@@ -8,9 +8,9 @@ from typing import Any
 
 from nrs_design import __version__
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.vectors import law_document, make_vectors, vector_rows
+from nrs_design.exporters.formats.vectors import law_document, make_vectors, vector_rows
 from nrs_design.ownership import MARK
-from nrs_design.robot.exporters.robot_c import UNPROVED, laws_of
+from nrs_design.robot.exporters.c import UNPROVED, laws_of
 from nrs_design.robot.exporters.robot_tree import RobotExport
 
 SCHEMA = "nrs-design/robot-vectors/1"

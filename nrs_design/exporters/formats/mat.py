@@ -28,7 +28,13 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.design.linear_parts import LinearPart
+from nrs_design.exporters import DESIGN, Format
 
+FORMAT = Format(
+    "plant, controllers, loops, modes and certificate for MATLAB, GNU Octave and SciPy",
+    DESIGN,
+    {".mat": MAT},
+)
 # The text at the beginning of a MAT-file; SciPy writes the time and the system into it.
 _TEXT_BYTES = 116
 # Names that may be fields of a structure.

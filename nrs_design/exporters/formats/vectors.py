@@ -17,13 +17,27 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.replica import Single, step
+from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import CNames, harmless
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.logic_cases import logic_document
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.self_test import program_macro, self_test
 from nrs_design.exporters.template import fill_template
-from nrs_design.output import VECTOR_TABLE
+from nrs_design.output import C_TEST, C_TEST_HEADER, VECTOR_TABLE, VECTOR_TEST, VECTORS
+
+FORMAT = Format(
+    "inputs and exact outputs that any implementation of the law must give, with tests",
+    SAMPLED,
+    {
+        ".vectors.json": VECTORS,
+        ".vectors.csv": VECTOR_TABLE,
+        "_test.h": C_TEST_HEADER,
+        "_test.c": C_TEST,
+        "_test.py": VECTOR_TEST,
+    },
+    executable=True,
+)
 
 COUNT, SEED = 1000, 2026
 SCHEMA = "nrs-design/vectors/1"

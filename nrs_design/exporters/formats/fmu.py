@@ -13,15 +13,23 @@ from fractions import Fraction
 from uuid import NAMESPACE_OID, uuid5
 
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.exporters.c import header_text, source_text
+from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import block_comment
 from nrs_design.exporters.compiled import compiler, shared_library
 from nrs_design.exporters.export import Export
+from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.program import Program, program_of
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.exporters.start import start_lines
 from nrs_design.exporters.template import fill_template
-from nrs_design.output import C_SOURCE
+from nrs_design.output import C_SOURCE, FMU
+
+FORMAT = Format(
+    "the law for co-simulation by FMI 2.0, with sources, and compiled where cc is",
+    SAMPLED,
+    {".fmu": FMU},
+    executable=True,
+)
 
 # The first entry is always the same, and so are the first bytes of the file.
 FIRST, MARK = "documentation/nrs-design.txt", b"nrs-design fmu\n"

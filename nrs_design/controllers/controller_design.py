@@ -8,6 +8,12 @@ from dataclasses import dataclass, field
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
 
+# What lets the modes of all controllers share one state.
+SHARED_STATES = (
+    "give all impedance controllers a virtual inertia Mt > 0, or none of them; mix no parallel "
+    "controllers with others"
+)
+
 
 @dataclass(frozen=True, slots=True)
 class ImpedanceOptimum:
@@ -51,6 +57,36 @@ class ControllerDesign:
     def laws(self) -> dict[str, AbstractLaw]:
         """Every law by the name of its controller, the motion controller first."""
         return {self.motion.name: self.motion} | {c.name: c.law for c in self.controllers}
+
+    def leading_laws(self, *, mixed: bool) -> list[CompliantLaw]:
+        """Return the laws whose states the modes share.
+
+        In a mixture these are the laws that command a velocity, or else those whose integral
+        bleeds; the others have no states of their own.
+        """
+        laws = [controller.law for controller in self.controllers]
+        if not mixed:
+            return laws
+        moving = [law for law in laws if law.commands == "velocity"]
+        return moving or [law for law in laws if law.bleeds]
+
+    def find_odd_states(self, *, mixed: bool) -> str | None:
+        """Say which states of laws no common state has, or None.
+
+        Parameters
+        ----------
+        mixed : bool
+            Whether the states of some controllers are idle while others are active.
+        """
+        laws = [controller.law for controller in self.controllers]
+        kinds = {(law.commands, law.states) for law in self.leading_laws(mixed=mixed)}
+        if mixed:
+            kinds |= {(law.commands, law.states) for law in laws if law.states and not law.bleeds}
+        if len(kinds) <= 1:
+            return None
+        kept = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
+        found = "; ".join(dict.fromkeys(kept))
+        return f"the controllers keep different states of their own ({found})"
 
     @property
     def units(self) -> dict[str, Mapping[str, str]]:

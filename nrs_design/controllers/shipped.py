@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.controller_design import SHARED_STATES, Controller, ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
@@ -80,20 +80,10 @@ def _step_law(
     if spec.offset != "none":
         first = next(c.name for c in design.controllers if c.law.commands == "position")
         raise _without_program("force control takes an offset", first)
-    if not share_states(design):
-        raise DesignError(
-            "some impedance controllers have a virtual inertia and some have none",
-            remedy="give all of them an inertia Mt > 0, or none",
-            at=("controllers",),
-        )
+    if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
+        raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
     idle = spec.idle_states
     return build_law(frame, laws, None if idle is None else _left(idle, period))
-
-
-def share_states(design: ControllerDesign) -> bool:
-    """Tell whether all controllers that command a velocity have the same states of their own."""
-    laws = (c.law for c in design.controllers if c.law.commands == "velocity")
-    return len({law.states for law in laws}) <= 1
 
 
 def _left(idle: IdleStatesSpec, period: Fraction) -> Fraction:

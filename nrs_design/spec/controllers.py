@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -384,3 +384,8 @@ ControllerSpec = Annotated[
     | PositionControllerSpec,
     Discriminator("type"),
 ]
+# The `type` of every controller.
+CONTROLLER_TYPES: tuple[str, ...] = tuple(
+    get_args(model.model_fields["type"].annotation)[0]
+    for model in get_args(get_args(ControllerSpec)[0])
+)

@@ -147,8 +147,10 @@ def _placed_texts(frame: Frame, design: ControllerDesign, *, reset: bool) -> Ite
     yield say("rest-position.sampled")
     if not all(c.contacts for c in design.controllers):
         yield say("contacts.in-position", "the environments of the spec")
+    for text in dict.fromkeys(c.law.sampled_text for c in design.controllers):
+        if text:
+            yield say("idle.sampled-law", text=text)
     if any(c.law.bleeds for c in design.controllers):
-        yield say("idle.sampled-integral")
         others = dict.fromkeys(c.law.name for c in design.controllers if not c.law.bleeds)
         if others and frame.idle is not None:
             decay = exact_decimal(frame.idle)

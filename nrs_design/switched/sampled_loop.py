@@ -8,10 +8,9 @@ from fractions import Fraction
 from functools import partial
 from itertools import chain, product
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.controller_design import SHARED_STATES, Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
-from nrs_design.controllers.shipped import share_states
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.actuator import ActuatorRanges
@@ -232,12 +231,9 @@ def _frame(
     laws: Sequence[DiscreteLaw],
     ranges: ActuatorRanges,
 ) -> Frame:
-    if not share_states(design):
+    if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
         raise AssemblyError(
-            "some impedance controllers have a virtual inertia and some have none, so they share "
-            "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them",
-            at=("controllers",),
+            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
     tau, low_pass, motion = ranges.time_constant, design.sensor.filter, design.motion
     outer = sampling.outer

@@ -16,7 +16,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
 
-from nrs_design.controllers.controller_design import Controller, ControllerDesign
+from nrs_design.controllers.controller_design import (
+    SHARED_STATES,
+    Controller,
+    ControllerDesign,
+)
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.controllers.sensor import LowPass
@@ -214,12 +218,7 @@ def shared_state(
         If the modes do not share one state, or the coordinates do not apply.
     """
     laws = [controller.law for controller in design.controllers]
-    # In a mixture the states of controllers that command a velocity, and of those whose integral
-    # bleeds; the others have none of their own.
-    leading = [law for law in laws if law.commands == "velocity"] or [
-        law for law in laws if law.bleeds
-    ]
-    shared = leading if idle is not None else laws
+    leading = design.leading_laws(mixed=idle is not None)
     state = SharedState(
         design,
         {**{c.name: GainBox.point(c.law) for c in design.controllers}, **boxes},
@@ -228,18 +227,18 @@ def shared_state(
         realize(loop),
         loop.given,
         Joint.of(plant, design.motion),
-        shared[0],
+        leading[0],
         idle,
         offset,
         next((law.states for law in laws if law.bleeds), ()),
     )
-    fault = next(_faults(state, shared), None)
+    fault = next(_faults(state), None)
     if fault is not None:
         raise fault
     return state
 
 
-def _faults(state: SharedState, leading: list[CompliantLaw]) -> Iterator[AssemblyError]:
+def _faults(state: SharedState) -> Iterator[AssemblyError]:
     """Yield what is not modelled in one state."""
     force, mixed = state.coordinates == "force", state.idle is not None
     for environment in state.touched:
@@ -272,17 +271,9 @@ def _faults(state: SharedState, leading: list[CompliantLaw]) -> Iterator[Assembl
             at=("coordinates",),
         )
     yield from _faults_of_springs(state)
-    laws = [controller.law for controller in state.design.controllers]
-    others = [law for law in laws if mixed and law.states and not law.bleeds]
-    if len({(law.commands, law.states) for law in (*leading, *others)}) > 1:
-        kept = [f"{law.name} with {', '.join(law.states) or 'no state'}" for law in laws]
-        found = "; ".join(dict.fromkeys(kept))
+    if (odd := state.design.find_odd_states(mixed=mixed)) is not None:
         yield AssemblyError(
-            f"the controllers keep different states of their own ({found}), so their modes share "
-            "no state",
-            remedy="give all impedance controllers a virtual inertia Mt > 0, or none of them; mix "
-            "no parallel controllers with others",
-            at=("controllers",),
+            f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
     if state.joint is not None and (mixed or state.law.commands != "velocity"):
         yield AssemblyError(

@@ -179,5 +179,5 @@ def test_inertia_of_some_controllers_is_refused(tmp_path):
     head, middle, last = text.partition("  withdrawal:")
     old, new = "Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: {min: 0 kg*m^2, max: 0 kg*m^2}"
     found = designed(tmp_path, head + middle + last.replace(old, new))
-    with pytest.raises(DesignError, match="some have none"):
+    with pytest.raises(DesignError, match="different states of their own"):
         law_of(found)

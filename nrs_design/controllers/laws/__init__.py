@@ -1,26 +1,35 @@
-"""The control laws that run on the robot, one axis each, with the gains that ship: a file each."""
+"""The control laws that run on the robot, one axis each, with the gains that ship: a file each.
+
+The law of a controller of a spec is the `LAW` of the file that its type names.
+"""
 
 from collections.abc import Mapping
+from importlib import import_module
 from types import MappingProxyType
-from typing import Any
 
 from nrs_design.controllers.laws.force import ProportionalForce
 from nrs_design.controllers.laws.impedance import Admittance
-from nrs_design.controllers.laws.integral import IntegralForce
-from nrs_design.controllers.laws.law import AbstractCompliantLaw, AbstractLaw, DiscreteLaw
+from nrs_design.controllers.laws.law import (
+    AbstractCompliantLaw,
+    AbstractLaw,
+    CompliantLaw,
+    DiscreteLaw,
+)
 from nrs_design.controllers.laws.motion import ProportionalDerivative
 from nrs_design.controllers.laws.parallel import ParallelForce
+from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.controllers.laws.position import PositionControl
+from nrs_design.spec.controllers import CONTROLLER_TYPES
 
-# A law that fits its spec: who takes both from one controller need not ask which.
-CompliantLaw = AbstractCompliantLaw[Any]
+
+def _law_of(controller: str) -> type[CompliantLaw]:
+    law: type[CompliantLaw] = import_module(f"{__name__}.{controller.replace('-', '_')}").LAW
+    return law
+
 
 # Laws that the robot switches between, by the type of a controller in a spec.
 LAWS: Mapping[str, type[CompliantLaw]] = MappingProxyType(
-    {
-        law.name: law
-        for law in (Admittance, ProportionalForce, IntegralForce, ParallelForce, PositionControl)
-    }
+    {controller: _law_of(controller) for controller in CONTROLLER_TYPES}
 )
 
 __all__ = [

@@ -45,3 +45,6 @@ class ProportionalForce(AbstractCompliantLaw[ForceControllerSpec]):
             "Contact is not lost while force is controlled: the environment would pull as it "
             "pushes."
         )
+
+
+LAW = ProportionalForce

@@ -210,6 +210,9 @@ class Admittance(AbstractCompliantLaw[ImpedanceControllerSpec]):
         return KEPT_VELOCITY if self.Mt else STATIC_LAW
 
 
+LAW = Admittance
+
+
 def lasting_gain(numbers: Mapping[str, Fraction]) -> Fraction:
     """Return velocity over a lasting force without a spring, rad/(s N m): 1/Bt, but for rounding.
 

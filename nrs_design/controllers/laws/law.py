@@ -59,6 +59,8 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
     holds_hand: ClassVar[bool] = False
     # Gains that a spec may fix, and the fields of the controller that do.
     fixed: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    # What a processor computes of it, beyond its part in the words about all laws.
+    sampled_text: ClassVar[str] = ""
     # Whether its one state stays in the position command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
 
@@ -194,11 +196,15 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         return "While a gain changes, the controller keeps its states."
 
 
+# A law that fits its spec: who takes both from one controller need not ask which.
+CompliantLaw = AbstractCompliantLaw[Any]
+
+
 @dataclass(frozen=True, slots=True)
 class DiscreteLaw:
     """A law as a processor computes it once a period: its operations, with their numbers."""
 
-    law: type[AbstractCompliantLaw[Any]]
+    law: type[CompliantLaw]
     # Single-precision numbers by the names of `StepGain`, or what they are at a corner of a range;
     # those that are missing are zero.
     numbers: Mapping[str, Fraction]

@@ -49,3 +49,6 @@ class ParallelForce(AbstractCompliantLaw[ParallelControllerSpec]):
             "Contact is not lost under parallel control: without a force its integral is driven by "
             "the wanted force alone, and the axis moves on until it meets something."
         )
+
+
+LAW = ParallelForce

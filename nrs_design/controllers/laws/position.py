@@ -32,3 +32,6 @@ class PositionControl(AbstractCompliantLaw[PositionControllerSpec]):
     @classmethod
     def contact_text(cls, *, alone: bool) -> None:
         """Take nothing for granted: free motion is this very mode."""
+
+
+LAW = PositionControl

@@ -12,7 +12,8 @@ from types import MappingProxyType
 from typing import Any
 
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
-from nrs_design.controllers.laws import CompliantLaw, ProportionalDerivative
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws import LAWS, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor, build_sensor
 from nrs_design.design.doubts import doubt_values
 from nrs_design.design.goals import Achieved, ContactCorner, corners_of
@@ -22,7 +23,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
-from nrs_design.spec import ControllerSpec, Doubt, InteractionDesignSpec, Quantity
+from nrs_design.spec import ControllerSpec, Doubt, GainSpec, InteractionDesignSpec, Quantity
 from nrs_design.spec.controllers import contact_names
 from nrs_design.switched.cut_loop import AbstractAxis, Place, axis_of
 
@@ -114,6 +115,33 @@ class LawDesign:
     # Gives the contacts that are too stiff for the gains, and what would hold, for the same; None
     # where that is not known.
     too_stiff: Callable[[Task, Any, Controller], Iterator[Doubt]] | None = None
+
+
+def choose_given(task: Task, given: ControllerSpec) -> Choice:
+    """Return the law with the gains that the spec fixes.
+
+    Raises
+    ------
+    DesignError
+        If the spec leaves one open: nothing chooses it.
+    """
+    law, gains = LAWS[given.type], dict[str, Fraction]()
+    for name in law.gains_in(given):
+        value = getattr(given, law.fixed.get(name, name))
+        if isinstance(value, GainSpec):
+            value = value.nominal if value.fixed else None
+        if value is None:
+            raise DesignError(
+                f"nothing chooses {name} of a {law.name} controller",
+                remedy="give its value",
+                at=(law.fixed.get(name, name),),
+            )
+        gains[name] = to_float32(value.exact)
+    return law.of(gains), None
+
+
+# Of a law whose gains are given, and of which nothing is measured.
+GIVEN = LawDesign(choose_given)
 
 
 @contextmanager

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller
-from nrs_design.controllers.float32 import to_float32
-from nrs_design.controllers.laws.parallel import ParallelForce
-from nrs_design.design.laws.law import AbstractControllerAnalysis, Choice, LawDesign, Task
+from nrs_design.design.laws.law import AbstractControllerAnalysis, LawDesign, Task, choose_given
 from nrs_design.design.parallel import coefficients, unstable_stiffness
 from nrs_design.proof.bounds import lower, lower_float, upper, upper_float
 from nrs_design.spec import ParallelControllerSpec
@@ -57,12 +55,6 @@ class ParallelAnalysis(AbstractControllerAnalysis):
         return [lower_float(low), None if high is None else upper_float(high)]
 
 
-def choose(task: Task, given: ParallelControllerSpec) -> Choice:
-    """Return the gains that the spec gives, as they ship."""
-    gains = given.proportional_gain.exact, given.integral_gain.exact
-    return ParallelForce(*map(to_float32, gains)), None
-
-
 def analyze(task: Task, given: ParallelControllerSpec, controller: Controller) -> ParallelAnalysis:
     """Decide for which stiffness the gains are stable.
 
@@ -89,4 +81,4 @@ def analyze(task: Task, given: ParallelControllerSpec, controller: Controller) -
     )
 
 
-DESIGN = LawDesign(choose, analyze)
+DESIGN = LawDesign(choose_given, analyze)

@@ -10,7 +10,7 @@ import numpy as np
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
-from nrs_design.controllers.laws.integral import IntegralForce
+from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.design.force_limit import Approach, peak_force
 from nrs_design.design.force_loop import design_force_gain, force_loop_response
 from nrs_design.design.goals import ForceRequirement

@@ -57,6 +57,10 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
         {"Kp": "proportional_gain", "Ki": "integral_gain"}
     )
     holds_hand: ClassVar[bool] = True
+    sampled_text: ClassVar[str] = (
+        "A pi-force controller adds the integral w of its force error besides, and a sample adds "
+        "Ki_T times the difference of the wanted force and its sample to w."
+    )
     bleeds: ClassVar[bool] = IntegralControllerSpec.bleeds
 
     Kp: Fraction  # In rad/(N m)
@@ -100,3 +104,6 @@ class IntegralForce(AbstractCompliantLaw[IntegralControllerSpec]):
             "Contact is not lost under PI force control: without a force the integral is driven by "
             "the wanted force alone, and the axis moves on until it meets something."
         )
+
+
+LAW = IntegralForce

@@ -109,7 +109,7 @@ def certify_switching(
             limits=limits,
             progress=step,
         )
-    # What is shown is kept, and told, before the margins: those take minutes.
+    # Write and print the proof before looking for margins, which takes minutes.
     written = _write(result, path)
     if wants_text():
         _print(result, verbose=verbose)
@@ -210,11 +210,11 @@ def _print(result: Result, *, verbose: bool) -> None:
         say(f"  {_open_words(refuted)}")
     everything = verbose or certification.evidence is None
     for attempt in certification.attempts:
-        # What was looked for and is missing must not look like something that nobody wanted.
+        # A bound that was wanted and not found must be visible.
         sought = attempt.step.startswith(("bound on ", "constant force", "decay under"))
         missing = sought and attempt.outcome != "found"
         if everything or missing:
-            # What was not looked for took no time.
+            # Steps that were skipped took no time.
             took = f" ({attempt.work:.2g} of work, {attempt.seconds:.2g} s)"
             took = took if attempt.seconds else ""
             say(f"  {attempt.step}: {attempt.outcome}{took}")

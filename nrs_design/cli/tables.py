@@ -12,7 +12,7 @@ Cells = Sequence[str]
 
 # In a pipe no table is folded.
 ENDLESS = 10_000
-# Longer cells are sentences, which may go over several lines; shorter ones are never broken.
+# Longer cells are sentences and may be wrapped; shorter ones are never broken.
 SENTENCE = 40
 # Between two columns; at both edges together there is one less.
 _GAP = 3
@@ -43,7 +43,7 @@ def print_table(title: str, columns: Cells, rows: Sequence[Cells]) -> None:
 
 
 def _turned(columns: Cells, rows: Sequence[Cells], width: int) -> Iterator[list[Cells]]:
-    """Yield tables whose first column are the headings, with as many of the rows as fit."""
+    """Yield transposed tables: the headings, then as many rows as fit beside each other."""
     headings = [" ".join(column.split("\n")) for column in columns]
     beside: list[Cells] = []
     for row in rows:

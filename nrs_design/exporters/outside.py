@@ -1,4 +1,4 @@
-"""What no proof of a design covers, in words: it stands in every file that leaves."""
+"""What no proof of a design covers; every exported file says it."""
 
 from __future__ import annotations
 

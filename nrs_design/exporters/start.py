@@ -1,4 +1,4 @@
-"""Where a program must be started so that its first samples are those of the proof."""
+"""Start-up requirements: with them, the first samples of a program are those of the proof."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PLACED = (
 
 
 def start_lines(law: StepLaw) -> Iterator[str]:
-    """Yield what whoever starts a program must know beyond that it begins at rest.
+    """Yield the start-up requirements of a program other than starting at rest.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""What became weaker than in a base, such as the branch that a pull request wants to change.
+"""What is weaker than in a base folder, such as a checkout of the branch to merge into.
 
-A gate shows that what specs say is proved. Who asks for less passes it more easily, so this is
-looked at by itself. The base is another folder with the same paths; it is only read.
+The gate proves what specs ask for, so a spec that asks for less passes more easily. The base has
+the same paths; it is only read.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.spec.document import to_data
 from nrs_design.spec.weaker import Change, find_changes
 
-_GONE = "this spec of the base is gone: what it asked for is not shown any more"
+_GONE = "this spec of the base is gone: what it asked for is no longer shown"
 # Verdicts, from the one that shows most.
 _VERDICTS = ("proved", "inconclusive", "refuted")
 
 
 def base_paths(paths: Sequence[Path], base: Path) -> tuple[Path, ...]:
-    """Return where the paths of this folder are in the base; those that are not there are left out.
+    """Return the places of these paths in the base, as far as they exist there.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def _locked(base: Path, lock: Path) -> dict[str, LockedSpec]:
 def _moved(
     path: Path, there: Sequence[Path], base: Path, outcome: GateOutcome
 ) -> SpecOutcome | None:
-    """Return the spec here that has the name of one of the base and is not at a place of it."""
+    """Return the spec here that has the name of one of the base, but a new path."""
     known = {os.path.normpath(os.path.relpath(other, base)) for other in there}
     name = _name_of(path)
     for spec in outcome.specs:
@@ -181,7 +181,7 @@ def _of_spec(path: Path, now: SpecOutcome) -> Iterator[Change]:
 
 
 def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
-    """Yield the files of commands that are others: a limit may be easy to keep in another run."""
+    """Yield the recorded commands that have changed: limits may be easier to keep in their runs."""
     was, now = hash_recorded(before), hash_recorded(after)
     for name in was.keys() & now.keys():
         if was[name] != now[name]:
@@ -189,7 +189,7 @@ def _of_recorded(before: LoadedSpec, after: LoadedSpec) -> Iterator[Change]:
 
 
 def _of_lock(entry: LockedSpec | None, now: SpecOutcome) -> Iterator[Change]:
-    """Yield what is less than the base has locked: verdict and rate; and other versions."""
+    """Yield a lower verdict or rate than the base has locked, and another version."""
     if entry is None:
         return
     if now.verdict is None or _VERDICTS.index(now.verdict) > _VERDICTS.index(entry.verdict):

@@ -1,4 +1,4 @@
-"""Where in a spec file the things stand that obligations are about."""
+"""Lines and columns of a spec to which obligations refer."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from nrs_design.spec.document import Mapping, Node, Position, Sequence
 
 
 class Places:
-    """Lines and columns of one spec.
+    """Lines and columns of a spec.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Places:
         self._indices = {mode.name: index for index, mode in enumerate(modes)}
 
     def mode(self, name: str) -> Position:
-        """Where a given mode stands, or the controller that an assembled mode belongs to."""
+        """Return the place of a given mode, or of the controller of an assembled mode."""
         # Labels have no slash: what follows it names the contact or the corner of a box.
         label = name.partition("/")[0]
         if label in self._indices:
@@ -30,7 +30,7 @@ class Places:
         return self.at("controllers", label)
 
     def goal(self, controller: str, key: str) -> Position:
-        """Where a goal of a controller stands: its own, or that of the whole spec."""
+        """Return the place of a goal of a controller: its own, or that of the whole spec."""
         own = ("controllers", controller, "goals", key)
         return self.at(*own) if self._has(*own) else self.at("goals", key)
 
@@ -41,7 +41,7 @@ class Places:
         return node is not None
 
     def at(self, *keys: str | int) -> Position:
-        """Where a key or an item stands; what holds it, if it is not written out."""
+        """Return the place of a key or item, or of what would hold it if it is not there."""
         node: Node = self._root
         place = node.position
         for key in keys:

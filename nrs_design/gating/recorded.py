@@ -1,4 +1,4 @@
-"""Files of commands that scenarios with limits play: the hash of a spec holds their names alone."""
+"""Hashes of recorded commands of scenarios with limits: the hash of a spec covers only names."""
 
 from __future__ import annotations
 

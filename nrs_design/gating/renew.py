@@ -1,4 +1,4 @@
-"""Renewing ``nrs.lock`` from what the gate found, and keeping what it holds of other specs."""
+"""Update ``nrs.lock`` with what the gate found; entries of other specs are kept."""
 
 from __future__ import annotations
 
@@ -114,12 +114,12 @@ def _check_kept(spec: SpecOutcome) -> None:
 
 
 def _is_there(spec: SpecOutcome) -> bool:
-    """Tell whether the outcome is about a file: one that is gone keeps its entry."""
+    """Tell whether the spec exists; a spec that is gone keeps its entry."""
     return os.path.isfile(spec.path)
 
 
 def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
-    """Tell whether nothing was decided about a spec that is what was locked."""
+    """Tell whether a spec is unchanged since it was locked, and has no verdict now."""
     return spec.verdict is None and spec.sha256 == entry.sha256
 
 

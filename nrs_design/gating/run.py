@@ -84,14 +84,14 @@ class Files:
 
 @dataclass(frozen=True, slots=True)
 class Robots:
-    """Whose bounds this run has computed again: once for all specs that name a robot."""
+    """Robots whose bounds this run has recomputed, once for all specs that name them."""
 
     # The file of the bounds and what is wrong with them, or the error that kept them undecided, by
     # the real path of the robot.
     checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
 
     def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:
-        """Return NRS111 of bounds that are new: nothing is evidence of them but to compute them.
+        """Return NRS111 of bounds that are not locked: recompute them.
 
         Parameters
         ----------
@@ -199,7 +199,7 @@ def _examine(
     if isinstance(loaded.spec, RobotSpec):
         return Examiner.of(loaded).nothing_to_certify()
     files.check_owner(loaded.path, loaded.spec.name)
-    # What cannot be written is said before minutes of search.
+    # Refuse what cannot be written before minutes of search.
     check_place(files.certificate(loaded.spec.name), CERTIFICATE)
     if files.html:
         check_place(files.report(loaded.spec.name), PAGE)
@@ -255,7 +255,7 @@ def _bounds(
 
 
 def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:
-    """Yield how the scenarios end that have limits; no others are simulated."""
+    """Simulate the scenarios that have limits, and yield how they end."""
     if result.designed is None:
         return
     limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]

@@ -1,4 +1,4 @@
-"""What a certificate says beside a run, and whether it is about that run."""
+"""Certified bounds and rates beside a simulated run, and why they may not apply to it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class CertifiedRate:
 def hold_bounds(
     designed: Designed, certificate: Certificate, simulated: Simulated
 ) -> tuple[CertifiedBound, ...]:
-    """Hold what is certified against a run.
+    """Return the certified bounds with the reasons why they do not apply to a run.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def hold_bounds(
 def hold_rate(
     designed: Designed, certificate: Certificate, simulated: Simulated
 ) -> CertifiedRate | None:
-    """Hold the certified rate of decay, if there is one, against the end of a run.
+    """Return the certified rate, if any, with the reasons why it does not apply to a run.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ def placed(loaded: LoadedSpec) -> Iterator[None]:
 
 
 def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
-    """Put what is asked about sizes before advice on gains, which would follow from a slip."""
+    """Put doubts about sizes before advice on gains: a wrong unit is the likelier cause."""
     from nrs_design.spec.plausible import doubt_sizes
 
     for at, text in doubt_sizes(loaded.spec):
@@ -58,7 +58,7 @@ def _ask_first(error: DesignError, loaded: LoadedSpec) -> None:
 
 
 def wrong_kind(loaded: LoadedSpec, message: str, remedy: str) -> DesignError:
-    """Return the error that a command raises about a kind of spec that it is not for.
+    """Return the error for a spec of a kind that a command does not take.
 
     Parameters
     ----------

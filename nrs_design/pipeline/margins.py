@@ -176,7 +176,7 @@ def _sampling_margins(
 
 
 def _command_margin(result: Result) -> CommandMargin | None:
-    """Hold the bound on the force against an adversary's run."""
+    """Compare the certified bound on the force with the worst run of an adversary."""
     from nrs_design.certificates.bounds import bound_on
     from nrs_design.search.loop_margin import command_margin
     from nrs_design.simulation.worst_case import worst_against
@@ -198,7 +198,7 @@ def _run_dwell(result: Result, limits: Limits, progress: Progress) -> DwellMargi
 
 
 def _refuse_dwell(result: Result) -> None:
-    """Stop where a dwell time would say nothing, by the rule that a spec with one must keep."""
+    """Refuse specs to which no dwell time applies, by the rule for a spec that declares one."""
     loaded, system = result.loaded, result.certification.system
     if system.time is not Time.CONTINUOUS:
         raise DesignError(

@@ -1,4 +1,4 @@
-"""From a result to what is watched when the axis is let go."""
+"""Outputs of the run in which the pressed axis is released."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _REFERENCE = "reference [rad]"
 
 
 def physical_outputs(result: Result) -> Outputs | str | None:
-    """Return what a run is watched by, in units, with the limits of the spec.
+    """Return the physical outputs of that run, with the limits of the spec.
 
     Parameters
     ----------

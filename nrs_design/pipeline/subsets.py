@@ -1,4 +1,4 @@
-"""What is proved of a spec where not all of it is."""
+"""What is proved when parts of a spec are left out, where all of it is not proved."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OUTER = "the outer_period"
 
 @dataclass(frozen=True, slots=True)
 class Subset:
-    """What is proved of a spec where not all of it is."""
+    """What is proved when parts of a spec are left out, where all of it is not proved."""
 
     left_out: tuple[str, ...]  # Parts of the spec that the proof is not about
     claim: str  # What is proved without them; empty where nothing is that was looked for
@@ -26,11 +26,11 @@ class Subset:
 
 
 def are_wanted(result: Result) -> bool:
-    """Tell whether a list of what is proved in part belongs to every answer.
+    """Tell whether the subsets that are proved are looked for without being asked for.
 
-    That axes act on each other is asked for beside samples or disturbances so that it is proved
-    together; where it is not, the answer is what can be. Disturbances beside two periods are never
-    proved together: the answer is the decay of both, and the bounds of a common period.
+    They are for coupled axes beside sampling or disturbances, where all together is not proved; and
+    for disturbances beside two periods, which no proof covers together: the decay is then proved
+    without disturbances, and bounds for a common period.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def are_wanted(result: Result) -> bool:
 
 
 def has_unbounded_turns(result: Result) -> bool:
-    """Tell whether a spec has disturbances under which nothing is bounded, for its two periods.
+    """Tell whether a spec has disturbances and two periods, for which no bound is proved.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def has_unbounded_turns(result: Result) -> bool:
 def find_subsets(
     result: Result, limits: Limits | None = None, progress: Progress = silent
 ) -> tuple[Subset, ...] | None:
-    """Return the list where it belongs to the answer; None elsewhere.
+    """Return the subsets where `are_wanted`; None elsewhere.
 
     Parameters
     ----------

@@ -17,14 +17,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.proof.enclosure import eigenvalues, exponential, overlap, precision
 from nrs_design.proof.evidence.abstract import AbstractEvidence
-from nrs_design.proof.evidence.flow import shifted
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.taylor import exponential_nearly
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular
@@ -97,6 +94,8 @@ def _steps(system: SwitchedSystem, evidence: GrowingSequence) -> Iterator[Expone
 
 
 def _stays(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[Exponent]:
+    from nrs_design.proof.evidence.flow import shifted
+
     modes = {mode.name: mode.A for mode in system.modes}
     for name, stay in system.stays().items():
         for time in (stay.shortest, stay.longest if name in evidence.leaving else None):
@@ -112,6 +111,9 @@ _ENCLOSED: Mapping[str, Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
 
 def _is_met(A: RationalMatrix, time: Fraction) -> bool:
     """Tell whether flint's enclosure of ``exp(A t)`` and that of a Taylor series overlap."""
+    from nrs_design.proof.enclosure import exponential, overlap, precision
+    from nrs_design.proof.taylor import exponential_nearly
+
     M, error = exponential_nearly(A, time)
     with precision():
         return overlap(exponential(A, time, time), M, error)
@@ -174,6 +176,8 @@ def has_positive_spectrum(M: Any) -> bool:
 
 def _is_surely_stable(A: RationalMatrix, time: Time) -> bool:
     """Tell whether rigorous enclosures of all eigenvalues lie in the stable region."""
+    from nrs_design.proof.enclosure import eigenvalues
+
     balls = eigenvalues(A)
     if time is Time.CONTINUOUS:
         return all(ball.real < 0 for ball in balls)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from itertools import islice, zip_longest
 from typing import Any
 
+from nrs_design.late import late_function
 from nrs_design.proof.evidence import Shows
-from nrs_design.proof.late import late_function
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certification import Limits
 from nrs_design.search.method import Method

@@ -1,4 +1,4 @@
-"""Whether a certified bound is about a run at all: what the run has that the proof has not."""
+"""Whether a certified bound covers a run: what happens in the run that the proof leaves out."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def uncovered(
     scenario: Scenario,
     run: Run,
 ) -> Iterator[str]:
-    """Yield what happens in a run that the bound says nothing about; nothing if it holds.
+    """Yield what happens in a run that the bound does not cover; nothing if it holds.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def undecayed(
     scenario: Scenario,
     run: Run,
 ) -> Iterator[str]:
-    """Yield why a certified rate of decay is not about the end of a run; nothing if it is.
+    """Yield why a certified rate does not cover the end of a run; nothing if it does.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def _differences(
     scenario: Scenario,
     run: Run,
 ) -> Iterator[str]:
-    """Yield what sets a run apart from all that a proof is about, whatever it shows."""
+    """Yield how a run differs from every run that the proof covers."""
     angles = None if spec.disturbances is None else spec.disturbances.largest_angle
     if any(controller.commands != "velocity" for controller in spec.controllers.values()):
         yield "the run is not one of impedance control alone"
@@ -138,7 +138,7 @@ def _largest_command(scenario: Scenario, run: Run) -> float:
 
 
 def _large_angle(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
-    """Yield it if joint angle or reference, both of which the law holds, came too far."""
+    """Yield it if joint angle or reference, which the law rounds, exceeded the largest angle."""
     angles = None if spec.disturbances is None else spec.disturbances.largest_angle
     held = (name for name in ("angle", "reference") if name in run.response.signals)
     if angles is not None and any(abs(run.response[n]).max() > angles.si for n in held):
@@ -153,7 +153,7 @@ def _irregular_steps(run: Run) -> Iterator[str]:
 
 
 def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
-    """Yield it if the law ran at other times than in the proof."""
+    """Yield it if period or delay differ from those of the proof."""
     if spec.sampling is None or run.sampling is None:
         if run.sampling is not None or spec.sampling is not None:
             yield f"the proof is not about the {run.engine} loop"
@@ -166,7 +166,7 @@ def _sampling(spec: InteractionDesignSpec, run: Run) -> Iterator[str]:
 
 
 def _surroundings(spec: InteractionDesignSpec, scenario: Scenario) -> Iterator[str]:
-    """Yield what the proof does not say about the surfaces of a run."""
+    """Yield how the surfaces of a run differ from those of the proof."""
     if len(scenario.surfaces) > 1:
         yield "there are several surfaces, and the proof is about one"
     for surface in scenario.surfaces:

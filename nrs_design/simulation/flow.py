@@ -1,4 +1,4 @@
-"""The flow of a linear system, and when a signal of it first changes its side: none is missed.
+"""The flow of a linear system, and the first sign change of its signals: none is missed.
 
 Over a step h the signal ``g = c exp(A t) z`` is its Taylor polynomial of degree K, up to
 

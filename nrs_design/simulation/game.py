@@ -1,4 +1,4 @@
-"""The game of an adversary: what can happen to a loop from rest, what he wants, what he chooses."""
+"""The game of an adversary: the loop on a grid of time, his aim, and his choices."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from nrs_design.simulation.rules import Rules
 
 @dataclass(frozen=True, eq=False)
 class Game:
-    """What can happen to a loop that begins at rest, and what the adversary wants of it."""
+    """A loop on a grid of time, which begins at rest."""
 
     # Shape (m, n, n + c). Step of each mode in contact: of the state, and of shares of the largest
     # disturbances.

@@ -1,4 +1,4 @@
-"""The continuous loop of one axis in its surroundings: a linear system for every way it can be.
+"""The continuous loop of one axis in its surroundings: one linear system for each mode of contact.
 
 The state is that of the motion loop, the position X that the hand has commanded, the reference r
 that impedance control adds to it, the states of laws, filter and tissue, and of the command itself:
@@ -26,7 +26,7 @@ from nrs_design.spec import InteractionDesignSpec
 
 @dataclass(frozen=True, slots=True)
 class LoopMode:
-    """One way in which the loop can be."""
+    """The loop under one controller, in one set of contacts."""
 
     A: Array  # Shape (n, n). Of ``z' = A z``.
     # angle, velocity, torque, reference: shape (n,). Rows that give these signals; the torque is

@@ -1,4 +1,4 @@
-"""What a run is judged by: safety, agility, human effort, and how well a controller does.
+"""Metrics of a run: safety, agility, human effort, and performance of controllers.
 
 Throughout, ``t`` are the instants of a run in s, shape (N,), which need not be equally far apart,
 and ``y`` is a signal at them, a straight line between two: velocities in rad/s, torques in N m.

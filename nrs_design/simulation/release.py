@@ -1,4 +1,4 @@
-"""What an axis does after it has been pressed into tissue and let go, under bad switching.
+"""Runs of an axis that is pressed into tissue and released, under adverse switching.
 
 It begins at rest, at the deflection at which the stiffest contact pushes back with the largest
 torque of the spec. No run proves anything.

@@ -58,7 +58,7 @@ class Rules:
 
 
 def fitting_step(system: SwitchedSystem, step: float) -> float:
-    """Return a step about as long as wanted, of which every dwell time is a sensible number.
+    """Return a time step near the requested one that divides every dwell time.
 
     Parameters
     ----------

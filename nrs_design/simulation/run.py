@@ -1,4 +1,4 @@
-"""What an engine returns: the response, and how the run went."""
+"""The result of an engine: the response, and how the run ended."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told of a run: the metrics that apply to it, as numbers for programs and for a table."""
+"""The metrics of a run, for programs and for a table."""
 
 from __future__ import annotations
 

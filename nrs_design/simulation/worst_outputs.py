@@ -1,4 +1,4 @@
-"""The quantities that an adversary makes large: their values along runs, and certified bounds."""
+"""Outputs that an adversary maximizes: their values along runs, and certified bounds."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ kind of spec that it reads. `Spec`, any of them, is for annotations only.
 
 from typing import TYPE_CHECKING
 
-from nrs_design.proof.late import late_names
+from nrs_design.late import late_names
 
 if TYPE_CHECKING:
     from nrs_design.spec.affine import Affine

@@ -6,11 +6,12 @@ docs/certificates/coupled-axes.md derives what is made of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from nrs_design.errors import AssemblyError
+from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.proof.bounds import upper
 from nrs_design.proof.channels import Coupling
 from nrs_design.proof.matrix import RationalMatrix
@@ -34,7 +35,8 @@ _LEFT = (
     "as they do"
 )
 OMEGA, DELTA = "omega [rad/s]", "delta [rad]"
-Row = list[Fraction]
+# Through what the axes act on each other.
+INERTIA, CORIOLIS, GRAVITY = "the inertia of the links", "Coriolis torques", "gravity"
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,25 +174,15 @@ def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSyste
     rows = [
         [*mode.A.fractions()[omega], *others] for mode, others in zip(every, disturbed, strict=True)
     ]
-    quiet = [Fraction(0) for _ in channels]
-    unit = [Fraction(int(i == omega)) for i in range(system.order)]
-    parts = [("the inertia of the links", [[radius * a for a in row] for row in rows])]
-    if coupling.coriolis is not None:
-        size = high * coupling.coriolis / coupling.drive
-        parts.append(("Coriolis torques", [[*(size * a for a in unit), *quiet]] * len(every)))
+    unit = coordinates(system.order + len(channels))
+    seen = {INERTIA: rows, CORIOLIS: [unit[omega]] * len(every)}
     if coupling.gravity_gradient is not None:
-        size = high * coupling.gravity_gradient / coupling.drive
-        row = [*_deflection(system, unit, size), *quiet]
-        parts.append(("gravity", [row] * len(every)))
-    column = RationalMatrix.from_rows([[entry] for entry in unit])
-    couplings = (
-        Coupling(
-            name,
-            (column,) * len(every),
-            tuple(RationalMatrix.from_rows([row]) for row in bounds),
-        )
-        for name, bounds in parts
-    )
+        seen[GRAVITY] = [unit[_deflection(system, omega)]] * len(every)
+    sizes = {INERTIA: radius}
+    for name, bound in ((CORIOLIS, coupling.coriolis), (GRAVITY, coupling.gravity_gradient)):
+        if bound is not None:
+            sizes[name] = high * bound / coupling.drive
+    push = ("", unit[omega][: system.order], sizes)
     contact = system.contact
     if contact is not None:
         contact = replace(contact, free=_slowed(contact.free, omega, mean))
@@ -205,10 +197,32 @@ def couple_axes(system: SwitchedSystem, coupling: AxesCoupling) -> SwitchedSyste
             )
             for channel in system.channels
         ),
-        couplings=tuple(couplings),
+        couplings=tuple(couplings_along([push], seen)),
         assumptions=among_axes(system.assumptions, coupling, disturbed=bool(system.channels)),
         axes=coupling.count if system.channels else None,
     )
+
+
+def couplings_along(
+    pushes: Sequence[tuple[str, LinearForm, Mapping[str, Fraction]]],
+    seen: Mapping[str, Sequence[LinearForm]],
+) -> Iterator[Coupling]:
+    """Yield what the other axes do to one: along a column, at most a size times what is seen.
+
+    Parameters
+    ----------
+    pushes : sequence of (str, LinearForm, mapping of str to Fraction)
+        What is pushed, the column, and the size for each cause; a cause without one is left out.
+    seen : mapping of str to sequence of LinearForm
+        For each cause, the form of every mode whose norm over all axes bounds it.
+    """
+    for cause, rows in seen.items():
+        for what, column, sizes in pushes:
+            if (size := sizes.get(cause)) is not None:
+                B = RationalMatrix.from_rows([[entry] for entry in column])
+                bounds = ([[size * entry for entry in row]] for row in rows)
+                bound = tuple(map(RationalMatrix.from_rows, bounds))
+                yield Coupling(f"{cause} {what}".rstrip(), (B,) * len(rows), bound)
 
 
 def among_axes(
@@ -264,12 +278,12 @@ def _index(system: SwitchedSystem, state: str) -> int:
     return system.states.index(state)
 
 
-def _deflection(system: SwitchedSystem, omega: Row, size: Fraction) -> Row:
-    """Return the row of the bound on gravity: the deflection is how far the axis is from rest."""
-    delta = _index(system, DELTA)
-    moves = all(m.A.fractions()[delta] == omega for m in system.modes)
+def _deflection(system: SwitchedSystem, omega: int) -> int:
+    """Return the place of the deflection, which is how far the axis is from rest."""
+    delta, unit = _index(system, DELTA), coordinates(system.order)
+    moves = all(m.A.fractions()[delta] == unit[omega] for m in system.modes)
     check_gravity(losable=system.contact is not None or not moves)
-    return [size * int(i == delta) for i in range(system.order)]
+    return delta
 
 
 def check_gravity(*, losable: bool) -> None:

@@ -17,10 +17,17 @@ from fractions import Fraction
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
-from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.models.linear_form import coordinates
 from nrs_design.proof.channels import Channel, Coupling
-from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.switched.coupled import AxesCoupling, check_gravity, not_below
+from nrs_design.switched.coupled import (
+    CORIOLIS,
+    GRAVITY,
+    INERTIA,
+    AxesCoupling,
+    check_gravity,
+    couplings_along,
+    not_below,
+)
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 from nrs_design.switched.sampled_inputs import SampledMode, known_entries
 
@@ -37,6 +44,12 @@ class Push:
     slip: Fraction
     speed: Fraction
     deflection: Fraction
+
+    @property
+    def sizes(self) -> dict[str, Fraction]:
+        """The bounds that are not zero, by what acts."""
+        found = {INERTIA: self.slip, CORIOLIS: self.speed, GRAVITY: self.deflection}
+        return {name: size for name, size in found.items() if size}
 
 
 def slowed_motor(ranges: ActuatorRanges, coupling: AxesCoupling) -> ActuatorRanges:
@@ -98,19 +111,15 @@ def couplings_of(
     seen = [*kept, *range(first, first + len(frame.roundings))]
     slips = [[motion.slip[i] for i in seen] for motion in motions]
     wide = coordinates(len(seen))
-    signals = {
-        "the inertia of the links": ("slip", slips),
-        "Coriolis torques": ("speed", [wide[omega]] * len(motions)),
-        "gravity": ("deflection", [wide[delta]] * len(motions)),
+    seen_by = {
+        INERTIA: slips,
+        CORIOLIS: [wide[omega]] * len(motions),
+        GRAVITY: [wide[delta]] * len(motions),
     }
-    for name, (signal, rows) in signals.items():
-        for what, column, push in (
-            ("on the speed", unit[omega], on_speed),
-            ("on the way", way, on_way),
-        ):
-            size = getattr(push, signal)
-            if size:
-                yield _coupling(f"{name} {what}", column, size, rows)
+    found = (("on the speed", unit[omega], on_speed), ("on the way", way, on_way))
+    yield from couplings_along(
+        [(what, column, push.sizes) for what, column, push in found], seen_by
+    )
 
 
 def pushes(coupling: AxesCoupling, tau: Interval, period: Fraction) -> tuple[Push, Push]:
@@ -156,15 +165,6 @@ def pushes(coupling: AxesCoupling, tau: Interval, period: Fraction) -> tuple[Pus
         not_below(half * share * torques.deflection),
     )
     return speed, way
-
-
-def _coupling(
-    name: str, column: Sequence[Fraction], size: Fraction, rows: Sequence[LinearForm]
-) -> Coupling:
-    """Return a push along a column, of a size times what a row of each mode sees."""
-    bounds = (RationalMatrix.from_rows([[size * entry for entry in row]]) for row in rows)
-    B = RationalMatrix.from_rows([[entry] for entry in column])
-    return Coupling(name, (B,) * len(rows), tuple(bounds))
 
 
 def _middle(coupling: AxesCoupling) -> Fraction:

@@ -65,6 +65,20 @@ def test_only_the_command_asked_for_is_imported(tmp_path):
     assert commands & set(facts["modules"]) == {"nrs_design.cli.verify"}
 
 
+# What checks a certificate by itself: the program, the file format, the proof.
+CHECKING = ("cli", "certificates", "proof", "errors", "files", "printable", "wings")
+MOST_MODULES = 40
+
+
+@pytest.mark.parametrize("name", ["soft-tissue", "soft-tissue-axes"])
+def test_verify_loads_the_proof_and_the_file_format_alone(tmp_path, name):
+    result, facts = loaded_by(tmp_path, "verify", ROOT / "reports" / f"{name}.cert.json")
+    assert result.returncode == 0, result.stderr
+    ours = [module.split(".") for module in facts["modules"] if module.startswith("nrs_design")]
+    assert {parts[1] for parts in ours if len(parts) > 1} <= set(CHECKING)
+    assert len(ours) <= MOST_MODULES, ours
+
+
 def test_help_before_a_command_lists_all(tmp_path):
     text = run("--help", "verify", cwd=tmp_path).stdout
     assert all(command in text for command in COMMANDS)

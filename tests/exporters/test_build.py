@@ -123,18 +123,15 @@ def test_idle_states_are_exported_as_they_are_proved():
     assert f"decay at {idle.decay.exact} 1/s" in " ".join(record.proof.assumptions)
 
 
-def test_one_kind_of_controller_has_no_idle_states(record):
-    assert json.loads(dump_record(record))["idle_states"] is None
-
-
 def test_offset_is_written_where_force_controllers_have_one():
     """The robot must take X_i as the proof says."""
     record = export_design(read_spec(SPECS / "neuroboscope/force-limit-offset.nrs.yaml")).record
     assert json.loads(dump_record(record))["offset"] == "measured"
 
 
-def test_without_offset_there_is_none(record):
-    assert json.loads(dump_record(record))["offset"] is None
+def test_what_a_design_has_not_is_none(record):
+    document = json.loads(dump_record(record))
+    assert document["idle_states"] is document["offset"] is None
 
 
 def test_a_proof_without_rounding_says_so(sampled_export):

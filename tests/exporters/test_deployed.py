@@ -122,53 +122,37 @@ def test_every_gain_of_a_record_counts(differences, sampled_export):
     assert len(differences(json.dumps(document), "x.json")) == 5
 
 
-def test_what_a_record_says_of_its_proof_counts(differences, sampled_export):
-    document = json.loads(render_json(sampled_export)[".export.json"])
-    rate = document["proof"]["decay_rate"]
-    for proof in ({"claim": "everything"}, {"decay_rate": rate | {"exact": "1/9"}}):
-        said = document | {"proof": document["proof"] | proof}
-        message = "its field 'proof' is not what the certificate says"
-        assert differences(json.dumps(said), "x.json") == [message]
-    said = document | {"outside": []}
-    assert differences(json.dumps(said), "x.json") == [
-        "its field 'outside' is not what the certificate says"
-    ]
+ONE = {"unit": "1/s", "exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
+PROOF = "its field 'proof' is not what the certificate says"
 
 
-def test_units_laws_and_contacts_of_a_record_count(differences, sampled_export):
-    text = render_json(sampled_export)[".export.json"].decode()
-    for old, new, said in (
-        ('"rpm/rad"', '"rpm/deg"', "rpm/deg, and the certificate has"),
-        ('"law": "impedance"', '"law": "force"', "laws and contacts: insertion: force at soft"),
-        ('"contacts": [\n        "soft"', '"contacts": [\n        "hard"', "impedance at hard"),
-        ('"delay": [\n    0', '"delay": [\n    1', "age of the force sample: 1 to 1"),
-    ):
-        assert old in text
-        (found,) = differences(text.replace(old, new, 1), "x.json")
-        assert said in found
-
-
-def test_what_runs_beside_the_gains_counts(differences, sampled_export, tmp_path):
-    """The filter, the idle states, the offset and the sample time of a record."""
-    document = json.loads(render_json(sampled_export)[".export.json"])
-    one = {"unit": "1/s", "exact": "0.5", "float32": 0.5, "float32_bits": "0x3f000000"}
-    for field, value, said in (
-        (
-            "force_filter",
-            {"order": 2, "pole": one | {"name": "pole"}},
-            "filter and their pole: 2, 0.5",
-        ),
-        (
-            "idle_states",
-            {"decay": one | {"name": "decay"}, "reset": True},
-            "idle states: 0.5 1/s, True",
-        ),
+@pytest.mark.parametrize(
+    ("place", "value", "said"),
+    [
+        ("proof.claim", "everything", PROOF),
+        ("proof.decay_rate.exact", "1/9", PROOF),
+        ("outside", [], "its field 'outside' is not what the certificate says"),
+        ("motion.gains.0.unit", "rpm/deg", "rpm/deg, and the certificate has"),
+        ("controllers.0.law", "force", "laws and contacts: insertion: force at soft"),
+        ("controllers.0.contacts", ["hard"], "impedance at hard"),
+        ("delay", [1, 1], "age of the force sample: 1 to 1"),
+        ("force_filter", {"order": 2, "pole": ONE | {"name": "pole"}}, "their pole: 2, 0.5"),
+        ("idle_states", {"decay": ONE | {"name": "decay"}, "reset": True}, "0.5 1/s, True"),
         ("offset", "measured", "offset: measured"),
         ("sample_time", {"exact": "0.004", "unit": "s"}, "sample time in s: 0.004"),
         ("sample_time", None, "sample time in s: none, and the certificate has 0.002"),
-    ):
-        (found,) = differences(json.dumps(document | {field: value}), "x.json")
-        assert said in found
+    ],
+)
+def test_what_else_a_record_says_counts(differences, sampled_export, place, value, said):
+    """Its proof, units, laws and contacts, and what runs beside the gains."""
+    document = json.loads(render_json(sampled_export)[".export.json"])
+    *path, last = place.split(".")
+    node = document
+    for key in path:
+        node = node[int(key) if key.isdigit() else key]
+    node[last] = value
+    (found,) = differences(json.dumps(document), "x.json")
+    assert said in found
 
 
 def test_records_of_every_kind_agree_with_their_certificates(tmp_path):

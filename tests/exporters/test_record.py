@@ -58,16 +58,9 @@ def test_json_is_the_dump_of_the_record(record):
     assert json.loads(text)["schema"] == "nrs-design/export/1"
 
 
-def test_record_is_frozen_and_strict(record):
+def test_record_is_frozen(record):
     with pytest.raises(ValidationError):
         record.spec = None
-    document = json.loads(dump_record(record))
-    for change in ({"extra": 1}, {"schema": "other"}, {"controllers": []}):
-        with pytest.raises(ValidationError):
-            ExportRecord.model_validate_json(json.dumps({**document, **change}))
-    document["proof"]["verdict"] = "inconclusive"
-    with pytest.raises(ValidationError):
-        ExportRecord.model_validate_json(json.dumps(document))
 
 
 @pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "force-limit-offset"])
@@ -95,6 +88,7 @@ def test_the_records_of_programs_keep_the_schema(sampled_export, continuous):
         {"schema": "nrs-design/export/2"},
         {"controllers": []},
         {"verdict": "refuted"},
+        {"proof": {"verdict": "inconclusive"}},
         {"sample_time": 0.002},
         {"delay": [0, 1, 2]},
         {"spec": {"name": "x", "sha256": "0"}},

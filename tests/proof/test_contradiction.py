@@ -284,7 +284,7 @@ def test_roundings_need_steps_of_one_size_and_names():
     assert find_contradiction(replace(in_time, time=Time.DISCRETE)) is None
     unequal = family([["1/2"]], [["1/2", 0], [0, "1/2"]], time=Time.DISCRETE)
     found = find_contradiction(replace(unequal, roundings=(first,)))
-    assert found == "the arithmetic rounds, but the modes are not of one size"
+    assert found == "the rounding of F is of modes that are not of one size"
     assert find_contradiction(unequal) is None
 
 
@@ -339,7 +339,7 @@ def test_couplings_need_one_size_and_names():
     assert find_contradiction(replace(in_steps, couplings=(wide,))) is None
     unequal = family([[-1]], [[-1, 0], [0, -1]])
     found = find_contradiction(replace(unequal, couplings=(first,)))
-    assert found == "axes act on each other, but their modes are not of one size"
+    assert found == "the coupling by links is of modes that are not of one size"
     assert find_contradiction(unequal) is None
 
 

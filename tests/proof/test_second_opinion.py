@@ -253,7 +253,7 @@ def recorded(monkeypatch, system, evidence):
         asked.append((A.fractions()[0][0], time))
         return exponential_nearly(A, time)
 
-    monkeypatch.setattr("nrs_design.proof.second_opinion.exponential_nearly", record)
+    monkeypatch.setattr("nrs_design.proof.taylor.exponential_nearly", record)
     assert agrees(system, evidence)
     return sorted(asked)
 

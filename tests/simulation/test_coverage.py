@@ -96,34 +96,50 @@ def test_no_run_of_the_law_that_ships_leaves_its_bound(sampled, velocities, stay
     assert any("period" in reason for reason in bounds(sampled, faster)["force"].uncovered)
 
 
-def test_what_a_proof_does_not_take_up_is_said(certified):
-    designed = certified.designed
-    (one,) = run_scenarios(designed)
-    assert not bounds(certified, one)["force"].uncovered
-    (sampled,) = run_scenarios(designed, Runs(engine="sampled"))
-    assert any("sampled loop" in reason for reason in bounds(certified, sampled)["force"].uncovered)
-    scenario = one.scenario
-    twice = replace(scenario, surfaces=scenario.surfaces * 2)
-    wild = replace(
-        scenario,
-        errors=replace(scenario.errors, friction=1.0, force_noise=0.1, jitter=0.1, force_step=1),
-    )
-    reasons = bounds(certified, replace(one, scenario=wild))["force"].uncovered
-    for word in ("friction", "noise", "late", "force error"):
-        assert any(word in reason for reason in reasons)
-    several = bounds(certified, replace(one, scenario=twice))["force"].uncovered
-    assert several == ("there are several surfaces, and the proof is about one",)
+def scenario_with(**changes):
+    return lambda one: replace(one, scenario=replace(one.scenario, **changes))
 
 
-def test_a_command_at_its_limit_is_said(certified):
-    """No proof knows saturation, nor samples that the law refuses."""
+def run_with(**changes):
+    return lambda one: replace(one, run=replace(one.run, **changes))
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda one: one, []),
+        (scenario_with(errors=Errors(force_noise=0.1)), ["noise"]),
+        (scenario_with(errors=Errors(jitter=0.1)), ["late"]),
+        (scenario_with(errors=Errors(force_step=1)), ["force error"]),
+        (scenario_with(errors=Errors(friction=1.0)), ["the friction is larger", "change its sign"]),
+        # No proof knows saturation, nor samples that the law refuses.
+        (run_with(saturated=1), ["met its limit"]),
+        (run_with(refused=1), ["refused samples"]),
+        # Its peak lies between two instants, perhaps: 8 deg/s is the bound of the proof.
+        (
+            scenario_with(profile=Profile.sinusoid(np.radians(8) * (1 + 1e-7), 12.0)),
+            ["the velocity command is larger than the proof takes it for"],
+        ),
+        (
+            lambda one: scenario_with(surfaces=one.scenario.surfaces * 2)(one),
+            ["there are several surfaces, and the proof is about one"],
+        ),
+    ],
+)
+def test_what_a_proof_does_not_take_up_is_said(certified, change, said):
     (one,) = run_scenarios(certified.designed)
-    assert one.run.saturated == one.run.refused == 0
-    assert not bounds(certified, one)["force"].uncovered
-    for change, word in (({"saturated": 1}, "met its limit"), ({"refused": 1}, "refused samples")):
-        reasons = bounds(certified, replace(one, run=replace(one.run, **change)))["force"].uncovered
-        assert len(reasons) == 1
-        assert word in reasons[0]
+    reasons = bounds(certified, change(one))["force"].uncovered
+    assert len(reasons) == len(said)
+    assert all(word in reason for word, reason in zip(said, reasons, strict=True))
+
+
+@pytest.mark.parametrize("engine", ["sampled", "mujoco"])
+def test_another_engine_than_that_of_the_proof(certified, engine):
+    if engine == "mujoco":
+        pytest.importorskip("mujoco", reason="MuJoCo is not installed")
+    (one,) = run_scenarios(certified.designed, Runs(engine=engine))
+    for bound in bounds(certified, one).values():
+        assert any(f"not about the {engine} loop" in reason for reason in bound.uncovered)
 
 
 def test_contact_that_a_proof_takes_for_kept(certified):
@@ -137,16 +153,6 @@ def test_contact_that_a_proof_takes_for_kept(certified):
         assert reasons == ["contact is lost or made, and the proof takes it for kept"] * (
             kept.contact is None
         )
-
-
-def test_the_peak_of_a_sinusoid_counts(certified):
-    """Also where it lies between two instants: 8 deg/s is the bound of the proof."""
-    (one,) = run_scenarios(certified.designed)
-    above = Profile.sinusoid(np.radians(8) * (1 + 1e-7), 12.0)
-    found = bounds(certified, replace(one, scenario=replace(one.scenario, profile=above)))
-    assert found["force"].uncovered == (
-        "the velocity command is larger than the proof takes it for",
-    )
 
 
 ENDING = "command: {points: [[0 s, 6 deg/s], [0.5 s, 6 deg/s], [0.5 s, 0 deg/s], [3 s, 0 deg/s]]}, "
@@ -223,13 +229,6 @@ def test_one_controller_all_the_time_is_not_left_in_time(certified, rules, said)
     statement = next(s for s in certified.certificate.statements if s.bound(system))
     reasons = list(uncovered(spec, system, statement, stays, one.run))
     assert reasons == ["nothing makes the run keep the rules of switching"] * said
-
-
-def test_mujoco_is_another_engine_than_that_of_the_proof(certified):
-    pytest.importorskip("mujoco", reason="MuJoCo is not installed")
-    (one,) = run_scenarios(certified.designed, Runs(engine="mujoco"))
-    for bound in bounds(certified, one).values():
-        assert any("MuJoCo" in reason for reason in bound.uncovered)
 
 
 @pytest.mark.slow

@@ -7,10 +7,10 @@ comes to use.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
-from nrs_design.proof.late import late_names
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
@@ -75,7 +75,13 @@ KINDS: Mapping[str, str] = {
     "saturated-ellipsoid": "SaturatedEllipsoid",
 }
 
-__getattr__ = late_names(__name__, {name: kind.replace("-", "_") for kind, name in KINDS.items()})
+_HOMES = {name: kind.replace("-", "_") for kind, name in KINDS.items()}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
 
 
 def class_of(kind: str) -> type[AbstractEvidence]:

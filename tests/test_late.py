@@ -2,9 +2,9 @@
 
 import pytest
 
+from nrs_design.late import late_function, late_names
 from nrs_design.proof import evidence
 from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
-from nrs_design.proof.late import late_function, late_names
 
 
 def test_a_name_is_found_in_its_home():

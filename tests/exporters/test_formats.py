@@ -1,5 +1,8 @@
 """What every format of the table keeps."""
 
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -10,6 +13,7 @@ from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.exporters import format_names, format_of, rendered
 from nrs_design.exporters.export import Execution, export_design
+from tests.support import ROOT, SOFT_TISSUE
 
 
 @pytest.fixture(params=["sampled", "continuous"])
@@ -65,3 +69,35 @@ def test_every_file_says_what_it_is_worth(name, design, proved):
     for content in rendered(name, export).values():
         text = " ".join(content.decode(errors="replace").replace("*", " ").split())
         assert [fact for fact in facts if fact not in text] == []
+
+
+NEW = '''
+"""Gains in one line each."""
+
+from nrs_design.exporters import DESIGN, Format
+from nrs_design.exporters.export import Export
+
+FORMAT = Format("gains in one line each", DESIGN, {".gains.txt": b"# gains of "})
+
+
+def render(export: Export) -> dict[str, bytes]:
+    record = export.shipped()
+    lines = [f"{c.name} {g.name} {g.exact}" for c in record.controllers for g in c.gains]
+    text = "\\n".join([f"# gains of {record.spec.name}", *lines])
+    return {".gains.txt": text.encode()}
+'''
+
+
+@pytest.mark.slow
+def test_a_new_format_is_one_file(tmp_path):
+    """Added to a copy of the package, and used as a user would."""
+    shutil.copytree(ROOT / "nrs_design", tmp_path / "nrs_design")
+    (tmp_path / "nrs_design/exporters/formats/gains.py").write_text(NEW)
+    command = [sys.executable, "-m", "nrs_design", "export", SOFT_TISSUE, "--format", "gains"]
+    done = subprocess.run(
+        [*command, "--out", "."], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    lines = (tmp_path / "soft-tissue.gains.txt").read_text().splitlines()
+    assert lines[0] == "# gains of soft-tissue"
+    assert len(lines) == 5

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
+from enum import Enum, auto
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from nrs_design.reporting.evidence.runs import EUCLIDEAN, euclidean_norms, phase
 from nrs_design.reporting.figures.complex_plane import draw_eigenvalues
 from nrs_design.reporting.figures.run import draw_run
 from nrs_design.reporting.formatting import number, plural, roots
+from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.norms import Array
 from nrs_design.simulation.periodic import (
     PeriodicRun,
@@ -59,6 +60,22 @@ _AT_A_VALUE = (
     "The parameter is unknown and constant, so it may have this one value all the time. The "
     "matrices at this value are computed exactly."
 )
+_AT_THIS_VALUE = (
+    "What follows is simulated at the value of the parameter that the claim names, between the "
+    "modes that are listed."
+)
+_FROM_THE_FASTEST = "Simulated from the direction that grows the most, with every mode for its time"
+_BY_SIGNS = (
+    "Simulated from the enclosed direction, through contact and flight as the signs of the motion "
+    "say."
+)
+_CARRIED_ON = "The dashed line is the growth per period, carried on."
+_ONE_PERIOD = (
+    "The first period of the same run: which mode is active when, and what it does to the norm."
+)
+_OTHER_VALUES = (
+    "Nothing is said about other values of the parameter: a narrower range may be stable."
+)
 _OTHERS = (
     "Nothing is said about slower switching, other signals and other motions: a longer dwell time, "
     "fewer transitions or narrower ranges, or modes that are left soon enough, may make the system "
@@ -71,32 +88,46 @@ _ON_THE_BORDER = (
 )
 
 
+class _Shape(Enum):
+    """What grows."""
+
+    MODE = auto()
+    AVERAGE = auto()
+    PERIOD = auto()
+    CONTACT = auto()
+    VALUE = auto()
+
+
+_NAMES: Mapping[_Shape, str] = {
+    _Shape.MODE: "a mode that is not stable",
+    _Shape.AVERAGE: "an average that is not stable",
+    _Shape.PERIOD: "a period that grows",
+    _Shape.CONTACT: "a motion that grows while contact is lost and made",
+    _Shape.VALUE: "a value of the parameter that is not stable",
+}
+_MEANINGS: Mapping[_Shape, str] = {
+    _Shape.MODE: _IN_A_MODE,
+    _Shape.AVERAGE: _ON_AVERAGE,
+    _Shape.PERIOD: _PERIODIC,
+    _Shape.CONTACT: _BY_ITSELF,
+    _Shape.VALUE: _AT_A_VALUE,
+}
+
+
 class GrowthPage(AbstractPage):
     """The sequence of modes, and the run that repeats it."""
 
     @property
     def name(self) -> str:
         """What it shows."""
-        if self._growth.share is not None:
-            return "a value of the parameter that is not stable"
-        if self.offer.weights:
-            return "an average that is not stable"
-        if self._growth.factor is not None:
-            return "a motion that grows while contact is lost and made"
-        return "a mode that is not stable" if self._stays else "a period that grows"
+        return _NAMES[self._shape]
 
     def meaning(self) -> tuple[str, ...]:
         """Say why one motion is enough."""
-        if self._growth.share is not None:
-            return (_AT_A_VALUE, *self._part.meaning())
-        signals = words.allowed_signals(self.system)
         region = "unit disk" if self.is_discrete else "left half plane"
-        text = _IN_A_MODE if self._stays else _PERIODIC
-        if self.offer.weights:
-            text = _ON_AVERAGE
-        elif self._growth.factor is not None:
-            text = _BY_ITSELF
-        return (text.format(signals=signals, region=region),)
+        text = _MEANINGS[self._shape]
+        said = text.format(signals=words.allowed_signals(self.system), region=region)
+        return (said, *self._part.meaning()) if self._shape is _Shape.VALUE else (said,)
 
     def between_corners(self) -> tuple[str, ...]:
         """Say nothing: no proof, no question."""
@@ -104,15 +135,22 @@ class GrowthPage(AbstractPage):
 
     def limits(self) -> tuple[str, ...]:
         """Say that nothing follows for other motions."""
-        if self._growth.share is not None:
-            other = "Nothing is said about other values of the parameter: a narrower range may be "
-            return (*self._part.limits(), f"{other}stable.")
-        at_border = bool(self.offer.weights) or self._stays
+        if self._shape is _Shape.VALUE:
+            return (*self._part.limits(), _OTHER_VALUES)
+        at_border = self._shape in (_Shape.AVERAGE, _Shape.MODE)
         return (words.NO_FORECAST, _OTHERS, _ON_THE_BORDER if at_border else _LINEAR)
 
     def run(self) -> Section:
         """Simulate the motion."""
-        return Section("Simulated witness", tuple(self._blocks()))
+        if self._shape is _Shape.VALUE:
+            blocks: tuple[Block, ...] = (Paragraph(_AT_THIS_VALUE), *self._part.run().blocks)
+        elif self._shape is _Shape.AVERAGE:
+            blocks = tuple(self._average())
+        elif self._shape is _Shape.MODE:
+            blocks = tuple(self._in_a_mode())
+        else:
+            blocks = tuple(self._repeated())
+        return Section("Simulated witness", blocks)
 
     @property
     def _growth(self) -> Growth:
@@ -120,9 +158,15 @@ class GrowthPage(AbstractPage):
         return self.offer.growth
 
     @property
-    def _stays(self) -> bool:
-        """Whether one mode is never left."""
-        return [time for _, time in self._growth.steps] == [0]
+    def _shape(self) -> _Shape:
+        growth = self._growth
+        if growth.share is not None:
+            return _Shape.VALUE
+        if self.offer.weights:
+            return _Shape.AVERAGE
+        if growth.factor is not None:
+            return _Shape.CONTACT
+        return _Shape.MODE if [time for _, time in growth.steps] == [0] else _Shape.PERIOD
 
     @property
     def _part(self) -> GrowthPage:
@@ -130,22 +174,6 @@ class GrowthPage(AbstractPage):
         share, (_, part) = self._growth.share, self.offer.parts[0]
         assert share is not None  # asked before
         return GrowthPage(system_at(self.system, share), part, offer_of(part))
-
-    def _blocks(self) -> Iterator[Block]:
-        if self._growth.share is not None:
-            yield Paragraph(
-                "What follows is simulated at the value of the parameter that the claim names, "
-                "between the modes that are listed."
-            )
-            yield from self._part.run().blocks
-        elif self.offer.weights:
-            yield from self._average()
-        elif self._stays:
-            yield from self._in_a_mode()
-        elif self._growth.factor is not None:
-            yield from self._through_contact(float(self._growth.factor))
-        else:
-            yield from self._periodic()
 
     def _in_a_mode(self) -> Iterator[Block]:
         """Stay in the mode, from the eigenvector of its worst eigenvalue."""
@@ -201,65 +229,47 @@ class GrowthPage(AbstractPage):
         )
         yield from phase_plane(system, run.response, None)
 
-    def _through_contact(self, low: float) -> Iterator[Block]:
-        """Repeat the sequence, along the motion that grows."""
-        modes = self.system.every_mode
-        system = self.system.with_modes(modes, self.system.states, ARBITRARY)
-        # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
-        time, factor = (1.0, low) if self.is_discrete else (1 / max(low, 1e-9), math.e)
-        steps = [(name, time * float(count)) for name, count in self._growth.steps]
-        run = periodic_run(system, _indexed(system, steps), eigenvalue=factor)
-        rows = tuple((str(k), m, str(n)) for k, (m, n) in enumerate(self._growth.steps, 1))
-        title = "The sequence" + (f", its first {_LISTED} parts" if len(rows) > _LISTED else "")
-        yield Table(title, ("Part", "Mode", "Steps"), rows[:_LISTED])
-        unit = "each time" if self.is_discrete else "1/s"
-        yield self._witness(
-            system,
-            run,
-            "Simulated from the enclosed direction, through contact and flight as the signs of the "
-            f"motion say; it grows by {lower(self._growth.factor or Fraction(0))} {unit} at least.",
-            _line(run, factor, "each time"),
-        )
+    def _repeated(self) -> Iterator[Block]:
+        """Repeat the sequence, from the direction that grows the most, or that keeps its signs."""
+        system, growth, factor = self.system, self._growth, self._growth.factor
+        if factor is None:
+            steps = [(name, float(time)) for name, time in growth.steps]
+            run = periodic_run(system, _indexed(system, steps), growth.edges)
+            resets = " and the reset of each switch" if system.switching.resets else ""
+            caption = f"{_FROM_THE_FASTEST}{resets}. {_CARRIED_ON}"
+            yield self._factor(run)
+        else:
+            system = all_modes(system)
+            system = system.with_modes(system.modes, system.states, ARBITRARY)
+            # In continuous time the sequence is one mode, and the factor is a rate in 1/s.
+            low = float(factor)
+            time, low = (1.0, low) if self.is_discrete else (1 / max(low, 1e-9), math.e)
+            steps = [(name, time * float(count)) for name, count in growth.steps]
+            run = periodic_run(system, _indexed(system, steps), eigenvalue=low)
+            unit = "each time" if self.is_discrete else "1/s"
+            caption = f"{_BY_SIGNS} It grows by {lower(factor)} {unit} at least. {_CARRIED_ON}"
+        if self.is_discrete or factor is None:
+            yield self._steps()
+        response, growth_line = run.response, _line(run)
+        periods = plural(round(response.time[-1] / run.period), "period")
+        figure = draw_run(response, euclidean_norms(response), growth_line, system, EUCLIDEAN)
+        yield Illustration("run", f"The witness over {periods}", caption, figure)
+        if factor is None:
+            first = one_period(run)
+            figure = draw_run(first, euclidean_norms(first), None, system, EUCLIDEAN)
+            yield Illustration("one-period", "One period of the witness", _ONE_PERIOD, figure)
+        yield from phase_plane(system, response, None)
 
-    def _periodic(self) -> Iterator[Block]:
-        """Repeat the signal, from the direction that grows the most."""
-        system, growth = self.system, self._growth
-        steps = [(name, float(time)) for name, time in growth.steps]
-        run = periodic_run(system, _indexed(system, steps), growth.edges)
+    def _factor(self, run: PeriodicRun) -> Paragraph:
+        """Say how long a period is, and by which factor a state grows in it."""
         rate = number(math.log(run.radius) / run.period, 4)
         mean = "" if self.is_discrete else f", a mean growth rate of {rate} 1/s"
-        yield Paragraph(
+        return Paragraph(
             f"One period lasts {run.period:.6g} {self._unit} and has "
-            f"{plural(len(growth.steps), 'step')}. Over one period some state grows by the factor "
-            f"{number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures that "
-            "the factor is above one; these digits are floating point."
+            f"{plural(len(self._growth.steps), 'step')}. Over one period some state grows by the "
+            f"factor {number(run.radius, 6)}{mean}. The certificate shows with rigorous enclosures "
+            "that the factor is above one; these digits are floating point."
         )
-        yield self._steps()
-        resets = " and the reset of each switch" if system.switching.resets else ""
-        yield self._witness(
-            system,
-            run,
-            f"Simulated from the direction that grows the most, with every mode for its time"
-            f"{resets}. The dashed line is the growth per period, carried on.",
-            _line(run, run.radius, "per period"),
-        )
-        first = one_period(run)
-        yield Illustration(
-            "one-period",
-            "One period of the witness",
-            "The first period of the same run: which mode is active when, and what it does to the "
-            "norm.",
-            draw_run(first, euclidean_norms(first), None, system, EUCLIDEAN),
-        )
-        yield from phase_plane(system, run.response, None)
-
-    def _witness(
-        self, system: SwitchedSystem, run: PeriodicRun, caption: str, line: tuple[str, Array]
-    ) -> Illustration:
-        response = run.response
-        periods = plural(round(response.time[-1] / run.period), "period")
-        figure = draw_run(response, euclidean_norms(response), line, system, EUCLIDEAN)
-        return Illustration("run", f"The witness over {periods}", caption, figure)
 
     @property
     def _unit(self) -> str:
@@ -296,7 +306,7 @@ def _indexed(system: SwitchedSystem, steps: Sequence[tuple[str, float]]) -> list
     return [(index[name], time) for name, time in steps]
 
 
-def _line(run: PeriodicRun, factor: float, each: str) -> tuple[str, Array]:
+def _line(run: PeriodicRun) -> tuple[str, Array]:
     """Return the growth per period, carried on along a run, with its label."""
-    label = f"factor {number(factor, 4)} {each}"
-    return label, np.exp(math.log(factor) * run.response.time / run.period)
+    label = f"factor {number(run.radius, 4)} per period"
+    return label, np.exp(math.log(run.radius) * run.response.time / run.period)

@@ -232,10 +232,6 @@ NO_FORECAST = (
     "occurs. It is said that no guarantee is possible for all the signals that the spec "
     "allows."
 )
-ON_THE_BORDER = (
-    "An eigenvalue exactly on the border means that states need not decay; they need not grow "
-    "either."
-)
 
 
 def _dwell(system: SwitchedSystem) -> str:

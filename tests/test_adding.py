@@ -97,7 +97,6 @@ KINDS_OF_SPECS = {
     ("nrs_design.pipeline.design", "robot"),
     ("nrs_design.pipeline.margins", "robot"),
     ("nrs_design.robot.pipeline", "robot"),
-    ("nrs_design.spec.doubts", "interaction-design"),
     ("nrs_design.spec.load", "interaction-design"),
     ("nrs_design.switched.assemble", "robot"),
     ("nrs_design.switched.assemble", "switched-system"),

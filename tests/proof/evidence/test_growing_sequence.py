@@ -78,9 +78,6 @@ def in_contact(steps, factor):
     return GrowingSequence(tuple((name, Fraction(k)) for name, k in steps), factor=factor)
 
 
-# One mode
-
-
 @pytest.mark.parametrize(
     ("A", "time", "stable"),
     [
@@ -119,11 +116,6 @@ def test_against_the_lyapunov_equation(entries, time):
     evidence = staying("m0")
     assert (evidence.find_fault(system) is None) is not stable
     assert holds(system, evidence) is not stable
-
-
-def test_stable_modes_give_no_evidence():
-    found = certify(dayawansa_martin(5))
-    assert not any(statement.names_unstable_mode for statement in found.statements)
 
 
 @pytest.mark.parametrize(
@@ -184,9 +176,6 @@ def test_a_mode_that_must_be_left_refutes_nothing():
     assert evidence.find_fault(replace(system, switching=Switching(Fraction(3)))) is None
     assert "does not cover this kind of switching" in evidence.find_fault(system)
     assert not holds(system, evidence)
-
-
-# An average
 
 
 def mixed(*weights):
@@ -289,9 +278,6 @@ def test_numbers_that_would_take_minutes_are_refused():
         assert fault == "the numbers of the average of the modes are too large to check"
         with pytest.raises((ValueError, TooLargeError), match="too large"):
             evidence.claim(system)
-
-
-# A period
 
 
 WIDE = [("1", "2.15"), ("200", "2.15")]
@@ -451,11 +437,6 @@ def test_one_value_of_a_constant_parameter_refutes():
     assert crossed.find_fault(system) is not None
 
 
-def test_steps_are_whole_in_discrete_time():
-    assert signal((0, "1.5"), (1, 1)).find_fault(golden("0.7")) is not None
-    assert signal((0, 1), (1, 1)).find_fault(golden("0.7")) is None
-
-
 @pytest.mark.parametrize(
     "evidence",
     [
@@ -538,15 +519,6 @@ def test_a_stay_cannot_be_split(steps):
         assert not holds(must_leave(longest), evidence)
 
 
-def test_dwell_times_by_mode():
-    stays = (("m1", Stay(Fraction(2))),)
-    pair = [["1/2", 2], [0, "1/2"]], [["1/2", 0], [2, "1/2"]]
-    system = family(*pair, time=Time.DISCRETE, switching=Switching(stays=stays))
-    assert signal((0, 1), (1, 2)).find_fault(system) is None
-    assert "does not cover" in signal((0, 1), (1, 1)).find_fault(system)
-    assert signal((0, 1), (1, 1)).find_fault(family(*pair, time=Time.DISCRETE)) is None
-
-
 def test_which_reset_is_taken_must_be_said():
     steps = signal((0, 1), (1, 1)).steps
     system = two_ways(5)
@@ -569,16 +541,6 @@ def test_the_reset_that_is_taken_is_in_the_file():
     with pytest.raises(ValueError, match="one edge for each"):
         read_evidence({**fields, "edges": [1]}, system)
     assert "edges" not in genuine("growing-sequence, period")[1].to_fields()
-
-
-def test_an_edge_against_the_transitions_refutes_nothing():
-    one_way = must_leave(4, transitions=(("m1", "m0"),))
-    assert "does not cover" in signal((0, 4), (1, 1)).find_fault(one_way)
-
-
-def test_a_signal_that_is_too_long_is_not_looked_at():
-    steps = (("m0", Fraction(1)), ("m1", Fraction(1))) * 513
-    assert "does not cover" in GrowingSequence(steps, 3).find_fault(branicky())
 
 
 GROWING = [[1, 1], [0, 1]], [[1, 0], [1, 1]]
@@ -738,20 +700,6 @@ def test_claims():
         long = signal(*enumerate(times)).claim(branicky())
         assert "about 0.333" in long
         assert "; the certificate holds the exact times) makes" in long
-
-
-def test_edges_in_a_file():
-    system, evidence = genuine("growing-sequence, period")
-    fields = {"kind": evidence.kind, **evidence.to_fields()}
-    assert read_evidence(fields, system).edges == ()
-    edges = [0] * len(evidence.steps)
-    assert read_evidence({**fields, "edges": edges}, system).edges == tuple(edges)
-    for wrong in ([0], [*edges, 0]):
-        with pytest.raises(ValueError, match="one edge for each"):
-            read_evidence({**fields, "edges": wrong}, system)
-
-
-# Contact and flight
 
 
 ONCE = (("m0", 1), ("free", 1))
@@ -991,9 +939,6 @@ def test_a_mode_decides_where_contact_is_kept_and_in_the_air():
         (drifting(), "free", True),
     ):
         assert decides(system, mode) is expected
-
-
-# A value of a constant parameter
 
 
 MIDDLE = at(HALF, staying("m0 to m1"))

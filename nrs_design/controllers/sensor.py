@@ -64,7 +64,7 @@ class LowPass:
         ]
         return states[-1], [*rates]
 
-    def sampled(self, period: Fraction) -> SampledLowPass:
+    def discretize(self, period: Fraction) -> DiscreteLowPass:
         """Discretize each lag for an input that is held over a period in s.
 
         Raises
@@ -79,11 +79,11 @@ class LowPass:
                 remedy="raise its cutoff, or sample with a longer period",
                 at=("sensor", "filter", "cutoff"),
             )
-        return SampledLowPass(self.order, keep, to_float32(1 - keep))
+        return DiscreteLowPass(self.order, keep, to_float32(1 - keep))
 
 
 @dataclass(frozen=True, slots=True)
-class SampledLowPass:
+class DiscreteLowPass:
     """What a processor computes at every sample: ``x1 = p x1 + q F``, ``x2 = p x2 + q x1``, ...
 
     Each lag takes what the one before it has just computed, and the law takes the last.

@@ -74,7 +74,7 @@ def _step_law(
     period: Fraction,
     outer: Fraction,
 ) -> StepLaw:
-    low_pass = None if design.sensor.filter is None else design.sensor.filter.sampled(outer)
+    low_pass = None if design.sensor.filter is None else design.sensor.filter.discretize(outer)
     motion = design.motion
     frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec))
     if spec.offset != "none":

@@ -21,7 +21,7 @@ from fractions import Fraction
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
 from nrs_design.controllers.parts import BEYOND, FORCE, HAND, POSITION, StepPart
-from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.controllers.sensor import DiscreteLowPass
 
 UNITS = {"command": "rpm"}
 ZERO = Fraction(0)
@@ -51,7 +51,7 @@ class StepFrame:
     Kp: Fraction
     D: Fraction
     # Through which the force passes on its way to the laws.
-    low_pass: SampledLowPass | None = None
+    low_pass: DiscreteLowPass | None = None
     # By default nothing saturates, and inputs are refused where no robot gets.
     limits: StepLimits = StepLimits()
 

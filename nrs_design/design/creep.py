@@ -69,7 +69,7 @@ def creep_of(
         period = sampling.outer
         error = sensor.lasting
         if sensor.filter is not None:
-            error *= sensor.filter.sampled(period).lasting_gain
+            error *= sensor.filter.discretize(period).lasting_gain
         law = controller.law.discretize(period, sampling.admittance)
         assert law is not None
         retuned = controller.law.enclose(ranges, period, sampling.admittance)

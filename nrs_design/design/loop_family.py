@@ -109,7 +109,7 @@ class LoopFamily:
         if Mt.any():
             factors.append(np.stack([(1 + a) * half, 1 - a], axis=1))
         if self.axis.low_pass is not None:
-            lag = self.axis.low_pass.sampled(self.axis.period)
+            lag = self.axis.low_pass.discretize(self.axis.period)
             p, q = float(lag.p), float(lag.q)
             factors += lag.order * [np.tile(((1 + p) * half / q, (1 - p) / q), (n, 1))]
         above, below = factors[0] / b[:, None], np.ones(1)

@@ -178,7 +178,7 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
             remedy="give a filter of order 1",
             at=("sensor", "filter"),
         )
-    return 1 - low_pass.sampled(sampling.period.exact).p
+    return 1 - low_pass.discretize(sampling.period.exact).p
 
 
 def _met(designed: Designed, controller: Controller) -> tuple[Fraction, Fraction]:

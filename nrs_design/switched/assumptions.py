@@ -217,7 +217,7 @@ def sensor_texts(
         if period is None:
             yield say("sensor.filter", lags=lags, pole=exact_decimal(sensor.filter.pole))
         else:
-            step = sensor.filter.sampled(period)
+            step = sensor.filter.discretize(period)
             p, q = exact_decimal(step.p), exact_decimal(step.q)
             yield say("sensor.sampled-filter", lags=lags, p=p, q=q)
     if sensor.errors:

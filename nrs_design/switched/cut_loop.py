@@ -278,7 +278,7 @@ class ProcessorAxis(AbstractAxis):
         return rows
 
     def _frame(self, law: DiscreteLaw, place: Place) -> Frame:
-        low_pass = None if self.low_pass is None else self.low_pass.sampled(self.sampling.outer)
+        low_pass = None if self.low_pass is None else self.low_pass.discretize(self.sampling.outer)
         D = self.motion.over(self.sampling.period.exact)
         step = StepFrame(self.motion.Kp, D, low_pass)
         return Frame(self.sampling.step, step, (law,), place.age, place.motor.time_constant)

@@ -26,7 +26,7 @@ from nrs_design.switched.assumptions import (
 from nrs_design.switched.joint import motor_text
 from nrs_design.switched.loop_assumptions import kept_by_laws
 from nrs_design.switched.sampled_frame import Frame
-from nrs_design.switched.sampled_gains import SampledGains
+from nrs_design.switched.sampled_gains import RangedLaw
 from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS
 
 # Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
@@ -53,7 +53,7 @@ def assume_sampled(
     sampling: SamplingSpec,
     ranges: ActuatorRanges,
     frame: Frame,
-    gains: Mapping[str, SampledGains],
+    gains: Mapping[str, RangedLaw],
     design: ControllerDesign,
     loss: Loss,
     touched: Sequence[Environment],
@@ -172,7 +172,7 @@ def _loss_texts(loss: Loss, design: ControllerDesign, frame: Frame) -> Iterator[
         yield say(_LOST[loss])
 
 
-def _retuned_texts(gains: Mapping[str, SampledGains]) -> Iterator[Assumption]:
+def _retuned_texts(gains: Mapping[str, RangedLaw]) -> Iterator[Assumption]:
     ranged = {name: item for name, item in gains.items() if item.box.ranges}
     for name, item in ranged.items():
         yield from item.texts(name)
@@ -194,7 +194,7 @@ def _delay_text(least: int, most: int) -> Assumption:
     return say("sample-age.fixed" if most else "sample-age.now", oldest, most=oldest)
 
 
-def _coefficients(frame: Frame, gains: Mapping[str, SampledGains]) -> str:
+def _coefficients(frame: Frame, gains: Mapping[str, RangedLaw]) -> str:
     texts = [f"Kp = {exact_decimal(frame.step.Kp)}", f"Kd/T = {exact_decimal(frame.step.D)}"]
     for name, item in gains.items():
         coefficients = item.law.coefficients.items()

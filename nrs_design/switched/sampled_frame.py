@@ -39,7 +39,7 @@ from nrs_design.switched.sampled_law import (
     kinds_of,
     list_law,
 )
-from nrs_design.switched.sampled_step import SampledStep, second, short
+from nrs_design.switched.sampled_step import RoundedStep, second, short
 
 # The error of motion of a sample ago, and the reference of impedance controllers alone, in whose
 # place the error of motion is a state.
@@ -198,7 +198,7 @@ class Frame:
         sizes = step.motion_sizes()
         return step.command(nothing), [sizes.get(name, nothing) for name in shares]
 
-    def _step(self, law: DiscreteLaw, force: LinearForm) -> SampledStep:
+    def _step(self, law: DiscreteLaw, force: LinearForm) -> RoundedStep:
         """Return what the law makes of a sample of the force."""
         shares, at, parts = _beginning(self)
         given = {
@@ -211,7 +211,7 @@ class Frame:
             # It is rounded as it is read, the reference of an admittance as it moves.
             given["position"] = at.reference_rounding
         numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
-        return SampledStep.of(self.listed, law, numbers, given, at.rounded, shares)
+        return RoundedStep.of(self.listed, law, numbers, given, at.rounded, shares)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from nrs_design.switched.parameter_box import Box
 
 
 @dataclass(frozen=True, slots=True)
-class SampledGains:
+class RangedLaw:
     """A law, and the box of what its coefficients are made of.
 
     Where Mt or Bt has a range, that is a and ``c = b/(1 - a)``, which is 1/Bt but for rounding;
@@ -26,7 +26,7 @@ class SampledGains:
     box: Box  # Of ``a`` and ``c``, and of ``Kt``, as far as they have ranges
 
     @classmethod
-    def of(cls, law: DiscreteLaw, gains: GainBox, period: Fraction, method: str) -> SampledGains:
+    def of(cls, law: DiscreteLaw, gains: GainBox, period: Fraction, method: str) -> RangedLaw:
         """Enclose the coefficients of all gains in a box.
 
         Parameters

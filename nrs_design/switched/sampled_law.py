@@ -14,7 +14,7 @@ from typing import Any
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
-from nrs_design.controllers.sensor import SampledLowPass
+from nrs_design.controllers.sensor import DiscreteLowPass
 from nrs_design.controllers.step_analysis import Term, counted_terms, rounded_terms
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import InternalError
@@ -152,7 +152,7 @@ def list_law(order: int, kinds: Kinds) -> ListedLaw:
         If a term takes a rounded number and nothing bounds what that adds to its own rounding.
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
-    low_pass = SampledLowPass(order, ANY, ANY) if order else None
+    low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
     law = build_law(StepFrame(ANY, ANY, low_pass), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
     # What is commanded is zero in the loop of a proof, and angles count from there.

@@ -37,7 +37,7 @@ from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
-from nrs_design.switched.sampled_gains import SampledGains
+from nrs_design.switched.sampled_gains import RangedLaw
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
     channels_of,
@@ -175,7 +175,7 @@ def _motions(
     loop: _Loop,
     plant: Plant,
     design: ControllerDesign,
-    laws: Mapping[str, SampledGains],
+    laws: Mapping[str, RangedLaw],
     loss: Loss,
 ) -> tuple[dict[str, tuple[SampledMode, ...]], tuple[SampledMode, ...]]:
     """Return the motions of each controller, and those of free motion beside them.
@@ -215,13 +215,13 @@ def _turns(sampling: SamplingSpec) -> tuple[Turn, ...]:
     return Turn.BOTH, Turn.ADMITTANCE if faster else Turn.MOTION
 
 
-def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> SampledGains:
+def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> RangedLaw:
     period, method = sampling.outer, sampling.admittance
     law = controller.law.discretize(period, method)
     if law is None:
         # The spec is read with a check that says so at its place.
         raise InternalError(f"{controller.name} has no sampled law")
-    return SampledGains.of(law, box, period, method)
+    return RangedLaw.of(law, box, period, method)
 
 
 def _frame(
@@ -237,7 +237,7 @@ def _frame(
         )
     tau, low_pass, motion = ranges.time_constant, design.sensor.filter, design.motion
     outer = sampling.outer
-    filtered = None if low_pass is None else low_pass.sampled(outer)
+    filtered = None if low_pass is None else low_pass.discretize(outer)
     return Frame(
         sampling.step,
         StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered),
@@ -258,7 +258,7 @@ class _Loop:
     motor: Box
 
     def in_contact(
-        self, controller: Controller, gains: SampledGains, touched: Iterable[Environment]
+        self, controller: Controller, gains: RangedLaw, touched: Iterable[Environment]
     ) -> tuple[SampledMode, ...]:
         """Return the motions of a controller in all contacts, and in the air if it has none.
 
@@ -275,7 +275,7 @@ class _Loop:
             found += self._corners(gains, own.beside(self.motor), name)
         return tuple(found)
 
-    def in_the_air(self, controller: str, gains: SampledGains) -> tuple[SampledMode, ...]:
+    def in_the_air(self, controller: str, gains: RangedLaw) -> tuple[SampledMode, ...]:
         """Return the motions of a controller that touches nothing."""
         return tuple(self._corners(gains, self.motor, f"{controller}/{FREE}"))
 
@@ -288,7 +288,7 @@ class _Loop:
         for corner, rows in self.motor.corners(rows_at, name):
             yield SampledMode.of(corner, rows, len(self.frame.states), begins=False)
 
-    def _corners(self, gains: SampledGains, box: Box, name: str) -> Iterator[SampledMode]:
+    def _corners(self, gains: RangedLaw, box: Box, name: str) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
         law = gains.law
         ages = range(self.delays[0], self.delays[1] + 1)
@@ -305,7 +305,7 @@ class _Loop:
                 yield SampledMode.of(corner, rows, size, begins=turn is Turn.BOTH)
 
     def _rows(
-        self, gains: SampledGains, delay: int, turn: Turn, values: Mapping[str, Fraction]
+        self, gains: RangedLaw, delay: int, turn: Turn, values: Mapping[str, Fraction]
     ) -> list[LinearForm]:
         return self.frame.rows(gains.at(values), delay, values, turn)
 

@@ -38,7 +38,7 @@ def second(name: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class SampledStep:
+class RoundedStep:
     """One sample of a law in force."""
 
     listed: ListedLaw  # The list of operations
@@ -58,7 +58,7 @@ class SampledStep:
         given: Mapping[str, LinearForm],
         rounded: Mapping[str, LinearForm],
         shares: Mapping[str, Fraction],
-    ) -> SampledStep:
+    ) -> RoundedStep:
         """Compute it.
 
         Parameters

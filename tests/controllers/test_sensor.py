@@ -104,7 +104,7 @@ def test_lengths_are_enclosed(vector):
 
 def test_a_filter_that_single_precision_loses_is_refused():
     with pytest.raises(DesignError, match="a step keeps all it holds"):
-        LowPass(1, F(1, 10**6)).sampled(F(1, 500))
+        LowPass(1, F(1, 10**6)).discretize(F(1, 500))
 
 
 def test_a_contact_gives_its_arm():
@@ -135,7 +135,7 @@ def test_lags_in_continuous_time(order):
 @pytest.mark.parametrize("order", [1, 3])
 def test_lags_as_a_processor_runs_them(order):
     """Sample by sample, against the same filters in a row."""
-    step = LowPass(order, F(200)).sampled(F(1, 500))
+    step = LowPass(order, F(200)).discretize(F(1, 500))
     p, q = float(step.p), float(step.q)
     assert is_float32(step.p)
     assert is_float32(step.q)

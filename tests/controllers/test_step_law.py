@@ -29,7 +29,7 @@ PI = IntegralForce(Fraction(1, 64), Fraction(1, 2))
 
 
 def law_of(*laws, order=0, limits=None):
-    low_pass = LowPass(order, Fraction(200)).sampled(PERIOD) if order else None
+    low_pass = LowPass(order, Fraction(200)).discretize(PERIOD) if order else None
     frame = StepFrame(Fraction(10**5), Fraction(10**6), low_pass, limits or StepLimits())
     discrete = {f"law-{i}": law.discretize(PERIOD, "exact") for i, law in enumerate(laws)}
     return build_law(frame, discrete, IDLE)

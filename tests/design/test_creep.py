@@ -112,7 +112,7 @@ def test_simulated_and_bounded(tmp_path, spring):
     )
     item = run_analysis(found).impedance[1]
     period, law = Fraction(1, 500), found.design.controllers[1].law
-    low_pass = found.design.sensor.filter.sampled(period)
+    low_pass = found.design.sensor.filter.discretize(period)
     motion, held = found.design.motion, law.discretize(period, "exact")
     step = StepFrame(motion.Kp, motion.over(period), low_pass)
     frame = Frame(period, step, (held,), 1, Fraction("0.0351"))

@@ -46,7 +46,7 @@ def law(*, Mt="0.01", Kt=("0", "0"), order=0, method="exact", limits=None) -> St
             (("insertion", "2.15"), ("withdrawal", "1.04")), Kt, strict=True
         )
     }
-    low_pass = LowPass(order, Fraction(200)).sampled(PERIOD) if order else None
+    low_pass = LowPass(order, Fraction(200)).discretize(PERIOD) if order else None
     return build_law(frame(low_pass, limits), laws)
 
 
@@ -58,7 +58,7 @@ ADMITTANCE = Admittance(to_float32(Fraction("0.01")), to_float32(Fraction("2.15"
 INTEGRAL = IntegralForce(to_float32(Fraction("0.02")), Fraction(1, 2))
 SPRUNG = replace(ADMITTANCE, Kt=Fraction(1, 2))
 LAWS = {
-    "force and position": build_law(frame(LowPass(1, Fraction(200)).sampled(PERIOD)), PLACED),
+    "force and position": build_law(frame(LowPass(1, Fraction(200)).discretize(PERIOD)), PLACED),
     "inertia": law(),
     "static": law(Mt="0"),
     "filter and spring": law(order=2, Kt=("0.5", "0")),
@@ -80,7 +80,7 @@ LAWS = {
         to_float32(Fraction("0.96")),
     ),
     "mixed, spring": build_law(
-        frame(LowPass(1, Fraction(200)).sampled(PERIOD)),
+        frame(LowPass(1, Fraction(200)).discretize(PERIOD)),
         {**PLACED, "insertion": SPRUNG.discretize(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
     ),

@@ -10,7 +10,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.interval import Interval
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.sampled_frame import Frame
-from nrs_design.switched.sampled_gains import SampledGains
+from nrs_design.switched.sampled_gains import RangedLaw
 
 PERIOD = Fraction(1, 500)
 
@@ -20,7 +20,7 @@ def gains_of(Mt, Bt, Kt=(0, 0)):
     law = Admittance(*(interval.nominal for interval in ranges))
     names = ("Mt", "Bt", "Kt") if law.Kt else ("Mt", "Bt")
     box = GainBox(law, dict(zip(names, ranges, strict=False)))
-    return SampledGains.of(law.discretize(PERIOD, "exact"), box, PERIOD, "exact")
+    return RangedLaw.of(law.discretize(PERIOD, "exact"), box, PERIOD, "exact")
 
 
 def test_a_point_is_the_law_that_ships():
@@ -29,8 +29,7 @@ def test_a_point_is_the_law_that_ships():
     assert gains.at({"k": Fraction(3)}) is gains.law
     force = ProportionalForce(Fraction(1, 50)).discretize(PERIOD, "exact")
     assert (
-        SampledGains.of(force, GainBox.point(Admittance(*[Fraction(1)] * 2)), PERIOD, "").law
-        is force
+        RangedLaw.of(force, GainBox.point(Admittance(*[Fraction(1)] * 2)), PERIOD, "").law is force
     )
 
 

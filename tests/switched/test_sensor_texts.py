@@ -46,7 +46,7 @@ def test_the_filter_runs_with_the_outer_loop(tmp_path):
     path.write_text(SOFT_TISSUE.read_text(encoding="utf-8") + more, encoding="utf-8")
     designed = run_design(read_spec(path))
     system = assemble(designed.spec, designed.plant, designed.design, "deflection")
-    step = designed.design.sensor.filter.sampled(Fraction(1, 2000))
+    step = designed.design.sensor.filter.discretize(Fraction(1, 2000))
     (text,) = (text for text in system.assumptions if "through one lag" in text)
     assert f"p = {exact_decimal(step.p)} and" in text
     kept = {mode.A.fractions()[5][5] for mode in system.modes}

@@ -198,7 +198,7 @@ def law_classes() -> frozenset[str]:
         ("logic.type == 'thresholds'", 1),
         ("isinstance(logic, EstimatorSpec)", 1),
         ("actuator.command != 'rpm'", 1),
-        ("evidence.kind == 'common-quadratic'", 1),
+        ("evidence.kind == 'graph'", 1),
         ("spec.commands == 'velocity'", 0),
         ("operation.kind == 'multiply'", 0),
         ("OPINIONS.get(evidence.kind)", 0),

@@ -78,8 +78,7 @@ def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
 
 # Who holds a law, or a kind of something, calls it so; a unit of command is one, too.
 HELD = {"type", "model", "linear_model", "kind", "law", "command"}
-# What an assumption is about may have no place in a spec; a file of no kind that is known begins
-# with nothing.
+# A file of no kind that is known begins with nothing.
 ALLOWED = {
     ("nrs_design.identification.tables.arrays", "get"),
 }
@@ -98,7 +97,6 @@ KINDS_OF_SPECS = {
     ("nrs_design.pipeline.design", "robot"),
     ("nrs_design.pipeline.margins", "robot"),
     ("nrs_design.robot.pipeline", "robot"),
-    ("nrs_design.spec.doubts", "interaction-design"),
     ("nrs_design.spec.load", "interaction-design"),
     ("nrs_design.switched.assemble", "robot"),
     ("nrs_design.switched.assemble", "switched-system"),
@@ -200,7 +198,7 @@ def law_classes() -> frozenset[str]:
         ("logic.type == 'thresholds'", 1),
         ("isinstance(logic, EstimatorSpec)", 1),
         ("actuator.command != 'rpm'", 1),
-        ("evidence.kind == 'common-quadratic'", 1),
+        ("evidence.kind == 'graph'", 1),
         ("spec.commands == 'velocity'", 0),
         ("operation.kind == 'multiply'", 0),
         ("OPINIONS.get(evidence.kind)", 0),

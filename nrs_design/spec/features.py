@@ -177,6 +177,12 @@ MEMORY = _F(
     "use elastic or kelvin-voigt environments",
     _tissue(lambda law: law.remembers),
 )
+RESTLESS = _F(
+    "{0.name!r}, which has no rest position,",
+    "environments.{0.name}.model",
+    "use another environment",
+    _tissue(lambda law: not law.has_rest),
+)
 PRELOADED = _F(
     "{0.name!r}, known within its preload only,",
     "environments.{0.name}.model",

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import WithJsonSchema
-
 from nrs_design.files import is_device_name
 from nrs_design.proof.text import quoted
 from nrs_design.spec.exact import DECIMAL_PATTERN, RATIO_PATTERN, parse_exact
@@ -51,7 +49,20 @@ def _number(accepts: Callable[[Fraction], bool], expected: str) -> ReadBy:
             raise fault(f"{value} is not {expected}", f"write a number that is {expected}")
         return number
 
-    return ReadBy(read)
+    return ReadBy(read, NUMBER_SCHEMA)
+
+
+def whole(low: int, high: int) -> ReadBy:
+    """Return the marker of a field that is a whole number within bounds."""
+
+    def read(value: object) -> int:
+        number = read_exact(value)
+        if number.denominator != 1 or not low <= number <= high:
+            expected = f"an integer from {low} to {high}"
+            raise fault(f"{value} is not {expected}", f"write {expected}")
+        return int(number)
+
+    return ReadBy(read, {"type": "integer", "minimum": low, "maximum": high})
 
 
 def _read_name(value: object, pattern: str) -> str:
@@ -74,24 +85,8 @@ def _read_label(value: object) -> str:
     return _read_name(value, LABEL_PATTERN)
 
 
-def _text(pattern: str) -> ReadBy:
-    return ReadBy(lambda value: _read_name(value, pattern))
-
-
-def read_digits(value: object) -> int:
-    """Read a number of significant digits, 1 to 7 (a float32 holds no more)."""
-    number = read_exact(value)
-    if number.denominator != 1 or not 1 <= number <= 7:
-        raise fault(f"{value} is not an integer from 1 to 7", "write an integer from 1 to 7")
-    return int(number)
-
-
-def read_axis_count(value: object) -> int:
-    """Read a number of axes, 1 to 64."""
-    number = read_exact(value)
-    if number.denominator != 1 or not 1 <= number <= MAX_AXES:
-        raise fault(f"{value} is not an integer from 1 to {MAX_AXES}", "write a number of axes")
-    return int(number)
+def _text(pattern: str, schema: dict[str, Any]) -> ReadBy:
+    return ReadBy(lambda value: _read_name(value, pattern), schema)
 
 
 def read_title(value: object) -> str:
@@ -113,29 +108,16 @@ def read_hash(value: object) -> str:
 
 
 Exact = Annotated[Fraction, ReadBy(read_exact, NUMBER_SCHEMA)]
-UnitFraction = Annotated[
-    Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1"), WithJsonSchema(NUMBER_SCHEMA)
-]
-Weight = Annotated[
-    Fraction, _number(lambda x: x >= 0, "zero or positive"), WithJsonSchema(NUMBER_SCHEMA)
-]
-Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive"), WithJsonSchema(NUMBER_SCHEMA)]
-AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1"), WithJsonSchema(NUMBER_SCHEMA)]
-BelowTwo = Annotated[
-    Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2"), WithJsonSchema(NUMBER_SCHEMA)
-]
-Digits = Annotated[
-    int,
-    ReadBy(read_digits, {"type": "integer", "minimum": 1, "maximum": 7}),
-]
-AxisCount = Annotated[
-    int,
-    ReadBy(read_axis_count, {"type": "integer", "minimum": 1, "maximum": MAX_AXES}),
-]
-Name = Annotated[
-    str, _text(NAME_PATTERN), WithJsonSchema({"type": "string", "pattern": NAME_PATTERN})
-]
-Label = Annotated[str, _text(LABEL_PATTERN), WithJsonSchema(_LABEL)]
+UnitFraction = Annotated[Fraction, _number(lambda x: 0 < x < 1, "between 0 and 1")]
+Weight = Annotated[Fraction, _number(lambda x: x >= 0, "zero or positive")]
+Positive = Annotated[Fraction, _number(lambda x: x > 0, "positive")]
+AboveOne = Annotated[Fraction, _number(lambda x: x > 1, "above 1")]
+BelowTwo = Annotated[Fraction, _number(lambda x: 0 < x < 2, "between 0 and 2")]
+# Significant digits: a float32 holds no more.
+Digits = Annotated[int, whole(1, 7)]
+AxisCount = Annotated[int, whole(1, MAX_AXES)]
+Name = Annotated[str, _text(NAME_PATTERN, {"type": "string", "pattern": NAME_PATTERN})]
+Label = Annotated[str, _text(LABEL_PATTERN, _LABEL)]
 
 
 def read_contact(value: object) -> Contact:

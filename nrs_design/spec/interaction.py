@@ -6,6 +6,7 @@ from nrs_design.spec.check import find_faults, not_together
 from nrs_design.spec.combinations import CHANGING
 from nrs_design.spec.dwell import DwellObstacle
 from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
+from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec
 
 
@@ -13,6 +14,7 @@ class InteractionDesignSpec(AbstractInteractionSpec):
     """Controllers to be designed for the contact with given environments."""
 
     checks = INTERACTION_CHECKS
+    warnings = INTERACTION_DOUBTS
 
     def find_dwell_obstacle(self) -> DwellObstacle | None:
         """Say why no dwell time can be claimed for this spec, or None."""

@@ -22,6 +22,8 @@ class SpecModel(BaseModel):
     # What must not be, whatever its fields are for themselves. Each row asks for the fields that it
     # is about only, so that faults between valid fields are told although others are not valid.
     checks: ClassVar[tuple[Row[Any], ...]] = ()
+    # What is allowed, and probably not meant.
+    warnings: ClassVar[tuple[Row[Any], ...]] = ()
 
     @model_validator(mode="after")
     def _run_checks(self) -> Self:

@@ -17,13 +17,13 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, PlainValidator, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.models.interval import Interval
 from nrs_design.proof.power import power_between
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import NUMBER_SCHEMA, read_exact
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
 from nrs_design.spec.range_checks import RANGE_CHECKS
 
 # Powers are enclosed in integers with as many digits as the denominator is large.
@@ -68,7 +68,7 @@ _SCHEMA: dict[str, Any] = {
         },
     ]
 }
-_Exponent = Annotated[Fraction, PlainValidator(_read_exponent), WithJsonSchema(NUMBER_SCHEMA)]
+_Exponent = Annotated[Fraction, ReadBy(_read_exponent, NUMBER_SCHEMA)]
 
 
 class ExponentSpec(SpecModel):
@@ -85,8 +85,7 @@ class ExponentSpec(SpecModel):
 
 RangedExponent = Annotated[
     ExponentSpec,
-    BeforeValidator(lambda v: v if isinstance(v, dict | ExponentSpec) else {"nominal": v}),
-    WithJsonSchema(_SCHEMA),
+    ReadBefore(lambda v: v if isinstance(v, dict | ExponentSpec) else {"nominal": v}, _SCHEMA),
 ]
 
 

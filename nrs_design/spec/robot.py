@@ -9,7 +9,7 @@ from pydantic import Field
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import Name, Positive, Title, read_exact
+from nrs_design.spec.fields import Name, Positive, Title, read_exact, whole
 from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
 from nrs_design.spec.quantity_fields import (
@@ -45,20 +45,8 @@ def _read_elbow_sign(value: object) -> int:
     return int(number)
 
 
-def _read_counts(value: object) -> int:
-    number = read_exact(value)
-    if number.denominator != 1 or not 2 <= number <= MAX_COUNTS:
-        raise fault(
-            f"{value} is not an integer from 2 to {MAX_COUNTS}", "write the counts of one turn"
-        )
-    return int(number)
-
-
 ElbowSign = Annotated[int, ReadBy(_read_elbow_sign, {"type": "integer", "enum": [-1, 1]})]
-Counts = Annotated[
-    int,
-    ReadBy(_read_counts, {"type": "integer", "minimum": 2, "maximum": MAX_COUNTS}),
-]
+Counts = Annotated[int, whole(2, MAX_COUNTS)]
 
 
 class TensorSpec(SpecModel):

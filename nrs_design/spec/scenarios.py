@@ -7,13 +7,13 @@ from functools import partial
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
-from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, read_exact
+from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
 from nrs_design.spec.model import ReadBy, SpecModel
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
@@ -89,36 +89,22 @@ def _read_file(value: object) -> str:
     return text
 
 
-def _read_seed(value: object) -> int:
-    number = read_exact(value)
-    if number.denominator != 1 or not 0 <= number <= LARGEST_SEED:
-        raise fault(f"{value} is not a seed", f"write a whole number from 0 to {LARGEST_SEED}")
-    return int(number)
-
-
-def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> WithJsonSchema:
+def _pairs(first: dict[str, Any], second: dict[str, Any], least: int) -> dict[str, Any]:
     pair = {"type": "array", "items": [first, second], "minItems": 2, "maxItems": 2}
-    return WithJsonSchema(
-        {"type": "array", "items": pair, "minItems": least, "maxItems": MAX_POINTS}
-    )
+    return {"type": "array", "items": pair, "minItems": least, "maxItems": MAX_POINTS}
 
 
 _TIME = quantity_schema(kinds.DURATION)
 Breakpoints = Annotated[
     Points,
-    ReadBy(_read_points),
-    _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2),
+    ReadBy(_read_points, _pairs(_TIME, quantity_schema(kinds.ANGULAR_VELOCITY), 2)),
 ]
 Schedule = Annotated[
     tuple[tuple[Quantity, str], ...],
-    ReadBy(_read_schedule),
-    _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1),
+    ReadBy(_read_schedule, _pairs(_TIME, {"type": "string", "pattern": LABEL_PATTERN}, 1)),
 ]
 File = Annotated[str, ReadBy(_read_file, {"type": "string"})]
-Seed = Annotated[
-    int,
-    ReadBy(_read_seed, {"type": "integer", "minimum": 0, "maximum": LARGEST_SEED}),
-]
+Seed = Annotated[int, whole(0, LARGEST_SEED)]
 
 
 def one_of(message: str, remedy: str) -> tuple[Row[Any], ...]:

@@ -8,9 +8,8 @@ from typing import Annotated
 from pydantic import Field
 
 from nrs_design.spec.check import Row
-from nrs_design.spec.faults import fault
-from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.fields import whole
+from nrs_design.spec.model import SpecModel
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
@@ -32,23 +31,12 @@ HIGHEST_ORDER = 4
 _AT = "{axis} of {what}, in m along the axes of the sensor"
 
 
-def _read_order(value: object) -> int:
-    number = read_exact(value)
-    if number.denominator != 1 or not 1 <= number <= HIGHEST_ORDER:
-        raise fault(f"{value} is no order", f"write a whole number from 1 to {HIGHEST_ORDER}")
-    return int(number)
-
-
-Order = Annotated[
-    int,
-    ReadBy(_read_order, {"type": "integer", "minimum": 1, "maximum": HIGHEST_ORDER}),
-]
-
-
 class FilterSpec(SpecModel):
     """A low-pass of so many equal lags in a row, ``1/(s/cutoff + 1)^order``."""
 
-    order: Order = Field(default=1, description=f"number of lags, 1 to {HIGHEST_ORDER}, no unit")
+    order: Annotated[int, whole(1, HIGHEST_ORDER)] = Field(
+        default=1, description=f"number of lags, 1 to {HIGHEST_ORDER}, no unit"
+    )
     cutoff: Bandwidth = Field(description="corner frequency of each lag, such as 30 Hz")
 
 

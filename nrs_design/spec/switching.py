@@ -8,7 +8,7 @@ from fractions import Fraction
 from math import lcm
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import Field
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import counted, quoted
@@ -17,7 +17,7 @@ from nrs_design.spec.check import Row, each
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 from nrs_design.spec.references import NO_SUCH, Reference
 
@@ -213,31 +213,24 @@ def _read_switching(value: object) -> object:
     return value
 
 
-def _rule_schema(*words: str) -> WithJsonSchema:
-    return WithJsonSchema(
-        {
-            "anyOf": [
-                {"enum": list(words)},
-                {
-                    "type": "object",
-                    "properties": {
-                        "dwell_time": DWELL_SCHEMA | {"description": _DWELL_TIME},
-                        "longest_dwell_time": DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
-                        "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
-                    },
-                    "minProperties": 1,
-                    "additionalProperties": False,
-                },
-            ]
-        }
-    )
+def _rule(*words: str) -> ReadBefore:
+    rules = {
+        "dwell_time": DWELL_SCHEMA | {"description": _DWELL_TIME},
+        "longest_dwell_time": DWELL_SCHEMA | {"description": _LONGEST_DWELL_TIME},
+        "transitions": _TRANSITIONS_SCHEMA | {"description": _TRANSITIONS},
+    }
+    mapping = {
+        "type": "object",
+        "properties": rules,
+        "minProperties": 1,
+        "additionalProperties": False,
+    }
+    return ReadBefore(_read_switching, {"anyOf": [{"enum": list(words)}, mapping]})
 
 
-SwitchingRule = Annotated[SwitchingSpec, BeforeValidator(_read_switching), _rule_schema(ARBITRARY)]
+SwitchingRule = Annotated[SwitchingSpec, _rule(ARBITRARY)]
 # Of a spec that may have a mode logic, which its own validator turns into rules first.
-LogicalRule = Annotated[
-    SwitchingSpec, BeforeValidator(_read_switching), _rule_schema(ARBITRARY, MODE_LOGIC)
-]
+LogicalRule = Annotated[SwitchingSpec, _rule(ARBITRARY, MODE_LOGIC)]
 
 
 def _uneven(

@@ -14,7 +14,7 @@ from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec import features as f
 from nrs_design.spec.check import Row
 from nrs_design.spec.combinations import CHANGING, COMBINATIONS
-from nrs_design.spec.interaction_checks import INTERACTION_CHECKS
+from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
 from nrs_design.spec.load import SPEC_KINDS, model_of
 from nrs_design.spec.model import SpecModel
 
@@ -81,6 +81,7 @@ CHANGES = {
     f.LOADED_ALONE: {"actuator": LOAD},
     f.COUPLED: {"actuator": LOAD, "coupling": {"inertia": ["0 kg*m^2", "0.1 kg*m^2"], "axes": 3}},
     f.HAND: tissue("hand", damping="7 N*m*s/rad", mass="0.1 kg*m^2"),
+    f.RESTLESS: tissue("maxwell", damping="10 N*m*s/rad"),
     f.MEMORY: tissue("maxwell", damping="10 N*m*s/rad"),
     f.PRELOADED: tissue(
         "hunt-crossley",
@@ -146,7 +147,7 @@ def spec_with(*features):
 
 def test_every_feature_has_its_change():
     named = {v for v in vars(f).values() if isinstance(v, type(f.SAMPLED))}
-    used = {feature for row in COMBINATIONS for feature in row.features}
+    used = {item for row in (*COMBINATIONS, *INTERACTION_DOUBTS) for item in row.features}
     assert named == set(CHANGES) == used
 
 
@@ -209,7 +210,7 @@ def test_every_row_of_every_table_can_be_filled():
     """A brace that is none of a place would stop the reading of a spec that is to be refused."""
     for kind in SPEC_KINDS:
         model_of(kind)
-    rows = {id(row): row for row in (*rows_of(SpecModel), *INTERACTION_CHECKS)}.values()
+    rows = {id(row): row for row in (*rows_of(SpecModel), *INTERACTION_DOUBTS)}.values()
     assert len(rows) > 100
     for row in rows:
         assert isinstance(row, Row)

@@ -110,9 +110,9 @@ def test_axes_that_act_on_each_other_are_not_proved_beside_two_periods():
 def test_what_is_valid_and_not_proved_in_continuous_time():
     """`certify-switching` stops at these; that `check` calls them valid is not all that it says."""
     lost = f"{FORCE}\ncontact: losable\n"
-    assert "loss of contact is not modelled beside" in str(doubts(lost)[-1])
+    assert "loss of contact beside 'position'" in str(doubts(lost)[-1])
     assert doubts(f"{lost}sampling: {{period: 2 ms, delay: 0}}\n") == doubts(FORCE)
     pushed = f"{IMPEDANCE}\ndisturbances: {{command: 8 deg/s}}\n"
     sprung = spoiled(pushed, "    Bt:", "    Kt: 0.5 N*m/rad\n    Bt:")
-    assert "a velocity command is not modelled beside" in str(doubts(sprung)[-1])
+    assert "a velocity command beside the spring Kt" in str(doubts(sprung)[-1])
     assert [doubt.at for doubt in doubts(pushed)] == [("environments", "hand")]

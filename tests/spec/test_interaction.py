@@ -145,11 +145,6 @@ def test_what_is_touched_at_once_is_checked(contacts: str, message: str) -> None
     assert message in str(refusal(spoiled(AT_ONCE, "[[soft, hand]]", contacts)))
 
 
-def test_a_dwell_time_and_things_touched_at_once_exclude_each_other() -> None:
-    text = spoiled(AT_ONCE, "switching: arbitrary", "switching: {dwell_time: 1 s}")
-    assert "touches at once" in refusal(text).message
-
-
 def test_damped_things_are_not_lost_on_their_own() -> None:
     text = AT_ONCE + "contact: losable\n"
     assert (
@@ -426,8 +421,6 @@ def test_maxwell_alone() -> None:
     [
         (MAXWELL, ("environment: soft", "environment: soft\n    contacts: [soft, hand]"),
          "maxwell", "has no rest position, so 'soft' shares no deflection with hand"),
-        (BOLTZMANN, ("switching:", "coordinates: force\nswitching:"),
-         "force", "force coordinates beside 'soft'"),
         (BOLTZMANN.replace("nominal: 400", "nominal: 0").replace("300", "0"), ("", ""),
          "0 N*s/m", "must be positive"),
         (BOLTZMANN.replace("    series_stiffness: 17 N/m\n", ""), ("", ""),

@@ -127,30 +127,10 @@ def test_degrees_cancel():
         ("range: [1.1, 1.3]", "range: [1.25, 1.3]", "outside the range"),
         ("nominal: 1.2,", "nominal: 1.2001,", "finer than 1/1000"),
         ("    exponent: {nominal: 1.2, range: [1.1, 1.3]}\n", "", "exponent"),
-        (
-            "switching: arbitrary",
-            "switching: {dwell_time: 1 s}",
-            "beside the range of",
-        ),
     ],
 )
 def test_what_makes_no_sense_is_refused(old, new, message):
     assert message in str(refusal(spoiled(TEXT, old, new)))
-
-
-@pytest.mark.parametrize(
-    ("end", "message"),
-    [
-        (
-            "contact: losable\n",
-            "'soft', known within its preload only, beside loss of contact",
-        ),
-        ("disturbances: {command: 8 deg/s}\n", "beside bounds under disturbances"),
-        ("coordinates: force\n", "force coordinates beside 'soft'"),
-    ],
-)
-def test_what_is_not_modelled_is_refused(end, message):
-    assert message in refusal(TEXT + end).message
 
 
 def test_a_loaded_motor_in_ranges_has_no_rest_under_a_preload():

@@ -49,7 +49,7 @@ def test_the_example_says_all_that_it_says():
         (RUN + ", control: {logic: mode-logic}", "no mode_logic", "add one"),
         (RUN + ", control: {contact: {sofd: insertion}}", "no environment 'sofd'", ""),
         (RUN + ", control: {schedule: [[1 s, insertion]]}", "not in order", "[[0 s"),
-        (RUN + ", seed: -1", "not a seed", "whole"),
+        (RUN + ", seed: -1", "is not an integer from 0", "write an integer"),
         (RUN + ", errors: {jitter: 1}", "between 0 and 1", ""),
         (RUN + ", errors: {friction: 2 V}", "commands in V", "write it in rpm"),
         (RUN + ", durration: 1 s", "unknown key", "duration"),

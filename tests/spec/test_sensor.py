@@ -55,7 +55,7 @@ def test_everything_is_read_and_listed() -> None:
         ("{force_bias: 1 N}", "force_bias counts with pivot only"),
         ("{bias: -1 N*m}", "positive"),
         ("{bias: 1 N}", "that is a force"),
-        ("{filter: {order: 5, cutoff: 30 Hz}}", "5 is no order"),
+        ("{filter: {order: 5, cutoff: 30 Hz}}", "5 is not an integer from 1 to 4"),
         ("{filter: {order: 1}}", "cutoff"),
         ("{tool: {mass: 0 kg, center_of_mass: {x: 0 m, y: 0 m, z: 0 m}}}", "positive"),
         ("{bias: 1 N*m, contact: {x: 0 m, y: 0 m, z: 0 m}}", "the contact point is at the pivot"),

@@ -194,18 +194,6 @@ def test_discrete_time_counts_steps() -> None:
     [
         ("withdrawal]]", "withdrawel]]", "withdrawel", "did you mean withdrawal?"),
         ("500 ms", "5 steps", "5 steps", "is not a time"),
-        (
-            "stiffness: 747.1461 N/m",
-            "stiffness: {nominal: 747 N/m, range: [700 N/m, 800 N/m]}",
-            "500 ms",
-            "a dwell time beside the range of environment 'soft'",
-        ),
-        (
-            "    environment: soft\n",
-            "    environment: soft\n    contacts: [soft, hand]\n",
-            "500 ms",
-            "a dwell time beside several contacts of 'insertion'",
-        ),
     ],
 )
 def test_refuses_rules_of_controllers(old: str, new: str, at: str, said: str) -> None:

@@ -81,7 +81,7 @@ class Environment:
                 continue
             raise AssemblyError(
                 f"with its ranges scaled by {float(scale):.6g}, environment {self.name} reaches a "
-                f"{self.law.kinds[index]} that nothing has which can be touched",
+                f"{self.law.kinds[index]} {self.law.forbidden(index)}",
                 remedy="scale the ranges by less",
             )
         return replace(self, ranges=ranges)

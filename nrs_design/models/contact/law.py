@@ -261,8 +261,13 @@ class AbstractLinearLaw(AbstractContactLaw):
     @classmethod
     def admits(cls, index: int, value: Number) -> bool:
         """Tell whether a parameter, by its place, may have a value."""
-        positive = value > 0 or (value == 0 and cls.parameters()[index] in cls.may_vanish)
+        positive = value > 0 or (value == 0 and cls.forbidden(index) == "< 0")
         return positive and math.isfinite(value)
+
+    @classmethod
+    def forbidden(cls, index: int) -> str:
+        """Return which values a parameter, by its place, may not have."""
+        return "< 0" if cls.parameters()[index] in cls.may_vanish else "<= 0"
 
     def given(self) -> dict[str, str | float]:
         """Return the law and its parameters by the keys of a spec."""

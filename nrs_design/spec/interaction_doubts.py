@@ -1,0 +1,145 @@
+"""What is allowed in an interaction design, and probably not meant: one table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from nrs_design.proof.bounds import rounded_up
+from nrs_design.spec.check import Feature, Row, each, not_together
+from nrs_design.spec.faults import Location
+from nrs_design.spec.features import (
+    COMMAND,
+    CONTINUOUS,
+    COUPLED,
+    DISTURBED,
+    LOSABLE,
+    MEMORY,
+    OTHERS,
+    RESTLESS,
+    SPRUNG,
+    TWO_PERIODS,
+)
+from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
+from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.quantity import is_less
+
+# Beyond a force that a motion begins with, in limits of the torque, another unit was likely meant.
+_HARDEST = 10
+
+
+def _identified(spec: Spec) -> Iterator[tuple[Location, tuple[str, IdentifiedSpec]]]:
+    return (((*at, "doubts"), (at[-1], item)) for at, item in spec.identified.items())
+
+
+def _environments(spec: Spec) -> Iterator[tuple[Location, tuple[str, bool]]]:
+    return ((("environments", name), (name, name in spec.touched)) for name in spec.environments)
+
+
+def _late_threshold(spec: Spec) -> tuple[object, ...]:
+    """Return a threshold that the torque reaches only where it is too large already."""
+    logic = None if spec.mode_logic is None else spec.mode_logic.thresholds
+    limit = spec.limits.torque
+    for index, switch in enumerate(() if logic is None else logic.switches, 1):
+        above = None if switch.torque is None else switch.torque.above
+        if above is not None and above.not_below > limit.not_above:
+            return index, switch.source, switch.target, above.text, limit.text
+    return ()
+
+
+def _slow(spec: Spec) -> str | None:
+    """Return the speed at the limit of the command, if the axis has to be faster."""
+    if spec.limits.command is None:
+        return None
+    reached = spec.actuator.gain.range[1].not_above * spec.limits.command.not_above
+    return rounded_up(reached) if reached < spec.limits.velocity.not_below else None
+
+
+def _hard(spec: Spec) -> tuple[str, str] | None:
+    """Return a wanted force that is out of proportion: some more than the limit is the very use."""
+    force, limit = None if spec.goals is None else spec.goals.initial_force, spec.limits.torque
+    if force is None or isinstance(force, str) or force.exact <= _HARDEST * limit.exact:
+        return None
+    return force.text, limit.text
+
+
+def _left(spec: Spec) -> tuple[str, str] | None:
+    """Return a disturbance that commands may leave, and their limit."""
+    command = None if spec.disturbances is None else spec.disturbances.command
+    if command is None or not is_less(command, spec.limits.velocity):
+        return None
+    return command.text, spec.limits.velocity.text
+
+
+def _unproved(*features: Feature[Spec]) -> Row[Spec]:
+    """Return the row of what can be designed, but not proved, in continuous time."""
+    form = "{}: not modelled, so certify-switching refuses this spec"
+    return not_together(*features, CONTINUOUS, form=form)
+
+
+INTERACTION_DOUBTS: tuple[Row[Spec], ...] = (
+    *each(
+        _identified,
+        Row[tuple[str, IdentifiedSpec]](
+            "",
+            lambda item: item[1].doubts and item[1].accept_doubt is None and item[0],
+            "the identification of {0} is in doubt, and nothing says why that is accepted",
+            "record again, or add accept_doubt",
+        ),
+    ),
+    *each(
+        _environments,
+        Row[tuple[str, bool]](
+            "",
+            lambda item: not item[1] and item[0],
+            "environment {0} is touched by no controller, so nothing is shown about it",
+            "list it in the contacts of a controller, or remove it",
+        ),
+    ),
+    Row(
+        "mode_logic.switches",
+        _late_threshold,
+        "switch {0} of the mode logic, from {1} to {2}, waits for a torque of {3}, above "
+        "limits.torque of {4}",
+        "lower the threshold by noise and by what the torque moves in its age",
+    ),
+    Row(
+        "limits.command",
+        _slow,
+        "at limits.command of {s.limits.command.text} the motor turns at {0} rad/s at most, below "
+        "limits.velocity of {s.limits.velocity.text}: the axis cannot follow a command at that "
+        "limit",
+        "raise limits.command, or lower limits.velocity",
+    ),
+    Row(
+        "goals.initial_force",
+        _hard,
+        f"goals.initial_force of {{0}} is more than {_HARDEST} times limits.torque of {{1}}: is "
+        "that its unit?",
+        "what is shown is that motions from there decay, not that the torque is within its limit; "
+        "write `largest` for as much as is found",
+    ),
+    Row(
+        "disturbances",
+        lambda s: TWO_PERIODS.find(s) and DISTURBED.find(s),
+        "beside an outer_period, the decay of the undisturbed loop is proved, and no bound under "
+        "disturbances",
+        "bounds of the loop without outer_period are listed; or remove disturbances",
+    ),
+    Row(
+        "coupling",
+        lambda s: TWO_PERIODS.find(s) and COUPLED.find(s),
+        "beside an outer_period, nothing is proved of axes that act on each other",
+        "what is proved without the one or the other is listed; or remove outer_period or coupling",
+    ),
+    Row(
+        "disturbances.command",
+        _left,
+        "bounds are for velocity commands up to {0}, and limits.velocity lets them be {1}: beyond "
+        "the first, no bound holds",
+        "raise the first, or lower limits.velocity",
+    ),
+    *map(partial(_unproved, LOSABLE), (OTHERS, MEMORY)),
+    *map(partial(_unproved, COMMAND), (OTHERS, MEMORY, SPRUNG)),
+    _unproved(RESTLESS, SPRUNG),
+)

@@ -8,7 +8,7 @@ from time import perf_counter
 
 from benchmarks.measure import Comparison, Finding, Size, time_side_by_side
 from benchmarks.sylvester import check_apart, proved_family
-from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.fast_check import find_fault
 
@@ -50,7 +50,7 @@ def _check_family(modes: int, repeats: int) -> Finding:
     return Finding(work, result, f"below {FAMILY_SECONDS} s", seconds < FAMILY_SECONDS, seconds)
 
 
-def _time_check(system: SwitchedSystem, evidence: CommonQuadratic) -> float:
+def _time_check(system: SwitchedSystem, evidence: FormsOnGraph) -> float:
     start = perf_counter()
     assert find_fault(evidence, system) is None
     return perf_counter() - start

@@ -16,23 +16,23 @@ from sympy import Matrix
 
 from benchmarks.families import stable_family, to_system
 from benchmarks.measure import prove
-from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.system import SwitchedSystem
 
 DECIMALS = 3
 
 
-def proved_family(n: int, m: int) -> tuple[SwitchedSystem, CommonQuadratic]:
+def proved_family(n: int, m: int) -> tuple[SwitchedSystem, FormsOnGraph]:
     """Return a random family, the same in every process, and the proof of its stability."""
     system = to_system(stable_family(n, m, seed=n * m), DECIMALS)
     evidence = prove(system).evidence
-    assert isinstance(evidence, CommonQuadratic)
+    assert isinstance(evidence, FormsOnGraph)
     return system, evidence
 
 
-def accepts(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
+def accepts(system: SwitchedSystem, evidence: FormsOnGraph) -> bool:
     """Check all leading principal minors of Q and of the decreases, with rational numbers."""
-    Q = Matrix(evidence.Q) / 2**evidence.denominator_log2
+    Q = Matrix(evidence.nodes[0].form) / 2**evidence.denominator_log2
     forms = [Q]
     for mode in system.modes:
         A = Matrix(mode.A.numerators) / mode.A.denominator

@@ -22,7 +22,7 @@ import typer
 from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
-from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic
+from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.function import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
@@ -178,15 +178,18 @@ def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     those of the package; the others are left to `tests.proof.truth`.
     """
     discrete = system.time is Time.DISCRETE
+    plain = isinstance(evidence, FormsOnGraph) and len(evidence.nodes) == 1
+    if plain:
+        plain = evidence.degree == 1 and not evidence.multipliers and evidence.stays is None
     is_mode = evidence.kind == "growing-sequence" and evidence.names_unstable_mode
-    if not (isinstance(evidence, CommonQuadratic) or is_mode):
+    if not (plain or is_mode):
         return truth.holds(system, evidence)
     if is_mode:
         ((name, _),) = evidence.steps
         (mode,) = [mode for mode in system.modes if mode.name == name]
         may_stay = truth.bounds_of(system, name)[1] is None
         return may_stay and not is_stable_by_lyapunov(mode.A.fractions(), discrete=discrete)
-    Q, rate = exact(evidence.Q), evidence.rate
+    Q, rate = exact(evidence.nodes[0].form), evidence.rate
     if rate <= 0 or (discrete and rate >= 1) or not is_definite_by_ldl(Q):
         return False
     return all(

@@ -78,8 +78,7 @@ def test_a_control_law_is_known_to_the_files_of_the_table(law, file, also):
 
 # Who holds a law, or a kind of something, calls it so; a unit of command is one, too.
 HELD = {"type", "model", "linear_model", "kind", "law", "command"}
-# What an assumption is about may have no place in a spec; a file of no kind that is known begins
-# with nothing.
+# A file of no kind that is known begins with nothing.
 ALLOWED = {
     ("nrs_design.identification.tables.arrays", "get"),
 }
@@ -199,7 +198,7 @@ def law_classes() -> frozenset[str]:
         ("logic.type == 'thresholds'", 1),
         ("isinstance(logic, EstimatorSpec)", 1),
         ("actuator.command != 'rpm'", 1),
-        ("evidence.kind == 'common-quadratic'", 1),
+        ("evidence.kind == 'graph'", 1),
         ("spec.commands == 'velocity'", 0),
         ("operation.kind == 'multiply'", 0),
         ("OPINIONS.get(evidence.kind)", 0),

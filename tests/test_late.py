@@ -4,12 +4,12 @@ import pytest
 
 from nrs_design.late import late_function, late_names
 from nrs_design.proof import evidence
-from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+from nrs_design.proof.evidence.constant_force import ConstantForce
 
 
 def test_a_name_is_found_in_its_home():
-    find = late_names("nrs_design.proof.evidence", {"CommonQuadratic": "common_quadratic"})
-    assert find("CommonQuadratic") is CommonQuadratic
+    find = late_names("nrs_design.proof.evidence", {"ConstantForce": "constant_force"})
+    assert find("ConstantForce") is ConstantForce
 
 
 def test_a_name_without_a_home_is_none_of_the_package():

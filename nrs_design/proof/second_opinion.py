@@ -25,9 +25,8 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular
-    from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
+    from nrs_design.proof.evidence.graph import FormsOnGraph
     from nrs_design.proof.evidence.growing_sequence import GrowingSequence
-    from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
 
 # Half as many bits as are left of the diagonal where a matrix is rounded down.
 SHORT_BITS = 24
@@ -54,9 +53,8 @@ def agrees(
     if not all(_is_met(A, time) for A, time in _exponents(system, evidence)):
         return False
     decide = _OPINIONS.get(evidence.kind)
-    # What is rounded at a step enters the forms only.
-    if decide is not None and not evidence.covers_rounding:
-        return decide(system, evidence)
+    if decide is not None and (opinion := decide(system, evidence)) is not None:
+        return opinion
     made = (form for _, form in evidence.forms(system)) if forms is None else forms
     return all(map(finds_positive, made))
 
@@ -93,19 +91,21 @@ def _steps(system: SwitchedSystem, evidence: GrowingSequence) -> Iterator[Expone
     return ((modes[name], time) for name, time in evidence.steps)
 
 
-def _stays(system: SwitchedSystem, evidence: ModeQuadratic) -> Iterator[Exponent]:
-    from nrs_design.proof.evidence.flow import shifted
+def _stays(system: SwitchedSystem, evidence: FormsOnGraph) -> Iterator[Exponent]:
+    from nrs_design.proof.stays import shifted
 
+    if evidence.stays is None:
+        return
     modes = {mode.name: mode.A for mode in system.modes}
     for name, stay in system.stays().items():
-        for time in (stay.shortest, stay.longest if name in evidence.leaving else None):
+        for time in (stay.shortest, stay.longest if name in evidence.stays.leaving else None):
             if time:
                 yield shifted(modes[name], evidence.rate), time
 
 
 _ENCLOSED: Mapping[str, Callable[[SwitchedSystem, Any], Iterator[Exponent]]] = {
     "growing-sequence": _steps,
-    "mode-quadratic": _stays,
+    "graph": _stays,
 }
 
 
@@ -119,9 +119,14 @@ def _is_met(A: RationalMatrix, time: Fraction) -> bool:
         return overlap(exponential(A, time, time), M, error)
 
 
-def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> bool:
-    """Form Q and the decrease in every mode anew, in flint's arithmetic."""
-    Q, p, q = _matrix(evidence.Q), evidence.rate.numerator, evidence.rate.denominator
+def _decreases_everywhere(system: SwitchedSystem, evidence: FormsOnGraph) -> bool | None:
+    """Form one form and its decrease in every mode anew, in flint's arithmetic; else None.
+
+    Facts and monomials enter the forms only.
+    """
+    if len(evidence.nodes) > 1 or evidence.degree > 1 or evidence.multipliers or evidence.stays:
+        return None
+    Q, p, q = _matrix(evidence.nodes[0].form), evidence.rate.numerator, evidence.rate.denominator
 
     def decrease(A: RationalMatrix) -> Any:
         N, d = _matrix(A.numerators), A.denominator
@@ -135,9 +140,9 @@ def _decreases_everywhere(system: SwitchedSystem, evidence: CommonQuadratic) -> 
 
 
 # The kinds on which flint has more to say than on the definiteness of their forms.
-_OPINIONS: Mapping[str, Callable[[SwitchedSystem, Any], bool]] = {
+_OPINIONS: Mapping[str, Callable[[SwitchedSystem, Any], bool | None]] = {
     "block-triangular": _agrees_on_every_part,
-    "common-quadratic": _decreases_everywhere,
+    "graph": _decreases_everywhere,
     "growing-sequence": _agrees_on_growth,
 }
 

@@ -1,208 +1,422 @@
-"""TRUSTED: what one step does to a quadratic function, with disturbances and rounded arithmetic.
+"""TRUSTED: the steps of a system, and what each asks of the forms before and after it.
 
-The state moves by ``x+ = A x + B d + C r`` with ``|d_i| <= bound_i`` and ``|r_i| <= |q_i (x, d)|``.
-Every motion gives one form in (x, d, r)
+A step leads from one place to another. With z the state before it and, behind the state, what
+disturbs it (d), what its arithmetic rounds (r) and what other axes do (w), the state after it is
+``M z`` (a map), or ``M z`` is its derivative (a flow). What is known besides are *facts*:
 
-    keeps before(x) + sum weight_i d_i^2 + sum tau_i (r_i^2 - (q_i (x, d))^2) - after(x+)
+- an error: ``e^2 <= (q z)^2``, for an entry e of r, or for one of w, summed over all axes;
+- a crossing: ``delta (c z) <= 0``, with delta the last state: contact is lost, or would pull.
 
-with all ``tau_i >= 0``. If it is positive definite, ``after <= keeps before + sum weight_i d_i^2``
-for every error within its limit (S-procedure). Where contact may be lost, before and after are
-``y' Q_yy y`` free and ``x' Q x`` in contact; where a step loses it, ``delta`` is positive and its
-next value, the last row times (x, d, r), is not, so that twice lambda >= 0 times their product is
-added. An environment that could pull lags instead: delta is positive and a force ``q x`` is not, a
-free mode rules, and twice mu >= 0 times their product is added, whether delta stays positive or
-not. One lambda and one tau_i for all modes, and one mu for each force, keep the forms
-concave in the maps.
+With F before and G after the step and a multiplier m >= 0 for each fact, positive definiteness of
 
-Where axes act on each other, ``x+ = A x + B d + C r + D w`` with ``sum |w_k|^2 <= sum |q_k (x, d,
-r)|^2`` over the axes only, not for each of them. The form of an axis then has w as further entries
-and ``tau_k (w_k^2 - (q_k (x, d, r))^2)`` as further terms, and is not positive by itself; but as
-tau_k is one for all motions, these terms add up to nothing positive over the axes, whatever motion
-each of them is in, and the same follows for the sums of before and after over all axes.
+    map:  keeps F + sum weight_i d_i^2 - M' G M + sum m (e^2 - (q z)^2) + sum 2 m delta (c z)
+    flow: -(F M + M' F + keeps F)               + sum m (e^2 - (q z)^2) + sum 2 m delta (c z)
 
-The forms are written in integers: every entry of (x, d, r) is counted in a unit of its own, the
-least in which what multiplies it in [A, B, C] and in the q_i is an integer. With these units on the
-diagonal of D, a form F becomes ``D F D``, which is positive definite iff F is. One denominator for
-all of them would make the integers several times as long.
+says that a map keeps that share of the function, and a flow decreases at half that rate, for every
+error within its limit (S-procedure). Multipliers are the same for all modes, which keeps the forms
+concave in the maps. An error of w is not within its limit for each axis; but as its multiplier is
+one for all steps, these terms add up to nothing positive over the axes, whatever step each of them
+takes, and the same follows for the sums of the functions over all axes.
+
+Forms are written in integers. In a map every entry of z is counted in a unit of its own, the least
+in which M, the q and the c are integers. With these units on the diagonal of D, a form F becomes
+``D F D``, which is positive definite iff F is. One denominator for all of them would make the
+integers several times as long.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import gcd, isqrt, lcm
 
 from nrs_design.proof.channels import Coupling, Rounding
-from nrs_design.proof.exact import IntegerMatrix, add, congruence, transpose
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    Product,
+    add,
+    congruence,
+    multiply,
+    transpose,
+)
 from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
+
+# Where a step begins and ends. Where the modes of the system are in force: in contact, if it can be
+# lost. And where free motion is.
+CONTACT, FREE = "modes", "free"
+
+# What facts are called; numbers count from one, in the order of the system.
+ROUNDING, COUPLING, LOST, PULL = "rounding", "coupling", "lost", "pull"
+
+Row = Sequence[int]
 
 
 @dataclass(frozen=True, slots=True)
-class _Motion:
-    """What one mode does, in units in which all of it is integer."""
+class Acting:
+    """What acts on the state during a step, beside the mode."""
 
-    units: Sequence[int]  # One for each entry of (x, d, r, w)
-    rows: IntegerMatrix  # The rows of ``[A, B, C, D]``
-    errors: IntegerMatrix  # The q_i of r and of w, over (x, d, r, w)
+    channels: tuple[int, ...] = ()  # Disturbances, by their number in the system
+    weights: tuple[Fraction, ...] = ()  # One for each of them
+    rounding: bool = False  # What the arithmetic rounds
+    coupling: bool = False  # What other axes do
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One thing that a system may do at a place, in integers."""
+
+    where: str  # In words
+    mode: str  # That is in force
+    source: str  # The place before
+    target: str  # The place after
+    states: int  # How many entries of z are the state before
+    units: Row  # Of the entries of z
+    rows: IntegerMatrix  # M in these units, times `over`
+    over: int = 1  # One for a map
+    # Name, index of e in z, q in these units, and a positive denominator of q (one for a map).
+    errors: tuple[tuple[str, int, Row, int], ...] = ()
+    # Name, c in these units, and its denominator.
+    crossings: tuple[tuple[str, Row, int], ...] = ()
+    weights: tuple[Fraction, ...] = ()  # Of the disturbances, which are next to the state in z
+    is_flow: bool = False
+    time: int = 1  # Steps that a map takes; a switch at once takes none
+
+    @property
+    def facts(self) -> tuple[str, ...]:
+        """Names of what is known."""
+        return (*(name for name, *_ in self.errors), *(name for name, *_ in self.crossings))
+
+    def form(
+        self,
+        before: IntegerMatrix,
+        after: IntegerMatrix,
+        keeps: Fraction,
+        multiplier: Callable[[str], int] = lambda fact: 0,
+        log2: int = 0,
+        multiply: Product = multiply,
+    ) -> IntegerMatrix:
+        """Return what must be positive definite, times a positive number.
+
+        Parameters
+        ----------
+        before, after : integer matrix
+            Numerators of the functions: of the state before, and of what `rows` give.
+        keeps : Fraction
+            What is left of the function after a map; twice the rate of a flow.
+        multiplier : callable
+            The multiplier of a fact, by its name.
+        log2 : int
+            Functions and multipliers are numerators over two to this power.
+        multiply : callable
+            How matrices are multiplied; only a search has reason to ask for another way.
+        """
+        if self.is_flow:
+            form, factor = self._flowing(before, keeps, multiply)
+        else:
+            image = congruence(self.rows, after, multiply)
+            form, factor = add(self._left(before, keeps, log2), image, -1), 1
+        for name, i, q, below in self.errors:
+            m = multiplier(name)
+            form[i][i] += factor * m * self.units[i] ** 2
+            weight = m * (factor // below**2)
+            entries = [(j, entry) for j, entry in enumerate(q) if entry]
+            for a, left in entries:
+                for b, right in entries:
+                    form[a][b] -= weight * left * right
+        last = self.states - 1
+        for name, c, below in self.crossings:
+            weight = multiplier(name) * (factor // below) * self.units[last]
+            form = with_crossing(form, last, [weight * entry for entry in c])
+        return form
+
+    def _left(self, before: IntegerMatrix, keeps: Fraction, log2: int) -> list[list[int]]:
+        """Return the form of a map without what comes after it and without facts."""
+        units = self.units
+        form = [[0] * len(units) for _ in units]
+        p, q = keeps.as_integer_ratio()
+        for i, row in enumerate(before):
+            for j, entry in enumerate(row):
+                form[i][j] = units[i] * units[j] // q * p * entry
+        for i, weight in enumerate(self.weights, len(before)):
+            form[i][i] = int(weight * units[i] ** 2) << log2
+        return form
+
+    def _flowing(
+        self, F: IntegerMatrix, keeps: Fraction, multiply: Product
+    ) -> tuple[list[list[int]], int]:
+        """Return the form of a flow without facts, times a positive integer, and that integer."""
+        p, q = (keeps * self.over).as_integer_ratio()
+        below = [b**2 for *_, b in self.errors] + [b for *_, b in self.crossings]
+        factor = lcm(q * self.over, *below)
+        more = factor // (q * self.over)
+        FM = multiply(F, self.rows)
+        FM += [[0] * len(self.units) for _ in range(len(self.units) - len(F))]
+        form = [
+            [-more * q * (a + b) for a, b in zip(*rows, strict=True)]
+            for rows in zip(FM, transpose(FM), strict=True)
+        ]
+        for i, row in enumerate(F):
+            for j, entry in enumerate(row):
+                form[i][j] -= more * p * entry
+        return form, factor
+
+
+def map_step(
+    where: str, mode: str, places: tuple[str, str], A: RationalMatrix, grain: int, time: int = 1
+) -> Step:
+    """Return a map that nothing acts on.
+
+    Parameters
+    ----------
+    where, mode, places, time
+        As of `Step`.
+    A : RationalMatrix
+        The map.
+    grain : int
+        Every unit is a multiple of it; see `grain_of`.
+    """
+    d, columns = A.denominator, transpose(A.numerators)
+    units = [lcm(grain, d // gcd(d, *column)) for column in columns]
+    rows = [
+        [unit * entry // d for entry in column] for unit, column in zip(units, columns, strict=True)
+    ]
+    return Step(where, mode, *places, len(units), units, transpose(rows), time=time)
+
+
+def flow_step(where: str, mode: str, place: str, A: RationalMatrix) -> Step:
+    """Return a flow that nothing acts on.
+
+    Parameters
+    ----------
+    where, mode, place
+        As of `Step`.
+    A : RationalMatrix, shape (n, n)
+        Of the derivative.
+    """
+    n, over = len(A.numerators), A.denominator
+    return Step(where, mode, place, place, n, (1,) * n, A.numerators, over, is_flow=True)
+
+
+def grain_of(keeps: Fraction) -> int:
+    """Return the least natural number known with a square that the denominator divides."""
+    below = keeps.denominator
+    root = isqrt(below)
+    return root if root * root == below else below
+
+
+def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) -> Iterator[Step]:
+    """Yield every step of a system under arbitrary switching, between contact and free motion.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With modes of one size.
+    acting : Acting
+        What acts on the state.
+    grain : int
+        Every unit of a map is a multiple of it.
+    lost : bool
+        Whether contact is lost and made, as the system says how; it is kept otherwise.
+    """
+    contact = system.contact if lost else None
+    free = () if contact is None else contact.free
+    flows, n = system.time is Time.CONTINUOUS, system.order
+    for k, mode in enumerate(system.modes):
+        step = _step(system, k, mode, acting, grain)
+        yield step
+        if contact is not None and not flows:
+            yield replace(
+                step,
+                where=f"where contact is lost in mode {mode.name}",
+                target=FREE,
+                rows=step.rows[:-1],
+                crossings=((LOST, step.rows[-1], 1),),
+            )
+    for k, mode in enumerate(free, len(system.modes)):
+        step = _step(system, k, mode, acting, grain)
+        flight = _undeflected(step, n - 1)
+        inner = replace(
+            flight, where=f"in free motion, mode {mode.name}", rows=flight.rows[:-1], target=FREE
+        )
+        yield inner
+        if not flows:
+            made = f"where contact is made, mode {mode.name}"
+            yield replace(flight, where=made, target=CONTACT)
+            # The depth after landing is between zero and the last row. The function is convex in
+            # it, so both ends suffice; at the surface it is this.
+            surface = f"where contact is made at the surface, mode {mode.name}"
+            yield replace(inner, where=surface, target=CONTACT)
+        yield from _lagging(system, step, flows=flows)
+    if contact is not None and flows:
+        units = RationalMatrix(
+            tuple(tuple(int(i == j) for j in range(n - 1)) for i in range(n - 1))
+        )
+        for where, *places in (("lost", CONTACT, FREE), ("made", FREE, CONTACT)):
+            at_once = f"where contact is {where} at the surface"
+            yield map_step(at_once, "", (places[0], places[1]), units, 1, time=0)
+
+
+def _lagging(system: SwitchedSystem, step: Step, *, flows: bool) -> Iterator[Step]:
+    """Yield the steps of a free mode while the deflection is positive and a force would pull."""
+    pulls = () if system.contact is None else system.contact.pulls
+    for k, q in enumerate(pulls, 1):
+        (row,) = q.numerators
+        force = [f * u for f, u in zip(row, step.units, strict=False)]
+        pull = f"{PULL} {k}"
+        where = f"while the environment lags, mode {step.mode}"
+        if flows:
+            # The fact says nothing about the mode, so that every mode may have its multiplier.
+            known = (f"{pull} {step.mode}", force, q.denominator)
+            yield replace(step, where=where, crossings=(known,))
+            continue
+        # The numerators of the force are as good as the force.
+        yield replace(step, where=where, crossings=((pull, force, 1),))
+        yield replace(
+            step,
+            where=f"where a lagging environment is left, mode {step.mode}",
+            target=FREE,
+            rows=step.rows[:-1],
+            crossings=((f"{pull} {LOST}", force, 1), (f"{LOST} {pull}", step.rows[-1], 1)),
+        )
+
+
+def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int) -> Step:
+    """Return what the k-th mode does in contact; free modes come after those in contact."""
+    n, flows = system.order, system.time is Time.CONTINUOUS
+    rounded = len(system.roundings) if acting.rounding else 0
+    items: list[tuple[str, Rounding | Coupling]]
+    items = [(f"{ROUNDING} {i}", item) for i, item in enumerate(system.roundings[:rounded], 1)]
+    coupled = system.couplings if acting.coupling else ()
+    items += [(f"{COUPLING} {i}", item) for i, item in enumerate(coupled, 1)]
+    parts = [mode.A, *(system.channels[i].columns[k] for i in acting.channels)]
+    parts += [item.columns[k] for _, item in items]
+    columns = [(column, M.denominator) for M in parts for column in transpose(M.numerators)]
+    sizes = []
+    for _, item in items:
+        # Over the state and all disturbances, and that of a coupling over all roundings, too.
+        (entries,), count = item.rows[k].numerators, n + len(system.channels)
+        q = [*entries[:n], *(entries[n + i] for i in acting.channels)]
+        q += entries[count : count + rounded] or (0,) * rounded
+        sizes.append(([*q, *(0 for _ in columns[len(q) :])], item.rows[k].denominator))
+    if flows:
+        units, over = [1] * len(columns), lcm(*(d for _, d in columns))
+    else:
+        least = [grain] * n + [weight.denominator for weight in acting.weights] + [1] * len(items)
+        units, over = (
+            [
+                lcm(unit, d // gcd(d, *column), *(e // gcd(e, q[j]) for q, e in sizes))
+                for j, (unit, (column, d)) in enumerate(zip(least, columns, strict=True))
+            ],
+            1,
+        )
+    errors = []
+    for i, ((name, _), (q, below)) in enumerate(
+        zip(items, sizes, strict=True), len(columns) - len(items)
+    ):
+        if not flows:
+            q, below = [unit * entry // below for unit, entry in zip(units, q, strict=True)], 1
+        errors.append((name, i, q, below))
+    rows = [
+        [unit * over * entry // d for entry in column]
+        for unit, (column, d) in zip(units, columns, strict=True)
+    ]
+    return Step(
+        f"in mode {mode.name}",
+        mode.name,
+        CONTACT,
+        CONTACT,
+        n,
+        units,
+        transpose(rows),
+        over,
+        tuple(errors),
+        weights=acting.weights,
+        is_flow=flows,
+    )
+
+
+def _undeflected(step: Step, k: int) -> Step:
+    """Return a step from free motion, where the k-th state is zero."""
+    errors = tuple((name, i - 1, _without(q, k), below) for name, i, q, below in step.errors)
+    return replace(
+        step,
+        source=FREE,
+        states=k,
+        units=_without(step.units, k),
+        rows=[_without(row, k) for row in step.rows],
+        errors=errors,
+    )
+
+
+def _without(row: Row, k: int) -> list[int]:
+    return [*row[:k], *row[k + 1 :]]
+
+
+def multiplier_names(system: SwitchedSystem) -> tuple[str, ...]:
+    """Return the facts that hold where contact is lost, as steps of a system name them."""
+    contact = system.contact
+    if contact is None:
+        return ()
+    pulls = range(1, len(contact.pulls) + 1)
+    if system.time is Time.CONTINUOUS:
+        return tuple(f"{PULL} {k} {mode.name}" for mode in contact.free for k in pulls)
+    own = (
+        name for k in pulls for name in (f"{PULL} {k}", f"{PULL} {k} {LOST}", f"{LOST} {PULL} {k}")
+    )
+    return (LOST, *own)
 
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """The numbers of a quadratic function in discrete time."""
+    """The numbers of a quadratic function that keeps a bound in discrete time."""
 
     Q: IntegerMatrix  # Shape (n, n). Numerators of the symmetric matrix.
-    denominator_log2: int  # Q, lambda and the tau are these numerators over two to this power
-    # What a step leaves of the function: rho^2, or one minus the shares of the disturbances.
-    keeps: Fraction
-    crossing: int = 0  # The lambda; it says nothing where contact is kept
-    # The tau, in the order of the roundings of the system; none if it is to compute exactly.
+    denominator_log2: int  # Q and all multipliers are over two to this power
+    keeps: Fraction  # What a step leaves of the function: one minus the shares of disturbances
+    # In the order of `multiplier_names`, of the roundings, and of the couplings of the system.
+    crossings: tuple[int, ...] = ()
     roundings: tuple[int, ...] = ()
+    couplings: tuple[int, ...] = ()
     channels: tuple[int, ...] = ()  # Which disturbances of the system act
     weights: tuple[Fraction, ...] = ()  # One for each of them
-    # For each force that could pull: the mu of steps that leave the deflection positive, and mu and
-    # lambda of those that do not. A mu is that of the numerators of the force.
-    lagging: tuple[tuple[int, int, int], ...] = ()
-    # Numerators of the function after a step, over the same power; None for Q.
-    after: IntegerMatrix | None = None
-    # The tau, in the order of the couplings of the system; none if axes do not act on each other.
-    couplings: tuple[int, ...] = ()
 
     def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield the form of every motion, in units of its own, with where it is."""
-        n, after = len(self.Q), self.Q if self.after is None else self.after
-        for k, mode in enumerate(system.modes):
-            motion = self._motion(system, k, mode.A)
-            left, (*others, _) = self._left(self.Q, motion), motion.rows
-            yield f"in mode {mode.name}", _less(left, motion.rows, after)
-            if system.contact is None:
-                continue
-            lost = _less(left, others, leading(after))
-            lost = _with_loss(lost, motion, n, self.crossing)
-            yield f"where contact is lost in mode {mode.name}", lost
-        free = () if system.contact is None else system.contact.free
-        for k, mode in enumerate(free, len(system.modes)):
-            whole = self._motion(system, k, mode.A)
-            motion = _undeflected(whole, n - 1)
-            left, (*others, _) = self._left(leading(self.Q), motion), motion.rows
-            yield f"in free motion, mode {mode.name}", _less(left, others, leading(after))
-            yield f"where contact is made, mode {mode.name}", _less(left, motion.rows, after)
-            yield from self._lagging(system, mode.name, whole, after)
-
-    def _lagging(
-        self, system: SwitchedSystem, name: str, motion: _Motion, after: IntegerMatrix
-    ) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield the forms of a free mode while the deflection is positive."""
-        contact, n = system.contact, len(self.Q)
-        left, (*others, _) = self._left(self.Q, motion), motion.rows
-        pulls = () if contact is None else contact.pulls
-        for q, (stays, leaves, crossing) in zip(pulls, self.lagging, strict=True):
-            force = [
-                motion.units[n - 1] * f * u
-                for f, u in zip(q.numerators[0], motion.units, strict=False)
-            ]
-            still = _less(left, motion.rows, after)
-            pulled = with_crossing(still, n - 1, [stays * entry for entry in force])
-            yield f"while the environment lags, mode {name}", pulled
-            lost = _less(left, others, leading(after))
-            lost = with_crossing(lost, n - 1, [leaves * entry for entry in force])
-            lost = _with_loss(lost, motion, n, crossing)
-            yield f"where a lagging environment is left, mode {name}", lost
-
-    def _motion(self, system: SwitchedSystem, k: int, A: RationalMatrix) -> _Motion:
-        """Return the k-th mode in the least units that make it integer."""
-        covered: tuple[Rounding | Coupling, ...] = (
-            *system.roundings[: len(self.roundings)],
-            *system.couplings[: len(self.couplings)],
-        )
-        parts = [A, *(system.channels[i].columns[k] for i in self.channels)]
-        parts += [item.columns[k] for item in covered]
-        columns = [(column, M.denominator) for M in parts for column in transpose(M.numerators)]
-        count = len(self.Q) + len(system.channels)
-        errors = [self._error(item.rows[k], count) for item in covered]
-        least = [_root(self.keeps.denominator)] * len(self.Q)
-        least += [*(weight.denominator for weight in self.weights), *(1 for _ in covered)]
-        units = [
-            lcm(unit, d // gcd(d, *column), *(e // gcd(e, q[j]) for q, e in errors))
-            for j, (unit, (column, d)) in enumerate(zip(least, columns, strict=True))
-        ]
-        counted = [
-            [unit * entry // d for entry in column]
-            for unit, (column, d) in zip(units, columns, strict=True)
-        ]
-        sizes = [
-            [unit * entry // e for unit, entry in zip(units, q, strict=True)] for q, e in errors
-        ]
-        return _Motion(units, transpose(counted), sizes)
-
-    def _error(self, row: RationalMatrix, count: int) -> tuple[list[int], int]:
-        """Return a q over (x, d, r, w) with the d that act and the r that count, and below it.
-
-        Only the q of a coupling goes beyond the first `count` entries, to all r.
-        """
-        (entries,), n = row.numerators, len(self.Q)
-        acting = [entries[n + i] for i in self.channels]
-        rounded = entries[count : count + len(self.roundings)] or (0 for _ in self.roundings)
-        return [*entries[:n], *acting, *rounded, *(0 for _ in self.couplings)], row.denominator
-
-    def _left(self, before: IntegerMatrix, motion: _Motion) -> list[list[int]]:
-        """Return the form of one motion without what comes after it."""
-        n, units = len(before), motion.units
-        form = [[0] * len(units) for _ in units]
-        p, q = self.keeps.as_integer_ratio()
-        for i, row in enumerate(before):
-            for j, entry in enumerate(row):
-                form[i][j] = units[i] * units[j] // q * p * entry
-        for i, weight in enumerate(self.weights, n):
-            form[i][i] = int(weight * units[i] ** 2) << self.denominator_log2
-        taus = (*self.roundings, *self.couplings)
-        for i, tau in enumerate(taus, n + len(self.weights)):
-            form[i][i] = tau * units[i] ** 2
-        for tau, error in zip(taus, motion.errors, strict=True):
-            entries = [(i, entry) for i, entry in enumerate(error) if entry]
-            for a, left in entries:
-                for b, right in entries:
-                    form[a][b] -= tau * left * right
-        return form
+        """Yield the form of every step, in units of its own, with where it is."""
+        acting = Acting(self.channels, self.weights, bool(self.roundings), bool(self.couplings))
+        multipliers = dict(zip(multiplier_names(system), self.crossings, strict=True))
+        multipliers |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
+        multipliers |= {f"{COUPLING} {k}": m for k, m in enumerate(self.couplings, 1)}
+        inner = leading(self.Q)
+        for step in steps_of(system, acting, grain_of(self.keeps), lost=True):
+            before = self.Q if step.source == CONTACT else inner
+            after = self.Q if len(step.rows) == len(self.Q) else inner
+            # Free motion ends at the surface as it goes on.
+            if (
+                step.source == step.target
+                or len(step.rows) == len(self.Q)
+                or step.source == CONTACT
+            ):
+                m = multipliers.__getitem__
+                yield step.where, step.form(before, after, self.keeps, m, self.denominator_log2)
 
 
-def _root(number: int) -> int:
-    """Return a natural number with a square that is a multiple of another."""
-    root = isqrt(number)
-    return root if root * root == number else number
+def find_odd_multipliers(multipliers: Sequence[int], system: SwitchedSystem) -> str | None:
+    """TRUSTED: say why multipliers do not belong to the lost contact of a system, or None.
 
-
-def _less(left: IntegerMatrix, rows: IntegerMatrix, after: IntegerMatrix) -> list[list[int]]:
-    """Subtract the function after a step from what may be left of it."""
-    return add(left, congruence(rows, after), -1)
-
-
-def _with_loss(form: IntegerMatrix, motion: _Motion, n: int, crossing: int) -> list[list[int]]:
-    """Add twice lambda times the deflection times its next value."""
-    factor = crossing * motion.units[n - 1]
-    return with_crossing(form, n - 1, [factor * entry for entry in motion.rows[n - 1]])
-
-
-def _undeflected(motion: _Motion, k: int) -> _Motion:
-    """Return a motion where the k-th state is zero."""
-    rows, errors = ([_without(row, k) for row in M] for M in (motion.rows, motion.errors))
-    return _Motion(_without(motion.units, k), rows, errors)
-
-
-def _without(row: Sequence[int], k: int) -> list[int]:
-    return [*row[:k], *row[k + 1 :]]
+    There are none where contact is kept.
+    """
+    if len(multipliers) != len(multiplier_names(system)):
+        return "there is not one multiplier for each condition that needs it"
+    return "a multiplier is negative" if any(entry < 0 for entry in multipliers) else None
 
 
 def find_odd_roundings(roundings: tuple[int, ...], system: SwitchedSystem) -> str | None:
     """TRUSTED: say why multipliers do not belong to the roundings of a system, or None.
 
-    Parameters
-    ----------
-    roundings : tuple of int
-        The tau of `Steps`; none for exact arithmetic.
-    system : SwitchedSystem
-        Whose arithmetic it is.
+    There are none for exact arithmetic.
     """
     if roundings and len(roundings) != len(system.roundings):
         return "there is not one multiplier for each rounding"

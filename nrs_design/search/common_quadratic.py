@@ -9,11 +9,12 @@ from math import gcd
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import CommonQuadratic
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
+from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
@@ -26,7 +27,7 @@ SMALLEST = 2.0**-14
 Array = NDArray[np.float64]
 
 
-def search_by_lmi(family: Family) -> Candidates[CommonQuadratic]:
+def search_by_lmi(family: Family) -> Candidates[FormsOnGraph]:
     """Search by semidefinite programming; then, if asked to, raise the rate."""
     time, allowance = family.system.time, family.allowance
     if not np.isfinite(family.limit):
@@ -48,7 +49,7 @@ def search_by_lmi(family: Family) -> Candidates[CommonQuadratic]:
     return None
 
 
-def _fastest(family: Family) -> Iterator[Candidate[CommonQuadratic]]:
+def _fastest(family: Family) -> Iterator[Candidate[FormsOnGraph]]:
     """Yield functions for the largest rates that fit into the budget."""
     time = family.system.time
 
@@ -66,18 +67,18 @@ def _fastest(family: Family) -> Iterator[Candidate[CommonQuadratic]]:
         return
 
 
-def decide_one_state(family: Family) -> Candidates[CommonQuadratic]:
+def decide_one_state(family: Family) -> Candidates[FormsOnGraph]:
     """Take ``V(x) = x^2``, at a rate computed exactly: modes may be nearer to 1 than floats are."""
     system = family.system
     numbers = [mode.A.fractions()[0][0] for mode in system.modes]
     claimed = BACK_OFF * -max(numbers)
     if system.time is Time.DISCRETE:
         claimed = 1 - BACK_OFF * (1 - max(map(abs, numbers)))
-    yield Candidate(CommonQuadratic(((1,),), 0, round_rate(claimed, system.time)))
+    yield Candidate(one_form(system, ((1,),), 0, round_rate(claimed, system.time)))
     return None
 
 
-def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
+def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
     """Search by the Liberzon-Tempo iteration; then, if asked to, raise the rate."""
     from nrs_design.search.gradient import find_by_gradient, find_faster_by_gradient
 
@@ -98,7 +99,7 @@ def search_by_gradient(family: Family) -> Candidates[CommonQuadratic]:
     return None
 
 
-def search_raw(family: Family) -> Candidates[CommonQuadratic]:
+def search_raw(family: Family) -> Candidates[FormsOnGraph]:
     """Search by CVXPY in the coordinates of the spec, without balancing."""
     from nrs_design.search.raw import find_raw_quadratic
 
@@ -115,7 +116,7 @@ def search_raw(family: Family) -> Candidates[CommonQuadratic]:
     return None
 
 
-def search_preconditioned(family: Family) -> Candidates[CommonQuadratic]:
+def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
     """Search by a general solver after a change to the mean of the modes' own norms."""
     time = family.system.time
     if not np.isfinite(family.limit):
@@ -133,7 +134,7 @@ def search_preconditioned(family: Family) -> Candidates[CommonQuadratic]:
 
 def _at_own_rate(
     family: Family, Q: Array, words: str = "found"
-) -> Iterator[Candidate[CommonQuadratic]]:
+) -> Iterator[Candidate[FormsOnGraph]]:
     """Yield roundings of a function at rates just below the one that it shows itself."""
     rate, time = rate_of(family.matrices, Q, family.system.time), family.system.time
     for claim in claims(1.0, rate, time):
@@ -141,7 +142,7 @@ def _at_own_rate(
             yield Candidate(evidence, words)
 
 
-def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[CommonQuadratic]:
+def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[FormsOnGraph]:
     """Yield roundings that floating point thinks worth the time of the exact check, and the last.
 
     The scale of a quadratic function is free: common factors of two go.
@@ -167,4 +168,4 @@ def round_quadratic(family: Family, Q: Array, claim: Fraction) -> Iterator[Commo
             common = gcd(*(entry for row in rows for entry in row)) or 1
             twos = (common & -common).bit_length() - 1
             reduced = tuple(tuple(entry >> twos for entry in row) for row in rows)
-            yield CommonQuadratic(reduced, max(denominator_log2 - twos, 0), claim)
+            yield one_form(family.system, reduced, max(denominator_log2 - twos, 0), claim)

@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import ConewiseModeQuadratic
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
+from nrs_design.proof.steps import CONTACT, FREE, LOST
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import LARGEST_MULTIPLIER, Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import numerators
@@ -173,9 +175,7 @@ class ConewiseModeProgram:
             least = min(least, float(np.linalg.eigvalsh(inverse @ form @ inverse.T)[0]))
         return float(np.sqrt(max(1.0 - least, 0.0)))
 
-    def roundings(
-        self, solution: ConewiseModeSolution, claim: Fraction
-    ) -> Iterator[ConewiseModeQuadratic]:
+    def roundings(self, solution: ConewiseModeSolution, claim: Fraction) -> Iterator[FormsOnGraph]:
         """Yield roundings of all functions to integers over one denominator."""
         inverse, d = np.linalg.inv(self.T), self.family.exponents
         touching = [inverse.T @ Q @ inverse for Q in solution.touching]
@@ -197,7 +197,13 @@ class ConewiseModeProgram:
                 own = dict(zip(_first(named), rounded, strict=True))
                 sets.append(tuple((name, own[other]) for name, other in named.items()))
             lambdas = numerators(every, log2 - 2 * int(d[-1]))
-            yield ConewiseModeQuadratic(sets[0], sets[1], max(log2, 0), claim, lambdas)
+            # The function of a state is that of the mode that takes the next step.
+            nodes = [Node(CONTACT, Q) for _, Q in sets[0]] + [Node(FREE, R) for _, R in sets[1]]
+            edges = (Arc(k, name, None) for k, (name, _) in enumerate((*sets[0], *sets[1])))
+            lost = (Multiplier(LOST, k, value) for k, value in enumerate(lambdas, len(sets[0])))
+            yield FormsOnGraph(
+                tuple(nodes), max(log2, 0), claim, multipliers=tuple(lost), edges=tuple(edges)
+            )
 
 
 def _first(named: dict[str, str]) -> list[str]:
@@ -205,7 +211,7 @@ def _first(named: dict[str, str]) -> list[str]:
     return [name for name, other in named.items() if name == other]
 
 
-def search_conewise_modes(family: Family) -> Candidates[ConewiseModeQuadratic]:
+def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for the functions; then, if asked to, raise the rate.
 
     Raises

@@ -13,11 +13,15 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import CommonPolynomial, ConewisePolynomial
-from nrs_design.proof.evidence.conewise_polynomial import flight, without_last
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.lift import monomials
+from nrs_design.proof.matrix import RationalMatrix, leading
+from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import bisect_position
+from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
 from nrs_design.search.lifted import Lift, lift_family, vanishing_in
 from nrs_design.search.polynomial import (
@@ -60,7 +64,8 @@ class ConewisePolynomialProgram:
         flying = flight(system, system.contact)
         contact = lift_family(system, exponents, degree)
         free = lift_family(flying, exponents[:-1], degree)
-        return cls(system, flying, contact, free, without_last(system.order, degree))
+        kept = (k for k, term in enumerate(monomials(system.order, degree)) if not term[-1])
+        return cls(system, flying, contact, free, tuple(kept))
 
     def block(self, Q: Array) -> Array:
         """Return what belongs to the monomials without the deflection."""
@@ -101,30 +106,40 @@ class ConewisePolynomialProgram:
 
     def roundings(
         self, solution: tuple[PolynomialSolution, PolynomialSolution], limit: float
-    ) -> Iterator[ConewisePolynomial]:
+    ) -> Iterator[FormsOnGraph]:
         """Yield roundings to integers at rates just below the one that a solution shows itself."""
         touching, flying = solution
         time, degree = self.system.time, self.contact.degree
-        own = shown_rate(self.contact, touching, time), shown_rate(self.free, flying, time)
+        shown = shown_rate(self.contact, touching, time), shown_rate(self.free, flying, time)
         lowest = int(self.contact.exponents.min())
         normalized = int(np.frexp(np.abs(touching.Q).max())[1])
         Q_exponents = self.contact.exponents - lowest
-        for claim in claims(1.0, min(*own, limit), time, NEAREST):
+        for claim in claims(1.0, min(*shown, limit), time, NEAREST):
             for bits in digits(FEWEST_BITS):
                 left = bits - normalized
-                yield ConewisePolynomial(
-                    CommonPolynomial(
-                        degree,
-                        round_form(touching.Q, Q_exponents, left),
-                        max(0, bits - 2 * lowest),
-                        round_vanishing(self.system, self.contact, touching, claim, left, lowest),
-                        claim,
-                    ),
-                    round_vanishing(self.flying, self.free, flying, claim, left, lowest),
+                own = round_vanishing(self.system, self.contact, touching, claim, left, lowest)
+                free = round_vanishing(self.flying, self.free, flying, claim, left, lowest)
+                yield one_form(
+                    self.system,
+                    round_form(touching.Q, Q_exponents, left),
+                    max(0, bits - 2 * lowest),
+                    claim,
+                    degree,
+                    vanishing=own + free,
+                    lost=True,
                 )
 
 
-def search_conewise_polynomial(family: Family, degree: int) -> Candidates[ConewisePolynomial]:
+def flight(system: SwitchedSystem, contact: Contact) -> SwitchedSystem:
+    """Return the free modes as a family of its own, in all states but the deflection."""
+    modes = tuple(
+        Mode(mode.name, RationalMatrix(tuple(leading(mode.A.numerators)), mode.A.denominator))
+        for mode in contact.free
+    )
+    return system.with_modes(modes, system.states[:-1], system.switching)
+
+
+def search_conewise_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
     """Search for a polynomial of degree 2d, and a large rate if asked to.
 
     Parameters

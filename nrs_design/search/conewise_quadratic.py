@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import (
@@ -21,6 +21,7 @@ from nrs_design.search.conewise_program import (
     separating_coordinates,
 )
 from nrs_design.search.decay import fastest_first
+from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.rounding import claims, digits, rate_at, round_rate, unscale
 from nrs_design.work import Allowance, NotAffordableError
@@ -30,8 +31,6 @@ Array = NDArray[np.float64]
 LOST = 1.25
 # Few roundings: more digits at once, as every check takes longer.
 WITH_ERRORS = (24, 32, 40, 50, 60)
-
-Quadratic = ConewiseQuadratic | CommonQuadratic
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ class RoundingErrors:
         return taus, round_rate(float(np.sqrt(float(claim) ** 2 + loss)), Time.DISCRETE)
 
 
-def search_conewise(family: Family) -> Candidates[Quadratic]:
+def search_conewise(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a function for contact and free motion; then, if asked to, raise the rate.
 
     Where the arithmetic rounds, functions that cover that are tried before others.
@@ -86,7 +85,7 @@ def search_conewise(family: Family) -> Candidates[Quadratic]:
     return (yield from _search(family, None))
 
 
-def _search(family: Family, errors: RoundingErrors | None) -> Candidates[Quadratic]:
+def _search(family: Family, errors: RoundingErrors | None) -> Candidates[FormsOnGraph]:
     system = family.system
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
@@ -110,7 +109,7 @@ def _search(family: Family, errors: RoundingErrors | None) -> Candidates[Quadrat
 
 def _fastest(
     family: Family, own: Motions, T: Array, errors: RoundingErrors | None
-) -> Iterator[Candidate[Quadratic]]:
+) -> Iterator[Candidate[FormsOnGraph]]:
     """Yield functions for the largest rates that fit into the budget."""
 
     def solve(rate: float, allowance: Allowance) -> ConewiseSolution | None:
@@ -132,7 +131,7 @@ def _roundings(
     T: Array,
     claim: Fraction,
     errors: RoundingErrors | None,
-) -> Iterator[Quadratic]:
+) -> Iterator[FormsOnGraph]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 
     A multiplier belongs to the product of the deflection and a force, or of the deflection and its
@@ -154,10 +153,16 @@ def _roundings(
         rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
         multipliers, roundings = numerators(scaled, log2), numerators(taus, log2)
         log2 = max(log2, 0)
-        if family.system.contact is None:
-            yield CommonQuadratic(rows, log2, claim, roundings)
-        else:
-            yield ConewiseQuadratic(rows, log2, claim, multipliers, roundings)
+        lost = family.system.contact is not None
+        yield one_form(
+            family.system,
+            rows,
+            log2,
+            claim,
+            crossings=multipliers if lost else (),
+            roundings=roundings,
+            lost=lost,
+        )
 
 
 def multiplied(contact: Contact, time: Time) -> NDArray[np.int64]:

@@ -17,11 +17,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import CoupledAxes
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.decay import fastest_first
+from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family, to_floats
 from nrs_design.search.raw import LOADING, PER_PROGRAM, solve_by_cvxpy
 from nrs_design.search.rounding import claims, rate_at, unscale
@@ -81,7 +82,7 @@ class CoupledProblem:
         return cls(motions, columns * scales[:, None], rows / scales[:, None], scales)
 
 
-def search_coupled_axes(family: Family) -> Candidates[CoupledAxes]:
+def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a function for all axes; then, if asked to, raise the rate."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
@@ -114,7 +115,7 @@ def _fastest(
     problem: CoupledProblem,
     solve: Callable[[float, Allowance], CoupledSolution | None],
     T: Array,
-) -> Iterator[Candidate[CoupledAxes]]:
+) -> Iterator[Candidate[FormsOnGraph]]:
     """Yield functions for the largest rates that fit into the budget."""
     given = family.limit, family.system.time, family.allowance
     try:
@@ -129,7 +130,7 @@ def _fastest(
 
 def _roundings(
     family: Family, problem: CoupledProblem, solution: CoupledSolution, T: Array, claim: Fraction
-) -> Iterator[CoupledAxes]:
+) -> Iterator[FormsOnGraph]:
     """Yield roundings of a solution in coordinates ``x = T z`` of the family.
 
     The multiplier of a coupling is divided by the square of its scale; that of a force has the
@@ -144,7 +145,16 @@ def _roundings(
     for bits in DIGITS:
         rows, log2 = unscale(np.ldexp(Q, -exponent), family.exponents, bits)
         whole, multipliers = numerators(taus, log2), numerators(scaled, log2 + shift)
-        yield CoupledAxes(rows, max(log2, 0), claim, whole, multipliers)
+        lost = family.system.contact is not None
+        yield one_form(
+            family.system,
+            rows,
+            max(log2, 0),
+            claim,
+            crossings=multipliers,
+            couplings=whole,
+            lost=lost,
+        )
 
 
 def best_rate(problem: CoupledProblem, solution: CoupledSolution) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import CoupledAxes
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.decay import bisect_position
@@ -22,6 +22,7 @@ from nrs_design.search.disturbed import (
     roundings,
     transformed,
 )
+from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
 from nrs_design.search.rounding import claims, rate_at
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
@@ -35,7 +36,7 @@ RESOLUTION, SMALLEST = 2.0**-9, 2.0**-12
 ANY = (0.25, 0.05, 0.01, 2e-3)
 
 
-def search_coupled_steps(family: Family) -> Candidates[CoupledAxes]:
+def search_coupled_steps(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a function for all axes, with the largest rate if that is asked for."""
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
@@ -63,8 +64,17 @@ def search_coupled_steps(family: Family) -> Candidates[CoupledAxes]:
             if found is None:
                 continue
             for item in roundings(family, found, T, units):
-                numbers = item.couplings, item.multipliers, item.roundings
-                yield Candidate(CoupledAxes(item.Q, item.log2, claim, *numbers))
+                graph = one_form(
+                    family.system,
+                    item.Q,
+                    item.log2,
+                    claim,
+                    crossings=item.multipliers,
+                    roundings=item.roundings,
+                    couplings=item.couplings,
+                    lost=family.system.contact is not None,
+                )
+                yield Candidate(graph)
     return None
 
 

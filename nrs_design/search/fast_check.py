@@ -5,12 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from itertools import accumulate, combinations_with_replacement
 from operator import mul, sub
-from typing import Any
 
-from nrs_design.proof.evidence import AbstractEvidence, CommonQuadratic
+from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.abstract import find_indefinite
 from nrs_design.proof.exact import IntegerMatrix, bit_length, is_symmetric, is_too_large, multiply
 from nrs_design.proof.system import SwitchedSystem
@@ -50,10 +49,11 @@ def find_fault(
     charge(PER_CANDIDATE)
     if (unfit := evidence.find_unfit(system)) is not None:
         return unfit
-    packed = _PACKED.get(type(evidence)) if system.order >= PACKED_ORDER else None
-    forms = packed(evidence, system) if packed else evidence.forms(system)
-    # Evidence that encloses what happens during a stay says in how many pieces.
-    encloses = getattr(evidence, "pieces", 1) > 1
+    forms, encloses = evidence.forms(system), False
+    if isinstance(evidence, FormsOnGraph):
+        encloses = evidence.stays is not None and evidence.stays.pieces > 1
+        if system.order >= PACKED_ORDER:
+            forms = evidence.forms(system, multiply_packed)
     counted = _counted(forms, PER_ENCLOSED_FORM if encloses else PER_FORM, charge)
     return find_indefinite(item for item in counted if not is_clearly_positive_definite(item[1]))
 
@@ -122,14 +122,3 @@ def multiply_packed(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]
     halves = sum(half << shift for shift in shifts)
     sums = [sum(map(mul, row, long_rows), halves) for row in left]
     return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
-
-
-def _packed_forms(
-    evidence: CommonQuadratic, system: SwitchedSystem
-) -> Iterator[tuple[str, IntegerMatrix]]:
-    return evidence.forms(system, multiply_packed)
-
-
-_PACKED: Mapping[
-    type[AbstractEvidence], Callable[[Any, SwitchedSystem], Iterator[tuple[str, IntegerMatrix]]]
-] = {CommonQuadratic: _packed_forms}

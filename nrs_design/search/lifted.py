@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import factorial, prod
 
 import numpy as np
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.lift import derivative_lift, monomials, power_lift
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Reset
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import scale_states
 from nrs_design.search.lmi import time_unit
@@ -124,6 +125,27 @@ def vanishing_in(lift: Lift, coordinates: Array) -> Array:
     weights = coordinates.reshape(len(lift.matrices), len(lift.vanishing))
     basis = orthonormal(lift.vanishing)
     return np.asarray(np.tensordot(weights, basis, axes=1))
+
+
+def lift_system(system: SwitchedSystem, degree: int) -> SwitchedSystem:
+    """Return the system of the monomials of a degree, in discrete time.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        Discrete time; its switches fit its modes.
+    degree : int
+        The d.
+    """
+
+    def lift(A: RationalMatrix) -> RationalMatrix:
+        return _lift_mode(A, degree, Time.DISCRETE)
+
+    modes = tuple(Mode(mode.name, lift(mode.A)) for mode in system.modes)
+    resets = system.switching.resets
+    resets = tuple(Reset(item.source, item.target, lift(item.map)) for item in resets)
+    states = tuple(f"z{k + 1}" for k in range(max(mode.A.shape[0] for mode in modes)))
+    return system.with_modes(modes, states, replace(system.switching, resets=resets))
 
 
 def _lift_mode(A: RationalMatrix, degree: int, time: Time) -> RationalMatrix:

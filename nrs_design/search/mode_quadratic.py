@@ -15,18 +15,19 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import ModePolynomial, ModeQuadratic
-from nrs_design.proof.evidence.mode_polynomial import lift_system
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.stays import Stays
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family
-from nrs_design.search.lifted import monomial_weights, products, vanishing_basis
+from nrs_design.search.lifted import lift_system, monomial_weights, products, vanishing_basis
 from nrs_design.search.lmi import decreases, time_unit
 from nrs_design.search.polynomial import make_vanish
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
@@ -58,10 +59,7 @@ SLACK = 1e-9
 PER_CHECK = 6e-5
 
 
-Functions = ModeQuadratic | ModePolynomial
-
-
-def search_mode_functions(family: Family, degree: int = 1) -> Candidates[Functions]:
+def search_mode_functions(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     """Search for the functions with the largest rate.
 
     Parameters
@@ -245,7 +243,7 @@ class _Problem:
     def _decreases(
         self, functions: list[Array], rate: float
     ) -> Iterator[tuple[int, list[tuple[int, Array]], bool]]:
-        """Yield what must be positive, in the order of `ModeQuadratic.decreases`.
+        """Yield what must be positive, in the order of `FormsOnGraph.edges_in_time`.
 
         Each as the index of its mode, what it takes from the functions of which modes, and whether
         it must be positive definite.
@@ -290,7 +288,7 @@ class _Problem:
         steps = range(int(first), int(last) + 1)
         return [np.asarray(np.linalg.matrix_power(A / rate, k)) for k in steps]
 
-    def roundings(self, solution: _Solution, claim: Fraction) -> Iterator[Functions]:
+    def roundings(self, solution: _Solution, claim: Fraction) -> Iterator[FormsOnGraph]:
         """Yield all functions in integers over one denominator."""
         unit = int(np.frexp(max(np.abs(Q).max() for Q in solution.functions))[1])
         few = self.encloses_stays
@@ -299,11 +297,8 @@ class _Problem:
             rounded = [_rounded(Q, bits - unit) for Q in solution.functions]
             if bits != bits_tried[-1] and not self._seems_to_decrease(rounded, float(claim)):
                 continue
-            quadratic = self._integers(solution.functions, bits, unit, claim)
-            if self.degree > 1:
-                yield self._with_vanishing(quadratic, solution, rounded)
-            else:
-                yield replace(quadratic, pieces=pieces)
+            graph = self._integers(solution.functions, bits, unit, claim, pieces)
+            yield self._with_vanishing(graph, solution, rounded) if self.degree > 1 else graph
 
     def _seems_to_decrease(self, functions: list[Array], rate: float) -> bool:
         """Tell in floating point whether functions are worth the time of the exact check."""
@@ -316,14 +311,14 @@ class _Problem:
         return True
 
     def _with_vanishing(
-        self, quadratic: ModeQuadratic, solution: _Solution, rounded: list[Array]
-    ) -> ModePolynomial:
+        self, graph: FormsOnGraph, solution: _Solution, rounded: list[Array]
+    ) -> FormsOnGraph:
         """Add the forms that vanish, as integers to the unit of each of the exact decreases."""
-        evidence = ModePolynomial(self.degree, quadratic, ())
-        floats = self._decreases(rounded, float(evidence.lifted.rate))
-        exact = evidence.lifted.decreases(self.system)
+        floats = self._decreases(rounded, float(graph.rate) ** self.degree)
+        edges = graph.edges_in_time(self.given)
         vanishing = []
-        for (i, parts, _), (_, form), N in zip(floats, exact, solution.vanishing, strict=True):
+        for (i, parts, _), (a, step, b), N in zip(floats, edges, solution.vanishing, strict=True):
+            form = graph.inequality(step, a, b, self.given)
             d, decrease = self.exponents[i], np.sum([part for _, part in parts], axis=0)
             k = int(np.abs(np.diag(decrease)).argmax())
             factor = Fraction(form[k][k]) / Fraction(float(decrease[k, k]) or 1.0)
@@ -337,11 +332,11 @@ class _Problem:
             ]
             variables = self.given.modes[i].A.shape[0]
             vanishing.append(make_vanish(integers, products(variables, self.degree)))
-        return replace(evidence, vanishing=tuple(tuple(map(tuple, N)) for N in vanishing))
+        return replace(graph, vanishing=tuple(tuple(map(tuple, N)) for N in vanishing))
 
     def _integers(
-        self, functions: list[Array], bits: int, unit: int, rate: Fraction
-    ) -> ModeQuadratic:
+        self, functions: list[Array], bits: int, unit: int, rate: Fraction, pieces: int
+    ) -> FormsOnGraph:
         top = max(int(d.max()) for d in self.exponents)
         rounded = []
         for mode, Q, d in zip(self.system.modes, functions, self.exponents, strict=True):
@@ -351,7 +346,9 @@ class _Problem:
             rounded = [(name, own[other]) for name, other in self.stand_ins.items()]
         names = (mode.name for mode in self.system.modes)
         leaving = tuple(name for name, left in zip(names, self.leaving, strict=True) if left)
-        return ModeQuadratic(tuple(rounded), max(0, bits + 2 * top), rate, leaving)
+        nodes = tuple(Node(name, Q) for name, Q in rounded)
+        stays = Stays(leaving, pieces)
+        return FormsOnGraph(nodes, max(0, bits + 2 * top), rate, self.degree, stays=stays)
 
 
 def _rounded(Q: Array, bits: int) -> Array:

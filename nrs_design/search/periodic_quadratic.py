@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.clock import on_turn
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import PeriodicQuadratic
+from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.search.balance import own_norm, scale_states
@@ -30,6 +30,7 @@ from nrs_design.search.conewise_quadratic import (
     numerators,
 )
 from nrs_design.search.decay import fastest_first, limit_rate
+from nrs_design.search.draw import in_turns
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.rounding import claims, digits, rate_at, round_form, round_rate
 from nrs_design.search.sdp import begin, maximize_margin, pack, program_cost, symmetric_basis
@@ -228,7 +229,7 @@ class PeriodicProgram:
 
     def roundings(
         self, solution: PeriodicSolution, claim: Fraction, *, errors: bool
-    ) -> Iterator[PeriodicQuadratic]:
+    ) -> Iterator[FormsOnGraph]:
         """Yield roundings of all functions to integers over one denominator.
 
         Parameters
@@ -260,7 +261,8 @@ class PeriodicProgram:
         for bits in WITH_ERRORS if errors else digits(FEWEST_BITS):
             log2 = bits + 2 * top
             functions = tuple(round_form(Q, top - d, bits) for Q in scaled)
-            yield PeriodicQuadratic(
+            yield in_turns(
+                self.family.system,
                 functions,
                 max(log2, 0),
                 claim,
@@ -299,7 +301,7 @@ def _crossing(last: Array, row: Array) -> Array:
 
 def _fastest(
     program: PeriodicProgram, limit: float, *, errors: bool
-) -> Iterator[Candidate[PeriodicQuadratic]]:
+) -> Iterator[Candidate[FormsOnGraph]]:
     """Yield functions for the largest rates that fit into half of the budget."""
     half = program.family.allowance.part(0.5)
     try:
@@ -318,7 +320,7 @@ def _fastest(
         return
 
 
-def search_periodic_quadratic(family: Family) -> Candidates[PeriodicQuadratic]:
+def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     """Search for the functions; then, if asked to, raise the rate.
 
     Where the arithmetic rounds, functions that cover that are tried before others, unless there are

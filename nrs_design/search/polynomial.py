@@ -16,16 +16,15 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.evidence import CommonPolynomial
-from nrs_design.proof.evidence.common_polynomial import (
-    MAX_DEGREE,
-    MAX_MONOMIALS,
-    lifted_factor,
-)
-from nrs_design.proof.mode import Time
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import MAX_DEGREE, MAX_MONOMIALS, lifted
+from nrs_design.proof.exact import lyapunov_factor
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.steps import map_step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import bisect_position
+from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
 from nrs_design.search.lifted import Lift, Pair, lift_family, orthonormal, products, vanishing_in
 from nrs_design.search.lmi import decreases
@@ -58,7 +57,7 @@ class PolynomialSolution:
     vanishing: Array
 
 
-def search_polynomial(family: Family, degree: int) -> Candidates[CommonPolynomial]:
+def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
     """Search for a common homogeneous polynomial of degree 2d, and a large rate if asked to.
 
     Parameters
@@ -207,9 +206,7 @@ def decrease_blocks(
     return blocks
 
 
-def _roundings(
-    family: Family, lift: Lift, solution: PolynomialSolution
-) -> Iterator[CommonPolynomial]:
+def _roundings(family: Family, lift: Lift, solution: PolynomialSolution) -> Iterator[FormsOnGraph]:
     """Yield roundings to integers at rates just below the one that a solution shows itself."""
     system = family.system
     own = shown_rate(lift, solution, system.time)
@@ -241,14 +238,15 @@ def shown_rate(lift: Lift, solution: PolynomialSolution, time: Time) -> float:
 
 def _integers(
     system: SwitchedSystem, lift: Lift, solution: PolynomialSolution, rate: Fraction, bits: int
-) -> CommonPolynomial:
+) -> FormsOnGraph:
     lowest, normalized = int(lift.exponents.min()), int(np.frexp(np.abs(solution.Q).max())[1])
-    return CommonPolynomial(
-        degree=lift.degree,
-        Q=round_form(solution.Q, lift.exponents - lowest, bits - normalized),
-        denominator_log2=max(0, bits - 2 * lowest),
+    return one_form(
+        system,
+        round_form(solution.Q, lift.exponents - lowest, bits - normalized),
+        max(0, bits - 2 * lowest),
+        rate,
+        lift.degree,
         vanishing=round_vanishing(system, lift, solution, rate, bits - normalized, lowest),
-        rate=rate,
     )
 
 
@@ -280,13 +278,21 @@ def round_vanishing(
     groups, forms = products(system.order, lift.degree), []
     for mode, N in zip(system.modes, solution.vanishing, strict=True):
         # The integer form of the decrease is this multiple of the floating-point one.
-        factor = lifted_factor(mode, lift.degree, rate, system.time)
+        factor = _factor(mode, lift.degree, rate, system.time)
         rounded = [
             [_shift(factor * entry, -lift.unit) for entry in row]
             for row in round_form(N, lift.exponents - lowest, bits)
         ]
         forms.append(tuple(map(tuple, make_vanish(rounded, groups))))
     return tuple(forms)
+
+
+def _factor(mode: Mode, degree: int, rate: Fraction, time: Time) -> int:
+    """Return what the exact check multiplies a decrease with."""
+    if time is Time.CONTINUOUS:
+        return lyapunov_factor(mode.A.denominator, degree * rate)
+    step = map_step("", mode.name, ("", ""), mode.A, 1)
+    return int(lifted(step, degree, rate).units[0]) ** 2
 
 
 def _shift(value: int, exponent: int) -> int:

@@ -220,8 +220,7 @@ class _Engine:
             whole = min(CHUNK, int((limit - self.t) / flow.h))
             states = flow.chunk(self.z, whole)
             # The step after the last whole one is looked at too: it may be cut short.
-            quiet = flow.stays(self.z, whole, sides)
-            count = whole + 1 if quiet else flow.first_doubtful(states, sides)
+            count = flow.first_doubtful(states, sides)
             done = min(count, whole)
             full = done and count > whole and self.t + (done + 1) * flow.h <= limit
             # Where a step that may be cut short follows, the state that it begins in is kept, too.

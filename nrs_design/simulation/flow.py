@@ -106,34 +106,6 @@ class Flow:
         last = np.abs(self._rows[:, -1] @ self.A) * (self.h / (DEGREE + 1))
         return np.asarray(last @ expm(np.abs(self.A) * self.h))
 
-    @cached_property
-    def _ahead(self) -> dict[bytes, Array]:
-        """Rows of `_bernstein_ahead` that were asked for, by the sides."""
-        return {}
-
-    def _bernstein_ahead(self, sides: Array) -> Array:
-        """Return rows of Bernstein coefficients of the next steps; ((CHUNK + 1) e (K + 1), n)."""
-        key = sides.tobytes()
-        if key not in self._ahead:
-            rows = self._bernstein_rows.T * np.repeat(sides, DEGREE + 1)[:, None]
-            self._ahead[key] = np.concatenate([rows @ power for power in self.powers])
-        return self._ahead[key]
-
-    @cached_property
-    def _remainder_ahead(self) -> Array:
-        """From the size of a state to the remainder over any of the next steps; (CHUNK + 1, n).
-
-        Entry by entry ``|exp(A k h) z| <= |exp(A k h)| |z|``; row k holds for 0 ... k, and for all
-        signals.
-        """
-        each = (self._remainder @ np.abs(self.powers)).max(axis=1)
-        return np.asarray(np.maximum.accumulate(each))
-
-    @cached_property
-    def _strictest(self) -> float:
-        """The smallest tolerance."""
-        return float(self.tolerances.min())
-
     def after(self, z: Array, time: float) -> Array:
         """Return ``exp(A t) z`` for a time from zero to h."""
         if not time:
@@ -145,29 +117,6 @@ class Flow:
         """Return the states after 0 ... count steps of h; shape (count + 1, n)."""
         n = len(z)
         return np.asarray(self._stacked_powers[: (count + 1) * n].dot(z).reshape(-1, n))
-
-    def stays(self, z: Array, count: int, sides: Array) -> bool:
-        """Tell whether no signal changes its side within count + 1 steps of h, for certain.
-
-        One bound for all of them: quicker than `first_doubtful`, which may know it where this does
-        not.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            At the beginning.
-        count : int
-            At most `CHUNK`.
-        sides : ndarray, shape (e,)
-            1 or -1.
-        """
-        e = len(sides)
-        if e == 0:
-            return True
-        # `dot` and `argmin` take half as long here as the operator and `min`.
-        coefficients = self._bernstein_ahead(sides)[: (count + 1) * e * (DEGREE + 1)].dot(z)
-        rest = self._remainder_ahead[count].dot(np.abs(z))
-        return bool(coefficients[coefficients.argmin()] + self._strictest > rest)
 
     def first_doubtful(self, states: Array, sides: Array) -> int:
         """Return the first step in which a signal may change its side, or how many steps there are.

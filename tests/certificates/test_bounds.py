@@ -4,15 +4,15 @@ from dataclasses import replace
 from fractions import Fraction
 
 from nrs_design.certificates.bounds import bound_on, bounds_summary, keeps_command
-from nrs_design.proof.evidence import CommonQuadratic
 from tests.proof.evidence.test_invariant_ellipsoid import BOUNCE
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, pushed
 
 
 def test_numbers_are_rounded_to_the_safe_side():
     system = pushed(bouncing(), Fraction(1, 7))
     level = replace(BOUNCE, level=Fraction(2, 3))
-    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1))
+    proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1))
     (found,) = bounds_summary(system, (proof, level))
     assert Fraction(found["level"]) >= Fraction(2, 3)
     (under,) = found["under"]

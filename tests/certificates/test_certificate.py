@@ -20,9 +20,7 @@ from nrs_design.certificates.certificate import (
 from nrs_design.pipeline import run_certification
 from nrs_design.proof.evidence import (
     BlockTriangular,
-    CommonQuadratic,
     GrowingSequence,
-    ModeQuadratic,
     NoCommonQuadratic,
 )
 from nrs_design.proof.evidence.fields import rate_text
@@ -30,17 +28,18 @@ from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Reset, Switching
 from nrs_design.spec import read_spec
+from tests.proof.graphs import common_quadratic, mode_quadratic
 from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix, number_in
 
 Q = ((1, 0), (0, 1))
 EXAMPLES = ROOT / "specs" / "examples"
 OBSTRUCTION = "no-common-quadratic"
-POLYNOMIAL = ["common-polynomial", OBSTRUCTION]
-PROOF = CommonQuadratic(Q, 0, Fraction(1, 2))
+POLYNOMIAL = ["graph", OBSTRUCTION]
+PROOF = common_quadratic(Q, 0, Fraction(1, 2))
 IMPOSSIBLE = NoCommonQuadratic((("m0", ((1,), (0,))),))
 UNSTABLE = staying("m0")
 PERIOD = GrowingSequence((("m0", Fraction(1)), ("m1", Fraction(1))), 3)
-PER_MODE = ModeQuadratic((("m0", Q), ("m1", Q)), 0, Fraction(1, 2))
+PER_MODE = mode_quadratic((("m0", Q), ("m1", Q)), 0, Fraction(1, 2))
 BLOCKS = ((0,), (1,))
 EXISTS, NONE, UNKNOWN = (
     CommonQuadraticStatus.EXISTS,
@@ -102,7 +101,7 @@ def test_rates_of_any_size_have_a_text(rate):
 
 def test_claims_in_words():
     system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
-    evidence = CommonQuadratic(Q, 0, Fraction(2, 3))
+    evidence = common_quadratic(Q, 0, Fraction(2, 3))
     assert evidence.claim(system) == (
         "Every solution of x' = A x, switching arbitrarily among the 2 modes, satisfies "
         "|x(t)| <= exp(-alpha t) |x(0)| with alpha >= 0.666666 1/s, in the norm "
@@ -119,16 +118,16 @@ def test_claims_in_words():
 @pytest.mark.parametrize(
     ("path", "verdict", "kinds"),
     [
-        (COMMUTING, "proved", ["common-quadratic"]),
+        (COMMUTING, "proved", ["graph"]),
         (PRINT_ERROR, "refuted", ["growing-sequence"]),
         (EXAMPLES / "dayawansa-martin-6.nrs.yaml", "proved", POLYNOMIAL),
-        (EXAMPLES / "geromel-colaneri.nrs.yaml", "proved", ["mode-quadratic", OBSTRUCTION]),
+        (EXAMPLES / "geromel-colaneri.nrs.yaml", "proved", ["graph", OBSTRUCTION]),
     ],
 )
 def test_file_and_id(path, verdict, kinds):
     certificate = run_certification(read_spec(path)).certificate
     document = json.loads(dump(certificate))
-    assert document["schema"] == SCHEMA == "nrs-design/certificate/6"
+    assert document["schema"] == SCHEMA == "nrs-design/certificate/7"
     assert [item["kind"] for item in document["statements"]] == kinds
     assert certificate.evidence is certificate.statements[0]
     assert document["verdict"] == certificate.verdict == verdict

@@ -38,13 +38,13 @@ from nrs_design.certificates.verify import (
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline import run_certification
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.system_fields import system_fields
 from nrs_design.search.certify import Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
 from nrs_design.switched.assemble import assemble_from_text
+from tests.proof.graphs import common_quadratic
 from tests.support import (
     COMMUTING,
     FORCE_LIMIT,
@@ -75,11 +75,8 @@ SMALL = ("given", "discrete")
 ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for name in SPECS]
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {
-    "common-quadratic": {"Q"},
-    "common-polynomial": {"Q", "vanishing"},
-    "conewise-quadratic": {"Q", "multipliers"},
     "constant-force": {"Q", "slope"},
-    "mode-quadratic": {"functions"},
+    "graph": {"nodes", "vanishing", "multipliers"},
     "parameter-quadratic": {"Q_low", "Q_high"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
@@ -87,7 +84,7 @@ NUMBERS = {
 }
 ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)
-Q = (*FIRST, "Q")
+Q = (*FIRST, "nodes", 0, "Q")
 DROP = object()
 NOT_ITS_MODES = "is not that of the spec"
 
@@ -333,7 +330,7 @@ class TestForgery:
         document, spec = given
         certificate = verify_document(document, spec).certificate
         for rate in (Fraction(1), Fraction(2), Fraction(10**6)):
-            evidence = CommonQuadratic(certificate.evidence.Q, 0, rate)
+            evidence = common_quadratic(certificate.evidence.nodes[0].form, 0, rate)
             words = evidence.claim(certificate.system)
             restated = restate(document, rate=str(rate), claim=words)
             self.reject(restated, spec, "does not decrease")
@@ -416,8 +413,8 @@ class TestForgery:
         document, spec = unstable
         system = run_certification(spec).certificate.system
         identity = tuple(tuple(int(i == j) for j in range(4)) for i in range(4))
-        evidence = CommonQuadratic(identity, 0, Fraction(1, 1000))
-        forged = {"kind": "common-quadratic", "claim": "", **evidence.to_fields()}
+        evidence = common_quadratic(identity, 0, Fraction(1, 1000))
+        forged = {"kind": "graph", "claim": "", **evidence.to_fields()}
         proved = {**document, "verdict": "proved", "statements": [forged]}
         self.reject(proved, spec, "'statements'")
         forged["claim"] = evidence.claim(system)

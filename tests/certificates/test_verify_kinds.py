@@ -27,16 +27,16 @@ ANDO_SHIH = [["0.99", "0"], ["0.99", "0"]], [["0", "0.99"], ["0", "-0.99"]]
 HALF = [["1/2", "0"], ["0", "1/2"]]
 
 SPECS = {
-    "common-quadratic": {"A": COMMUTING},
-    "common-polynomial": {"A": DAYAWANSA_MARTIN_6},
+    "graph, one form": {"A": COMMUTING},
+    "graph, polynomial": {"A": DAYAWANSA_MARTIN_6},
     "no-common-quadratic": {"A": DAYAWANSA_MARTIN_6},
     "block-triangular": {"A": ROTATIONS},
     "growing-sequence, mode": {"A": ([["0", "1"], ["-1", "0"]],)},
     "growing-sequence, average": {"A": SHEARS, "method": Method.MIXTURE},
     "growing-sequence, period": {"A": BRANICKY},
-    "mode-quadratic": {"A": GEROMEL_COLANERI, "switching": {"dwell_time": "2.76 s"}},
-    "mode-quadratic, discrete": {"A": ANDO_SHIH, "time": "discrete"},
-    "mode-quadratic, resets": {
+    "graph, modes": {"A": GEROMEL_COLANERI, "switching": {"dwell_time": "2.76 s"}},
+    "graph, modes in steps": {"A": ANDO_SHIH, "time": "discrete"},
+    "graph, resets": {
         "A": GEROMEL_COLANERI,
         "switching": {"transitions": [["m0", "m1"], ["m1", "m0"]]},
         "resets": [
@@ -58,7 +58,7 @@ SPECS = {
     },
 }
 # Every change to these, of whose kinds tests/proof changes the evidence alone, is slow.
-LONG = ("common-polynomial", "no-common-quadratic", "block-triangular", "mode-quadratic")
+LONG = ("graph, polynomial", "no-common-quadratic", "block-triangular", "graph, modes")
 
 
 @pytest.fixture(scope="module")
@@ -158,12 +158,13 @@ def test_statements_of_one_spec_prove_nothing_about_another(issue, example):
         [{"kind": "growing-sequence", "steps": [], "doublings": 3, "claim": ""}],
         [{"kind": "growing-sequence", "steps": [["m0"]], "doublings": 3, "claim": ""}],
         [{"kind": "growing-sequence", "weights": [], "eigenvalue": "", "claim": ""}],
-        [{"kind": "mode-quadratic", "functions": [], "rate": "1", "claim": ""}],
+        [{"kind": "graph", "nodes": [], "rate": "1", "claim": ""}],
+        [{"kind": "graph", "nodes": [{}], "rate": "1", "claim": ""}],
+        [{"kind": "common-quadratic", "Q": {}, "rate": "1", "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m0", []]], "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m9", [[1], [1]]]], "claim": ""}],
-        [{"kind": "common-polynomial", "degree": 4, "Q": {}, "vanishing": [], "rate": "1"}],
-        [{"kind": "common-polynomial", "degree": 4, "vanishing": [[]], "rate": "1", "claim": "",
-          "Q": {"numerators": [], "denominator_log2": 0}}],
+        [{"kind": "graph", "degree": 4, "vanishing": [[]], "rate": "1", "claim": "", "nodes": [
+            {"place": "modes", "Q": {"numerators": [], "denominator_log2": 0}}]}],
         [{"kind": "growing-sequence", "share": "1/2", "claim": ""}],
         [{"kind": "growing-sequence", "share": "1/2", "part": [], "claim": ""}],
         [{"kind": "growing-sequence", "share": "1/0", "part": {"kind": "growing-sequence"}}],

@@ -345,7 +345,7 @@ def test_json(tmp_path):
     (statement,) = certificate["statements"]
     assert document["decay_rate_exact"] == statement["rate"]
     assert document["decay_rate"] <= document["decay_rate_limit"]
-    assert document["statements"] == [{"kind": "conewise-quadratic", "claim": statement["claim"]}]
+    assert document["statements"] == [{"kind": "graph", "claim": statement["claim"]}]
     assert document["modes"] == [mode["name"] for mode in certificate["modes"]]
     assert document["gains"] == certificate["gains"]
     assert document["assumptions"] == [*certificate["assumptions"], certificate["contact"]["loss"]]

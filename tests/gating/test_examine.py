@@ -13,12 +13,12 @@ from nrs_design.design.measures import GAIN_MARGIN
 from nrs_design.errors import DesignError
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.obligations import Status
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import ARBITRARY, Stay, Switching
 from nrs_design.search.certify import certify
 from nrs_design.spec import read_spec
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import genuine
 from tests.support import ROOT, SOFT_TISSUE, family
 
@@ -170,7 +170,7 @@ def test_goals_that_a_certificate_must_show(tmp_path, goals, level, ends):
     from tests.proof.systems import bouncing, pushed
 
     system = pushed(bouncing())
-    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+    proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
     bounds = () if level is None else (replace(BOUNCE, level=level),)
     certificate = Certificate("s", "0", None, {}, system, (proof, *bounds), "0")
     found = list(wanting(tmp_path, goals).certified_goals(certificate))
@@ -187,7 +187,7 @@ def test_that_the_force_settles_is_held_against_the_certificate(shown, status):
     from tests.proof.evidence.test_constant_force import PUSHED
     from tests.proof.systems import settling
 
-    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+    proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
     statements = (proof, PUSHED) if shown else (proof,)
     certificate = Certificate("s", "0", None, {}, settling(), statements, "0")
     examiner = Examiner.of(read_spec(ROOT / "docs/examples/pushed-in.nrs.yaml"))
@@ -214,7 +214,7 @@ def test_the_force_that_motions_decay_from_is_held_against_the_certificate(
     from tests.proof.evidence.test_saturated_ellipsoid import HELD
     from tests.proof.systems import pushed_away
 
-    proof = CommonQuadratic(((1,),), 0, Fraction(1, 2))
+    proof = common_quadratic(((1,),), 0, Fraction(1, 2))
     shown = () if level is None else (replace(HELD, level=Fraction(level)),)
     certificate = Certificate("s", "0", None, {}, pushed_away(), (proof, *shown), "0")
     text = (ROOT / "docs/examples/saturating.nrs.yaml").read_text("utf-8")
@@ -230,7 +230,7 @@ def test_a_rate_per_step_counts_in_seconds(tmp_path):
     """rho = 0.95 in steps of a tenth of a second is at least 1/2 1/s."""
     from tests.proof.systems import bouncing_in_steps
 
-    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
+    proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
     for goal, status in (("0.5 1/s", Status.PROVED), ("0.6 1/s", Status.INCONCLUSIVE)):
         certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")
         examiner = wanting(tmp_path, f"{{decay_rate: {goal}}}")
@@ -253,7 +253,7 @@ def test_a_delay_that_a_certificate_must_show(tmp_path, delay, wanted, status):
         f"{text}\nsampling: {{period: 2 ms, delay: {delay}}}\ngoals: {{delay: {wanted}}}\n"
     )
     examiner = Examiner.of(read_spec(path))
-    proof = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
+    proof = common_quadratic(((1, 0), (0, 1)), 0, Fraction("0.95"))
     from tests.proof.systems import bouncing_in_steps
 
     certificate = Certificate("s", "0", None, {}, bouncing_in_steps(), (proof,), "0")

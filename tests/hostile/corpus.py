@@ -138,8 +138,13 @@ CERTIFICATES: dict[str, Callable[[], str | bytes]] = {
     "huge form": lambda: fake(
         statements=[
             {
-                "kind": "common-quadratic",
-                "Q": {"numerators": [[1 << 12_000] * 20] * 20, "denominator_log2": 0},
+                "kind": "graph",
+                "nodes": [
+                    {
+                        "place": "modes",
+                        "Q": {"numerators": [[1 << 12_000] * 20] * 20, "denominator_log2": 0},
+                    }
+                ],
                 "rate": "1",
             }
         ]
@@ -149,10 +154,11 @@ CERTIFICATES: dict[str, Callable[[], str | bytes]] = {
         **own_modes(*[[[-1]]] * 20_000),
         statements=[
             {
-                "kind": "mode-quadratic",
+                "kind": "graph",
                 "rate": "1/2",
-                "functions": [
-                    {"mode": f"m{i}", "Q": {"numerators": [[1]], "denominator_log2": 0}}
+                "stays": {"leaving": [], "pieces": 1},
+                "nodes": [
+                    {"place": f"m{i}", "Q": {"numerators": [[1]], "denominator_log2": 0}}
                     for i in range(20_000)
                 ],
             }

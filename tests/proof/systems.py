@@ -19,6 +19,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from nrs_design.switched.modes import velocity_mode
+from tests.proof.graphs import shape_of
 
 Entry = int | str | Fraction
 Rows = Sequence[Sequence[Entry]]
@@ -310,6 +311,32 @@ def bouncing_in_steps(damping: Entry = 0) -> SwitchedSystem:
     return replace(system, contact=Contact((free,), pulls), sample_time=Fraction(1, 10))
 
 
+def losable(contact: Rows, free: Rows, time: Time, *pulls: Rows) -> SwitchedSystem:
+    """One mode in contact and one free."""
+    rows = tuple(matrix(q) for q in pulls)
+    return replace(family(contact, time=time), contact=Contact((Mode("f", matrix(free)),), rows))
+
+
+def over(denominator: int, *rows: tuple[int, ...]) -> Rows:
+    return [[Fraction(entry, denominator) for entry in row] for row in rows]
+
+
+# Functions that rise from a state that lags, and keep all conditions but one. The multipliers are
+# lambda, mu where the deflection stays, mu and lambda where it does not.
+LAGGING = {
+    "while the environment lags, mode f": (
+        losable(over(8, (-4, 9), (3, 3)), over(8, (-1, 0), (5, 8)), Time.DISCRETE, [[-6, 1]]),
+        ((512, -320), (-320, 720)),
+        (16, 0, 16, 16),
+    ),
+    "where a lagging environment is left, mode f": (
+        losable(over(8, (6, -1), (-8, -2)), over(8, (-7, 0), (5, 8)), Time.DISCRETE, [[1, 4]]),
+        ((384, 336), (336, 400)),
+        (256, 128, 0, 0),
+    ),
+}
+
+
 def bouncing_in_turns(damping: Entry = 0, *, rounded: bool = False) -> SwitchedSystem:
     """The same, with a force that acts twice as much at every second step, and then not at all.
 
@@ -455,7 +482,7 @@ METHODS = {
 
 @cache
 def genuine(example: str) -> tuple[SwitchedSystem, AbstractEvidence]:
-    """Return a system and evidence of a kind that the search really finds."""
+    """Return a system and evidence of a kind, or a graph of a shape, that the search finds."""
     system, kind = SYSTEMS[example](), example.split(",")[0]
     found = certify(system, METHODS.get(example, Method.AUTO), Limits(optimize_rate=False))
-    return system, next(item for item in found.statements if item.kind == kind)
+    return system, next(item for item in found.statements if shape_of(item) == kind)

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.clock import keeps_turns, on_turn
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import CommonQuadratic, GrowingSequence
+from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.switching import Clock
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing_in_turns, doubled_in_turns, matrix, pushed
 
 ROUND = Clock(3, ("a", "b"))
@@ -116,4 +117,4 @@ def test_kinds_that_know_no_turns_show_nothing():
     system = doubled_in_turns(4)
     assert staying("m0").find_fault(replace(system, clock=None)) is None
     assert "not its turn" in staying("m0").find_fault(system)
-    assert "take turns" in CommonQuadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)
+    assert "every place" in common_quadratic(((1,),), 0, Fraction(1, 2)).find_fault(system)

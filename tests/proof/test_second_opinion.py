@@ -12,8 +12,6 @@ from nrs_design.errors import InternalError
 from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import (
     BlockTriangular,
-    CommonQuadratic,
-    ModeQuadratic,
 )
 from nrs_design.proof.evidence.growing_sequence import GrowingSequence, staying
 from nrs_design.proof.exact import is_positive_definite
@@ -22,6 +20,7 @@ from nrs_design.proof.second_opinion import agrees, finds_positive, has_positive
 from nrs_design.proof.switching import Stay, Switching
 from nrs_design.proof.taylor import exponential_nearly
 from nrs_design.search.certify import certify
+from tests.proof.graphs import common_quadratic, mode_quadratic
 from tests.proof.systems import PAIR, SYSTEMS, family, genuine, matrix
 
 INTS = st.integers(-9, 9)
@@ -184,7 +183,7 @@ I2 = ((1, 0), (0, 1))
     ],
 )
 def test_opinion_on_a_quadratic_function(matrices, time, Q, rate, holds):
-    evidence = CommonQuadratic(Q, 0, rate)
+    evidence = common_quadratic(Q, 0, rate)
     system = family(*matrices, time=time)
     assert agrees(system, evidence) is holds
     assert (evidence.find_fault(system) is None) is holds
@@ -196,10 +195,10 @@ def test_opinion_on_a_function_with_rounding(rate, holds):
     one = matrix([[1]])
     system = family([["1/2"]], time=DISCRETE)
     rounded = replace(system, roundings=(Rounding("x", (one,), (matrix([["1/4"]]),)),))
-    covered = CommonQuadratic(((1,),), 0, Fraction(rate), (3,))
+    covered = common_quadratic(((1,),), 0, Fraction(rate), (3,))
     assert agrees(rounded, covered) is holds
     assert (covered.find_fault(rounded) is None) is holds
-    assert agrees(rounded, replace(covered, roundings=()))
+    assert agrees(rounded, replace(covered, multipliers=()))
 
 
 @pytest.mark.parametrize(
@@ -231,7 +230,7 @@ def test_veto_on_what_is_surely_stable(A, time, is_vetoed):
 
 def test_every_part_of_a_block_triangular_system_is_asked():
     system = family([[-1, 5], [0, -2]])
-    one = CommonQuadratic(((1,),), 0, HALF)
+    one = common_quadratic(((1,),), 0, HALF)
     fast = replace(one, rate=Fraction(3, 2))
     for first, second, holds in ((one, fast, True), (fast, one, False), (fast, fast, False)):
         assert agrees(system, BlockTriangular(((0,), (1,)), ((0, first), (1, second)))) is holds
@@ -242,7 +241,7 @@ def test_every_form_is_asked():
     system = family([["-1/2"]], [["1/4"]], time=DISCRETE, switching=Switching(Fraction(2)))
     for first, second, holds in ((1, 1, True), (1, 20, False), (100, 1, False), (-1, 1, False)):
         functions = (("m0", ((first,),)), ("m1", ((second,),)))
-        assert agrees(system, ModeQuadratic(functions, 0, Fraction(3, 4))) is holds
+        assert agrees(system, mode_quadratic(functions, 0, Fraction(3, 4))) is holds
 
 
 def recorded(monkeypatch, system, evidence):
@@ -263,7 +262,7 @@ def test_both_ends_of_every_stay_meet_a_series(monkeypatch):
     system = family([[1]], [[-2]], [[-3]], switching=Switching(stays=stays))
     functions = tuple((f"m{k}", ((q,),)) for k, q in enumerate((400, 1, 1)))
     one_way = replace(system.switching, transitions=(("m0", "m1"),))
-    evidence = ModeQuadratic(functions, 0, Fraction(1, 8), ("m0",), 8)
+    evidence = mode_quadratic(functions, 0, Fraction(1, 8), ("m0",), 8)
     asked = recorded(monkeypatch, replace(system, switching=one_way), evidence)
     # At the rate 1/8; m1 decreases, so that its longest stay is of no interest; m2 has no dwell.
     assert asked == [

@@ -11,19 +11,29 @@ from hypothesis import strategies as st
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import (
-    CommonQuadratic,
-    ConewiseQuadratic,
-    CoupledAxes,
-    InvariantEllipsoid,
-)
+from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.steps import Steps, find_odd_roundings
+from nrs_design.proof.steps import (
+    Steps,
+    find_odd_multipliers,
+    find_odd_roundings,
+    flow_step,
+    map_step,
+    multiplier_names,
+)
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.systems import Entry, bouncing_in_steps, family, matrix
-from tests.proof.truth import combine, holds, in_steps, is_in_other_units, times, transpose
+from tests.proof.graphs import common_quadratic, one_form
+from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, matrix
+from tests.proof.truth import (
+    combine,
+    holds,
+    is_in_other_units,
+    is_positive_multiple,
+    times,
+    transpose,
+)
 
 ONE = Fraction(1)
 
@@ -37,29 +47,31 @@ def rounded(A: Entry, share: Entry, column: Entry = 1) -> SwitchedSystem:
 def test_the_exact_rate_of_one_state():
     """x+ = x/2 + r with |r| <= |x|/4 grows by 3/4 at worst, and no multiplier shows less."""
     system = rounded("1/2", "1/4")
-    proof = CommonQuadratic(((1,),), 0, Fraction("0.7501"), (3,))
+    proof = common_quadratic(((1,),), 0, Fraction("0.7501"), (3,))
     assert proof.find_fault(system) is None
     assert agrees(system, proof)
     assert holds(system, proof)
     assert proof.claim(system).endswith(ROUNDED)
     for tau in range(20):
-        fast = CommonQuadratic(((8,),), 3, Fraction("0.7499"), (tau,))
+        fast = common_quadratic(((8,),), 3, Fraction("0.7499"), (tau,))
         assert "does not decrease" in fast.find_fault(system)
 
 
 def test_without_its_roundings_a_growing_law_would_pass():
     """x+ = 3/4 x + r with |r| <= |x|/2 may grow by 5/4 a step."""
     system = rounded("3/4", "1/2")
-    exact = CommonQuadratic(((1,),), 0, Fraction("0.8"))
+    exact = common_quadratic(((1,),), 0, Fraction("0.8"))
     assert exact.find_fault(system) is None
     assert exact.claim(system).endswith(NOT_ROUNDED)
     for tau in range(1, 40):
         for rate in ("0.8", "0.999"):
-            covered = CommonQuadratic(((8,),), 3, Fraction(rate), (tau,))
+            covered = common_quadratic(((8,),), 3, Fraction(rate), (tau,))
             assert "does not decrease" in covered.find_fault(system)
 
 
-BOUNCE = ConewiseQuadratic(((3059, 1375), (1375, 3495)), 8, Fraction("0.999"), (2598,), (60_000,))
+def conewise(Q, log2, rate, crossings, roundings):
+    system, numbers = bouncing_and_rounded("1/4"), {"crossings": crossings, "roundings": roundings}
+    return one_form(system, Q, log2, Fraction(rate), **numbers, lost=True)
 
 
 def bouncing_and_rounded(share: Entry, *, deflects: bool = False) -> SwitchedSystem:
@@ -68,6 +80,9 @@ def bouncing_and_rounded(share: Entry, *, deflects: bool = False) -> SwitchedSys
     columns = (matrix([[0], [1]] if deflects else [[1], [0]]),) * 3
     rows = (matrix([[0, share]]), matrix([[0, share]]), matrix([[share, 0]]))
     return replace(system, roundings=(Rounding("F", columns, rows),))
+
+
+BOUNCE = conewise(((3059, 1375), (1375, 3495)), 8, "0.999", (2598,), (60_000,))
 
 
 def test_a_bouncing_mass_that_rounds():
@@ -96,7 +111,8 @@ def test_an_error_in_any_motion_counts(where, Q):
     wild = replace(system, roundings=(replace(item, rows=tuple(rows)),))
     assert BOUNCE.find_fault(wild).endswith(where)
     for tau in (0, 1, 100, 10_000, 10**6):
-        assert replace(BOUNCE, roundings=(tau,)).find_fault(wild) is not None
+        item = conewise(BOUNCE.nodes[0].form, 8, "0.999", (2598,), (tau,))
+        assert item.find_fault(wild) is not None
 
 
 def test_a_disturbance_is_rounded_too():
@@ -125,20 +141,6 @@ def test_a_disturbance_is_rounded_too():
     assert agrees(system, candidate(Fraction("3.01"), Fraction(found[0], 200)))
     for t in range(1, 200):
         assert candidate(Fraction("2.99"), Fraction(t, 200)).find_fault(system) is not None
-
-
-@pytest.mark.parametrize(
-    ("changes", "fault"),
-    [
-        ({"roundings": (1, 1)}, "one multiplier for each rounding"),
-        ({"roundings": (-1,)}, "multiplier of a rounding is negative"),
-    ],
-)
-def test_misfits(changes, fault):
-    system = bouncing_and_rounded("1/1000")
-    assert fault in replace(BOUNCE, **changes).find_fault(system)
-    proof = CommonQuadratic(((1,),), 0, Fraction("0.8"))
-    assert fault in replace(proof, **changes).find_fault(rounded("1/2", "1/4"))
 
 
 def changed(**changes: object) -> SwitchedSystem:
@@ -186,7 +188,7 @@ def test_against_the_definition(contact, errors, Q, multiplier, tau):
         roundings=(item,),
     )
     x, y, z = Q
-    candidate = ConewiseQuadratic(((x, y), (y, z)), 2, Fraction("0.95"), (multiplier,), (tau,))
+    candidate = conewise(((x, y), (y, z)), 2, "0.95", (multiplier,), (tau,))
     assert (candidate.find_fault(system) is None) == holds(system, candidate)
 
 
@@ -288,7 +290,6 @@ INNER = [row[:2] for row in QUARTERS[:2]]
 @pytest.mark.parametrize("keeps", [Fraction(5, 7), Fraction(25, 49)])
 def test_every_form_by_hand(keeps, acting, roundings):
     weights = WEIGHTS[: len(acting)]
-    steps = Steps(Q3, 2, keeps, 5, roundings, acting, weights)
     numbers = {"keeps": keeps, "acting": acting, "roundings": roundings}
     wanted = [
         ("in mode m0", by_hand(0, QUARTERS, QUARTERS, **numbers)),
@@ -311,6 +312,8 @@ def test_every_form_by_hand(keeps, acting, roundings):
     assert find_contradiction(system) is None
     kept = [form for form in wanted if form[0].startswith("in mode")]
     for given_system, true in ((system, wanted), (three_states(contact=False), kept)):
+        crossings = (5,) if given_system.contact else ()
+        steps = Steps(Q3, 2, keeps, crossings, roundings, (), acting, weights)
         found = list(steps.forms(given_system))
         assert [where for where, _ in found] == [where for where, _ in true]
         for (_, form), (_, form_by_hand) in zip(found, true, strict=True):
@@ -333,35 +336,32 @@ def test_multipliers_of_roundings(roundings, fault):
     assert find_odd_roundings(roundings, three_states(contact=True)) == fault
 
 
-def test_forms_of_what_lags_and_of_two_functions():
-    """Two forces, two free modes, an error and a function of its own after the step."""
-    A = [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "8/9"]]
-    free = [["-1/3", "1/2", 0], ["1/7", "-2/5", 0], ["3/4", "-1/6", 1]]
-    other = [["-1/11", "2/3", 0], ["-1/5", "-2", 0], ["5/4", "1/6", 1]]
-    pulls = matrix([["1/2", "-1/3", 2]]), matrix([["1/5", 4, "3/2"]])
-    columns = tuple(matrix([[k], ["1/3"], [2]]) for k in range(3))
-    rows = matrix([["1/7", 2, 1]]), matrix([["1/9", 1, 0]]), matrix([["1/4", 3, 0]])
-    system = replace(
-        family(A, time=Time.DISCRETE),
-        contact=Contact((Mode("f", matrix(free)), Mode("g", matrix(other))), pulls),
-        roundings=(Rounding("a x", columns, rows),),
-    )
-    assert find_contradiction(system) is None
-    Q, after = ((9, 2, -1), (2, 7, 3), (-1, 3, 8)), ((5, 1, 2), (1, 6, -1), (2, -1, 7))
-    multipliers = (5, 2, 7, 11, 13, 17, 19)
-    lagging = multipliers[1:4], multipliers[4:]
-    steps = Steps(Q, 0, Fraction(36, 49), 5, (3,), lagging=lagging, after=after)
-    found = [*steps.forms(system)]
-    lags = ["while the environment lags", "where a lagging environment is left"] * 2
-    flights = ["in free motion", "where contact is made", *lags]
-    assert [where for where, _ in found] == [
-        "in mode m0",
-        "where contact is lost in mode m0",
-        *(f"{where}, mode {name}" for name in "fg" for where in flights),
-    ]
-    wanted = in_steps(system, (Q, after), Fraction(6, 7), multipliers, (3,))
-    for (_, form), true in zip(found, wanted, strict=True):
-        assert is_in_other_units(form, true)
+def test_names_of_multipliers():
+    """One for lost contact, and three for every force; in flows one for each force and mode."""
+    assert multiplier_names(replace(bouncing_in_steps(), contact=None)) == ()
+    assert multiplier_names(bouncing_in_steps()) == ("lost",)
+    pulled = ("pull 1", "pull 1 lost", "lost pull 1", "pull 2", "pull 2 lost", "lost pull 2")
+    assert multiplier_names(bouncing_in_steps(1)) == ("lost", *pulled)
+    assert multiplier_names(bouncing(1)) == ("pull 1 free", "pull 2 free")
+    needed = "there is not one multiplier for each condition that needs it"
+    assert find_odd_multipliers((4, 0), bouncing(1)) is None
+    assert find_odd_multipliers((4,), bouncing(1)) == needed
+    assert find_odd_multipliers((1,), replace(bouncing(1), contact=None)) == needed
+    assert find_odd_multipliers((4, -1), bouncing(1)) == "a multiplier is negative"
+
+
+def test_a_map_and_a_flow_by_hand():
+    A, F, G = matrix([["1/2", "1/3"], [0, "2/5"]]), ((3, 1), (1, 2)), ((5, -1), (-1, 4))
+    exact, keeps = A.fractions(), Fraction(3, 7)
+    moved = times(transpose(exact), times(G, exact))
+    step = map_step("", "m0", ("a", "b"), A, 7)
+    form = step.form(F, G, keeps)
+    assert is_in_other_units(form, combine((keeps, F), (-1, moved)))
+    assert (step.source, step.target, step.facts) == ("a", "b", ())
+    half = times(F, exact)
+    flow = flow_step("", "m0", "a", A).form(F, F, keeps)
+    wanted = combine((-1, half), (-1, transpose(half)), (-keeps, F))
+    assert is_positive_multiple(flow, wanted)
 
 
 def test_what_is_rounded_acts_on_other_axes():
@@ -371,14 +371,18 @@ def test_what_is_rounded_acts_on_other_axes():
         coupling = Coupling("c", (matrix([[1]]),), (matrix([[0, q]]),))
         return replace(rounded("1/2", "1/8"), couplings=(coupling,))
 
-    proof = CoupledAxes(((64,),), 6, Fraction("0.7501"), (6 * 64,), (), (12 * 64,))
+    def coupled(rate, tau, rho):
+        numbers = {"couplings": (tau,), "roundings": (rho,)}
+        return one_form(among(1), ((64,),), 6, Fraction(rate), **numbers)
+
+    proof = coupled("0.7501", 6 * 64, 12 * 64)
     assert proof.find_fault(among(1)) is None
     assert agrees(among(1), proof)
     # Where nobody sees what an axis rounds, its own 5/8 are left.
-    alone = CoupledAxes(((64,),), 6, Fraction("0.6251"), (1 << 20,), (), (5 * 64,))
+    alone = coupled("0.6251", 1 << 20, 5 * 64)
     assert alone.find_fault(among(0)) is None
     for i, j in product(range(24), range(16)):
-        fast = replace(proof, rate=Fraction("0.7499"), taus=(1 << i,), roundings=(1 << j,))
+        fast = coupled("0.7499", 1 << i, 1 << j)
         assert fast.find_fault(among(1)) is not None
     # The same two numbers are a proof at that rate where w is not there.
     assert replace(alone, rate=Fraction("0.7499")).find_fault(among(0)) is None

@@ -16,20 +16,12 @@ from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
-    CommonPolynomial,
-    CommonQuadratic,
-    ConewiseModeQuadratic,
-    ConewisePolynomial,
-    ConewiseQuadratic,
     ConstantForce,
-    CoupledAxes,
+    FormsOnGraph,
     GrowingSequence,
     InvariantEllipsoid,
-    ModePolynomial,
-    ModeQuadratic,
     NoCommonQuadratic,
     ParameterQuadratic,
-    PeriodicQuadratic,
     SaturatedEllipsoid,
 )
 from nrs_design.proof.matrix import RationalMatrix
@@ -117,11 +109,11 @@ def is_rate(rate: Fraction, time: Time) -> bool:
     return rate > 0 and (time is Time.CONTINUOUS or rate < 1)
 
 
-def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial) -> bool:
+def _mode_polynomials_decrease(system: SwitchedSystem, evidence: FormsOnGraph) -> bool:
     """Evaluate the polynomials where the definition says that they decrease, at many states."""
-    d, rate = evidence.degree, evidence.quadratic.rate
-    functions = dict(evidence.quadratic.functions)
-    if not is_rate(rate, system.time) or list(functions) != [m.name for m in system.modes]:
+    d, rate = evidence.degree, evidence.rate
+    functions = dict(evidence.nodes)
+    if not is_rate(rate, system.time) or set(functions) != {m.name for m in system.modes}:
         return False
 
     def value(name: str, x: Sequence[Fraction]) -> Fraction:
@@ -143,7 +135,7 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
             if not any(x):
                 continue
             before, stay, y, steps = value(mode.name, x), stays[mode.name], x, 0
-            left = mode.name in evidence.quadratic.leaving
+            left = mode.name in evidence.stays.leaving
             if before <= 0:
                 return False
             if not left and value(mode.name, image(mode.A, x)) >= rate ** (2 * d) * before:
@@ -163,58 +155,10 @@ def _mode_polynomials_decrease(system: SwitchedSystem, evidence: ModePolynomial)
 
 def holds(system: SwitchedSystem, evidence: AbstractEvidence) -> bool:
     """Tell whether what the numbers say is true for this system."""
-    clocked = PeriodicQuadratic | GrowingSequence
+    clocked = FormsOnGraph | GrowingSequence
     if system.clock is not None and not isinstance(evidence, clocked):
         return False
     return _ORACLES[type(evidence)](system, evidence)
-
-
-def _common_quadratic(system: SwitchedSystem, item: CommonQuadratic) -> bool:
-    if item.roundings:
-        errors = _errors(replace(system, contact=None), (), item.roundings)
-        if errors is None:
-            return False
-        kept = _padded(combine((item.rate**2, item.Q)), len(item.roundings))
-        grown = (times(transpose(A), times(item.Q, A)) for A in errors[0])
-        forms = [
-            combine((1, kept), (-1, after), (1, slack))
-            for after, slack in zip(grown, errors[1], strict=True)
-        ]
-        return is_rate(item.rate, system.time) and all(map(is_definite, [item.Q, *forms]))
-    return is_rate(item.rate, system.time) and all(
-        is_definite(form)
-        for form in (
-            item.Q,
-            *(decrease(m.A.fractions(), item.Q, item.rate, system.time) for m in system.modes),
-        )
-    )
-
-
-def _conewise_quadratic(system: SwitchedSystem, item: ConewiseQuadratic) -> bool:
-    """The conditions as the class states them, in fractions."""
-    contact, Q, rate = system.contact, [list(row) for row in item.Q], item.rate
-    if contact is None or not is_rate(rate, system.time) or min(item.multipliers, default=0) < 0:
-        return False
-    if len(Q) != system.order:
-        return False
-    inner = [row[:-1] for row in Q[:-1]]
-    last = [[Fraction(int(i == len(Q) - 1))] for i in range(len(Q))]
-    forms = [Q]
-    forms += [decrease(m.A.fractions(), Q, rate, system.time) for m in system.modes]
-    if system.time is Time.CONTINUOUS:
-        pairs = [(F.A.fractions(), q.fractions()) for F in contact.free for q in contact.pulls]
-        if len(pairs) != len(item.multipliers):
-            return False
-        for mode in contact.free:
-            block = [row[:-1] for row in mode.A.fractions()[:-1]]
-            forms.append(decrease(block, inner, rate, system.time))
-        for (F, q), multiplier in zip(pairs, item.multipliers, strict=True):
-            product_ = times(last, q)
-            lag = (multiplier, product_), (multiplier, transpose(product_))
-            forms.append(combine((1, decrease(F, Q, rate, system.time)), *lag))
-        return all(is_definite(form) for form in forms)
-    forms = in_steps(system, (Q, Q), rate, item.multipliers, item.roundings)
-    return forms is not None and all(is_definite(form) for form in (Q, *forms))
 
 
 def _constant_force(system: SwitchedSystem, item: ConstantForce) -> bool:
@@ -295,129 +239,6 @@ def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bo
     return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
 
 
-def in_steps(
-    system: SwitchedSystem,
-    functions: tuple[Rows, Rows],
-    rate: Fraction,
-    multipliers: Sequence[int],
-    roundings: Sequence[int],
-) -> list[Rows] | None:
-    """Return what one step does from a function to the next, contact lost; None if they misfit."""
-    (Q, after), contact = functions, system.contact
-    pulls = [] if contact is None else [q.numerators[0] for q in contact.pulls]
-    errors = _errors(system, (), roundings)
-    needed = 0 if contact is None else 1 + 3 * len(pulls)
-    if errors is None or len(multipliers) != needed or min(multipliers, default=0) < 0:
-        return None
-    n, count, extra, forms = len(Q), len(system.modes), len(roundings), list[Rows]()
-    inner, landed = ([row[:-1] for row in M[:-1]] for M in (Q, after))
-    unit = [[Fraction(int(i == n - 1))] for i in range(n + extra)]
-
-    def shrinks(before: Rows, A: Rows, M: Rows, slack: Rows) -> Rows:
-        moved = times(transpose(A), times(M, A))
-        return combine((1, _padded(combine((rate**2, before)), extra)), (-1, moved), (1, slack))
-
-    def crossing(weight: int, row: Sequence[Fraction | int]) -> list[tuple[int, Rows]]:
-        product_ = times(unit, [[Fraction(entry) for entry in row]])
-        return [(weight, product_), (weight, transpose(product_))]
-
-    for A, slack in zip(*(part[:count] for part in errors), strict=True):
-        forms.append(shrinks(Q, A, after, slack))
-        if contact is not None:
-            lost = crossing(multipliers[0], A[-1])
-            forms.append(combine((1, shrinks(Q, A[:-1], landed, slack)), *lost))
-    for wide, slack in zip(*(part[count:] for part in errors), strict=True):
-        A, S = [[*row[: n - 1], *row[n:]] for row in wide], _cut(slack, n - 1)
-        forms += [shrinks(inner, A[:-1], landed, S), shrinks(inner, A, after, S)]
-        for k, q in enumerate(pulls):
-            stays, leaves, weight = multipliers[3 * k + 1 : 3 * k + 4]
-            force = [*q, *[0] * extra]
-            forms.append(combine((1, shrinks(Q, wide, after, slack)), *crossing(stays, force)))
-            lost = (*crossing(leaves, force), *crossing(weight, wide[-1]))
-            forms.append(combine((1, shrinks(Q, wide[:-1], landed, slack)), *lost))
-    return forms
-
-
-def _periodic_quadratic(system: SwitchedSystem, item: PeriodicQuadratic) -> bool:
-    """At every step of a round, the modes of that step, from one function to the next."""
-    clock, functions = system.clock, [[list(row) for row in Q] for Q in item.functions]
-    if clock is None or len(functions) != clock.length or not is_rate(item.rate, system.time):
-        return False
-    if any(len(Q) != system.order for Q in functions) or not all(map(is_definite, functions)):
-        return False
-    multipliers = item.multipliers or ((),) * clock.length
-    roundings = item.roundings or ((),) * clock.length
-    if not len(multipliers) == len(roundings) == clock.length:
-        return False
-    free = () if system.contact is None else system.contact.free
-    for step, following in enumerate([*functions[1:], functions[0]]):
-        turn = [(mode.name in clock.first) == (step == 0) for mode in (*system.modes, *free)]
-        count = len(system.modes)
-        part = replace(
-            system,
-            modes=tuple(m for m, b in zip(system.modes, turn[:count], strict=True) if b),
-            contact=None
-            if system.contact is None
-            else replace(
-                system.contact,
-                free=tuple(m for m, b in zip(free, turn[count:], strict=True) if b),
-            ),
-            roundings=tuple(
-                replace(
-                    one,
-                    columns=tuple(c for c, b in zip(one.columns, turn, strict=True) if b),
-                    rows=tuple(q for q, b in zip(one.rows, turn, strict=True) if b),
-                )
-                for one in system.roundings
-            ),
-        )
-        forms = in_steps(
-            part, (functions[step], following), item.rate, multipliers[step], roundings[step]
-        )
-        if forms is None or not all(map(is_definite, forms)):
-            return False
-    return True
-
-
-def _coupled_axes(system: SwitchedSystem, item: CoupledAxes) -> bool:
-    """What d does at worst is taken off, instead of being a variable (Schur complement)."""
-    contact, Q, rate = system.contact, [list(row) for row in item.Q], item.rate
-    free = () if contact is None else contact.free
-    pulls = [q.fractions() for q in contact.pulls] if contact else []
-    if not system.couplings or not is_rate(rate, system.time) or len(Q) != system.order:
-        return False
-    if len(item.taus) != len(system.couplings) or min(item.taus) <= 0:
-        return False
-    if system.time is Time.DISCRETE:
-        alone = _as_roundings(system, item.roundings)
-        taus = (*item.roundings, *item.taus)
-        steps = in_steps(alone, (Q, Q), rate, item.multipliers, taus)
-        return steps is not None and all(map(is_definite, [Q, *steps]))
-    if len(item.multipliers) != len(free) * len(pulls) or min(item.multipliers, default=0) < 0:
-        return False
-
-    def falls(k: int, A: Rows, Q: Rows) -> Rows:
-        terms = [(Fraction(1), decrease(A, Q, rate, system.time))]
-        for tau, coupling in zip(item.taus, system.couplings, strict=True):
-            q = [row[: len(Q)] for row in coupling.rows[k].fractions()]
-            pushed = times(Q, coupling.columns[k].fractions()[: len(Q)])
-            terms.append((Fraction(-tau), times(transpose(q), q)))
-            terms.append((Fraction(-1, tau), times(pushed, transpose(pushed))))
-        return combine(*terms)
-
-    last = [[Fraction(int(i == len(Q) - 1))] for i in range(len(Q))]
-    inner = [row[:-1] for row in Q[:-1]]
-    forms = [Q, *(falls(k, mode.A.fractions(), Q) for k, mode in enumerate(system.modes))]
-    lagging = []
-    for k, mode in enumerate(free, len(system.modes)):
-        A = mode.A.fractions()
-        forms.append(falls(k, [row[:-1] for row in A[:-1]], inner))
-        lagging += [(falls(k, A, Q), times(last, f)) for f in pulls]
-    for (form, crossing), weight in zip(lagging, item.multipliers, strict=True):
-        forms.append(combine((1, form), (weight, crossing), (weight, transpose(crossing))))
-    return all(map(is_definite, forms))
-
-
 def _as_roundings(system: SwitchedSystem, roundings: Sequence[int]) -> SwitchedSystem:
     """Return one axis by itself, to which each coupling is an error, where its rows allow for it.
 
@@ -437,43 +258,194 @@ def _as_roundings(system: SwitchedSystem, roundings: Sequence[int]) -> SwitchedS
     return replace(system, couplings=(), roundings=(*kept, *errors))
 
 
-def _padded(M: Rows, extra: int) -> Rows:
-    """Add rows and columns of zeros."""
-    zeros = [Fraction(0)] * extra
-    return [[*row, *zeros] for row in M] + [[Fraction(0)] * (len(M) + extra)] * extra
+def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
+    """What every step asks of the forms before and after it, from the definition."""
+    if (
+        not is_rate(item.rate, system.time)
+        or min((m.value for m in item.multipliers), default=0) < 0
+    ):
+        return False
+    if item.stays is not None:
+        ruled = _mode_quadratic if item.degree == 1 else _mode_polynomials_decrease
+        return system.clock is None and not system.couplings and ruled(system, item)
+    lost = any(node.place.startswith("free") for node in item.nodes)
+    if lost and system.contact is None:
+        return False
+    if item.degree > 1:
+        return _polynomials(system, item, lost=lost)
+    turns = [None] if system.clock is None else list(range(system.clock.length))
+    steps = [step for turn in turns for step in _steps(system, item, turn, lost=lost)]
+    if not all(is_definite(node.form) for node in item.nodes):
+        return False
+    if system.couplings and not any(m.fact.startswith("coupling") for m in item.multipliers):
+        return False
+    taken: set[tuple[int, int, int]] = set()
+    for k, step in enumerate(steps):
+        for a, b in product(range(len(item.nodes)), repeat=2):
+            places = item.nodes[a].place, item.nodes[b].place
+            if places != (step["source"], step["target"]) or (step["flows"] and a != b):
+                continue
+            if not any(_joins(edge, a, step["mode"], b) for edge in item.edges):
+                continue
+            taken.add((a, k, b))
+            if not is_definite(_inequality(system, item, step, a, b), strictly=step["strict"]):
+                return False
+    return _leaves_no_word(item, steps, taken)
 
 
-def _conewise_mode_quadratic(system: SwitchedSystem, item: ConewiseModeQuadratic) -> bool:
-    """Every step from every mode to every other, as the class states them, in fractions."""
-    contact, rate = system.contact, item.rate
-    if contact is None or contact.pulls or system.time is Time.CONTINUOUS:
-        return False
-    given = [name for name, _ in item.touching], [name for name, _ in item.flying]
-    if given != ([m.name for m in system.modes], [m.name for m in contact.free]):
-        return False
-    touching, flying = ([Q for _, Q in part] for part in (item.touching, item.flying))
-    if not is_rate(rate, system.time) or len(item.multipliers) != len(flying):
-        return False
-    if min(item.multipliers) < 0 or any(len(Q) != system.order for Q in touching):
-        return False
-    forms = [*touching, *flying]
+def _joins(edge, a: int, mode: str, b: int) -> bool:
+    return all(x is None or x == y for x, y in zip(edge, (a, mode, b), strict=True))
 
-    def shrinks(before: Rows, A: Rows, after: Rows) -> Rows:
-        return combine((rate**2, before), (-1, times(transpose(A), times(after, A))))
 
-    for mode, Q in zip(system.modes, touching, strict=True):
-        A = mode.A.fractions()
-        forms += [shrinks(Q, A, after) for after in touching]
-        crossing = times([[Fraction(0)]] * (len(A) - 1) + [[Fraction(1)]], [A[-1]])
-        for R, weight in zip(flying, item.multipliers, strict=True):
-            lost = (weight, crossing), (weight, transpose(crossing))
-            forms.append(combine((1, shrinks(Q, A[:-1], R)), *lost))
-    for mode, R in zip(contact.free, flying, strict=True):
-        A = [row[:-1] for row in mode.A.fractions()]
-        forms += [shrinks(R, A[:-1], after) for after in flying]
-        for Q in touching:
-            forms += [shrinks(R, A, Q), shrinks(R, A[:-1], [row[:-1] for row in Q[:-1]])]
-    return all(map(is_definite, forms))
+def _leaves_no_word(item: FormsOnGraph, steps, taken) -> bool:
+    """Follow words of up to six steps from every place, by brute force."""
+    runs = {(p, frozenset(k for k, n in enumerate(item.nodes) if n.place == p))
+            for p in {step["source"] for step in steps}}  # fmt: skip
+    for _ in range(6):
+        following = set()
+        for place, nodes in runs:
+            for k, step in enumerate(steps):
+                if step["source"] == place:
+                    after = frozenset(b for a, j, b in taken if j == k and a in nodes)
+                    if not after:
+                        return False
+                    following.add((step["target"], after))
+        runs = following
+    return True
+
+
+def _steps(system: SwitchedSystem, item: FormsOnGraph, turn: int | None, *, lost: bool):
+    """List maps (or flows) of the state and the errors, with where they lead and what is known."""
+    contact, n, flows = system.contact, system.order, system.time is Time.CONTINUOUS
+    at = "" if turn is None else f" {turn}"
+    to = at if turn is None else f" {(turn + 1) % system.clock.length}"
+    facts = {m.fact for m in item.multipliers}
+    kept = [(kind, i, part) for kind, parts in (("rounding", system.roundings),
+            ("coupling", system.couplings)) if any(f.startswith(kind) for f in facts)
+            for i, part in enumerate(parts, 1)]  # fmt: skip
+    rounded = sum(kind == "rounding" for kind, _, _ in kept)
+    pulls = () if contact is None else contact.pulls
+    free = () if contact is None else contact.free
+
+    def step(k, mode, source, target, image, **more):
+        sizes = []
+        for kind, i, part in kept:
+            q = part.rows[k].fractions()[0]
+            own = q[n + len(system.channels) :][:rounded] if kind == "coupling" else []
+            row = [*q[:n], *own]
+            sizes.append((f"{kind} {i}", [*row, *[Fraction(0)] * (n + len(kept) - len(row))]))
+        return {"mode": mode, "source": source + at, "target": target + (at if flows else to),
+                "image": image, "sizes": sizes, "flows": flows, "strict": True, "flies": False,
+                "crossings": [], **more}  # fmt: skip
+
+    found = []
+    for k, mode in enumerate((*system.modes, *free)):
+        if turn is not None and (mode.name in system.clock.first) != (turn == 0):
+            continue
+        wide = [list(row) for row in mode.A.fractions()]
+        for _, _, part in kept:
+            for row, (entry,) in zip(wide, part.columns[k].fractions(), strict=True):
+                row.append(entry)
+        inner = [[*row[: n - 1], *row[n:]] for row in wide]
+        if k < len(system.modes):
+            found.append(step(k, mode.name, "modes", "modes", wide))
+            if lost and not flows:
+                crossing = [("lost", wide[-1])]
+                found.append(step(k, mode.name, "modes", "free", wide[:-1], crossings=crossing))
+            continue
+        if not lost:
+            continue
+        flight = {"flies": True}
+        found.append(step(k, mode.name, "free", "free", inner[:-1], **flight))
+        if not flows:
+            found.append(step(k, mode.name, "free", "modes", inner, **flight))
+            found.append(step(k, mode.name, "free", "modes", inner[:-1], **flight))
+        for i, q in enumerate(pulls, 1):
+            # The numerators of a force in discrete time.
+            row = [Fraction(e) for e in q.numerators[0]]
+            force = [*(q.fractions()[0] if flows else row), *[Fraction(0)] * len(kept)]
+            own = f"pull {i} {mode.name}" if flows else f"pull {i}"
+            found.append(step(k, mode.name, "modes", "modes", wide, crossings=[(own, force)]))
+            if not flows:
+                crossing = [(f"pull {i} lost", force), (f"lost pull {i}", wide[-1])]
+                found.append(step(k, mode.name, "modes", "free", wide[:-1], crossings=crossing))
+    if flows and lost:
+        same = [row[: n - 1] for row in identity(n - 1)]
+        for source, target in (("modes", "free"), ("free", "modes")):
+            found.append({"mode": "", "source": source, "target": target, "image": same,
+                          "sizes": [], "flows": False, "strict": False, "flies": True,
+                          "crossings": []})  # fmt: skip
+    return found
+
+
+def _inequality(system: SwitchedSystem, item: FormsOnGraph, step, a: int, b: int) -> Rows:
+    image, n = step["image"], system.order - step["flies"]
+    size = len(image[0])
+    before, after = ([list(row) for row in item.nodes[k].form] for k in (a, b))
+    before = [row[:n] for row in before[:n]]
+    after = [row[: len(image)] for row in after[: len(image)]]
+    seen = [[Fraction(int(i == j)) for j in range(size)] for i in range(n)]
+    kept = times(transpose(seen), times(before, seen))
+    if step["flows"]:
+        half = times(transpose(seen), times(before, image))
+        form = combine((-1, half), (-1, transpose(half)), (-2 * item.rate, kept))
+    else:
+        factor = item.rate**2 if step["strict"] else Fraction(1)
+        form = combine((factor, kept), (-1, times(transpose(image), times(after, image))))
+
+    def multiplier(fact: str) -> int:
+        own = [m.value for m in item.multipliers if (m.fact, m.target) == (fact, b)]
+        shared = [m.value for m in item.multipliers if (m.fact, m.target) == (fact, None)]
+        return (own or shared or [0])[0]
+
+    for i, (fact, q) in enumerate(step["sizes"], n):
+        row = [*q[: system.order - 1], *q[system.order :]] if step["flies"] else q
+        outer = [[-x * y for y in row] for x in row]
+        outer[i][i] += 1
+        form = combine((1, form), (multiplier(fact), outer))
+    for fact, row in step["crossings"]:
+        cross = times([[Fraction(int(i == n - 1))] for i in range(size)], [row])
+        form = combine((1, form), (multiplier(fact), cross), (multiplier(fact), transpose(cross)))
+    return form
+
+
+def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool) -> bool:
+    """In contact a polynomial, and in free motion its terms without the deflection."""
+    n, d = system.order, item.degree
+    forms = dict(item.nodes)
+    if len(forms) < len(item.nodes) or item.multipliers:
+        return False
+    parts = [("modes", n, system.modes)]
+    if lost:
+        if system.contact.pulls or system.time is Time.DISCRETE:
+            return False
+        free = (Mode(m.name, RationalMatrix.from_rows([r[:-1] for r in m.A.fractions()[:-1]]))
+                for m in system.contact.free)  # fmt: skip
+        parts.append(("free", n - 1, tuple(free)))
+    vanishing = list(item.vanishing)
+    if len(vanishing) != sum(len(modes) for *_, modes in parts):
+        return False
+    for place, size, modes in parts:
+        basis = _basis(size, d)
+        Q = forms[place]
+        if len(Q) != len(basis) or not is_definite(Q):
+            return False
+        V = expand(Q, basis)
+        if place == "free":
+            whole = sorted(
+                (a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True
+            )
+            above = {key[:-1]: value for key, value in expand(forms["modes"], whole).items()
+                     if not key[-1] and value}  # fmt: skip
+            if above != {key: value for key, value in V.items() if value}:
+                return False
+        for mode in modes:
+            N = vanishing.pop(0)
+            if len(N) != len(basis) or any(expand(N, basis).values()):
+                return False
+            if not is_definite(_gram(mode.A, item, Q, N, basis, V, system.time)):
+                return False
+    return True
 
 
 def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bool:
@@ -605,54 +577,22 @@ def _errors(
     return wide, slacks
 
 
-def _common_polynomial(system: SwitchedSystem, item: CommonPolynomial) -> bool:
-    """The Gram matrix of the decrease must be definite and expand to the decrease itself."""
-    n, d = system.order, item.degree
-    basis = sorted((a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True)
-    shapes_fit = all(len(M) == len(basis) for M in (item.Q, *item.vanishing))
-    if not (is_rate(item.rate, system.time) and shapes_fit and is_definite(item.Q)):
-        return False
-    V = expand(item.Q, basis)
-    for mode, N in zip(system.modes, item.vanishing, strict=True):
-        if any(expand(N, basis).values()):
-            return False
-        if not is_definite(_gram(mode.A, item, N, basis, V, system.time)):
-            return False
-    return True
+def _basis(n: int, d: int) -> list[tuple[int, ...]]:
+    return sorted((a for a in product(range(d + 1), repeat=n) if sum(a) == d), reverse=True)
 
 
-def _conewise_polynomial(system: SwitchedSystem, item: ConewisePolynomial) -> bool:
-    """In contact a common polynomial; free, its terms without the deflection are another one."""
-    contact, V, n = system.contact, item.in_contact, system.order
-    if contact is None or contact.pulls or system.time is Time.DISCRETE:
-        return False
-    if not _common_polynomial(replace(system, contact=None), V):
-        return False
-    basis = sorted(a for a in product(range(V.degree + 1), repeat=n) if sum(a) == V.degree)[::-1]
-    kept = [i for i, monomial in enumerate(basis) if not monomial[-1]]
-    Q = tuple(tuple(V.Q[i][j] for j in kept) for i in kept)
-    modes = tuple(
-        Mode(m.name, RationalMatrix.from_rows([row[:-1] for row in m.A.fractions()[:-1]]))
-        for m in contact.free
-    )
-    flight = replace(system, states=system.states[:-1], modes=modes, contact=None)
-    if len(item.vanishing_free) != len(modes):
-        return False
-    return _common_polynomial(flight, replace(V, Q=Q, vanishing=item.vanishing_free))
-
-
-def _gram(mode, item, N, basis, V, time) -> Rows:
+def _gram(mode, item, Q, N, basis, V, time) -> Rows:
     """Return a Gram matrix of the decrease with N added, as the definition of the kind has it."""
     A = mode.fractions()
     lifted = [_row(derive(monomial, A) if time is Time.CONTINUOUS else compose(monomial, A), basis)
               for monomial in basis]  # fmt: skip
     d, rate = item.degree, item.rate
     if time is Time.CONTINUOUS:
-        form = decrease(lifted, item.Q, d * rate, time)
+        form = decrease(lifted, Q, d * rate, time)
         factor = mode.denominator * (2 * d * rate * mode.denominator).denominator
         expected = add(scale(_derivative(V, A), -1), scale(V, -2 * d * rate))
     else:
-        form = decrease(lifted, item.Q, rate**d, time)
+        form = decrease(lifted, Q, rate**d, time)
         factor = mode.denominator ** (2 * d) * (rate**d).denominator ** 2
         expected = add(scale(V, rate ** (2 * d)), scale(_substitute(V, A), -1))
     assert add(expand(form, basis), scale(expected, -1)) == {}
@@ -775,23 +715,23 @@ def identity(n: int) -> Rows:
     return [[Fraction(int(i == j)) for j in range(n)] for i in range(n)]
 
 
-def _mode_quadratic(system: SwitchedSystem, item: ModeQuadratic) -> bool:
+def _mode_quadratic(system: SwitchedSystem, item: FormsOnGraph) -> bool:
     """From entry to entry, after every stay that counts: all up to the longest, or the shortest."""
-    Q: Mapping[str, Rows] = dict(item.functions)
+    Q: Mapping[str, Rows] = dict(item.nodes)
     time = system.time
-    if list(Q) != [m.name for m in system.modes] or not is_rate(item.rate, time):
+    if set(Q) != {m.name for m in system.modes} or not is_rate(item.rate, time):
         return False
     for mode in system.modes:
         form = decrease(mode.A.fractions(), Q[mode.name], item.rate, time)
         if not is_definite(Q[mode.name]):
             return False
-        if mode.name not in item.leaving and not is_definite(form):
+        if mode.name not in item.stays.leaving and not is_definite(form):
             return False
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     return all(
         _does_not_raise(modes[a], G, Q[a], Q[b], item.rate, time, stay)
         for a, b, G in edges_of(system)
-        for stay in _stays(time, *bounds_of(system, a), leaving=a in item.leaving)
+        for stay in _stays(time, *bounds_of(system, a), leaving=a in item.stays.leaving)
     )
 
 
@@ -1019,20 +959,12 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 
 _ORACLES = {
-    CommonQuadratic: _common_quadratic,
-    ConewiseModeQuadratic: _conewise_mode_quadratic,
-    ConewisePolynomial: _conewise_polynomial,
-    ConewiseQuadratic: _conewise_quadratic,
     ConstantForce: _constant_force,
-    CoupledAxes: _coupled_axes,
+    FormsOnGraph: _graph,
     GrowingSequence: _growing_sequence,
     InvariantEllipsoid: _invariant_ellipsoid,
-    CommonPolynomial: _common_polynomial,
     NoCommonQuadratic: _no_common_quadratic,
     ParameterQuadratic: _parameter_quadratic,
-    PeriodicQuadratic: _periodic_quadratic,
     SaturatedEllipsoid: _saturated_ellipsoid,
-    ModePolynomial: _mode_polynomials_decrease,
-    ModeQuadratic: _mode_quadratic,
     BlockTriangular: _block_triangular,
 }

@@ -9,11 +9,11 @@ import pytest
 from nrs_design.gating.examine import Examiner
 from nrs_design.pipeline import run_analysis, run_certification
 from nrs_design.proof.evidence import Shows
-from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.reporting.sections.goals import goal_facts, goals_section, judged_goals
 from nrs_design.reporting.sections.summary import lights_of, summary_of
 from nrs_design.spec import read_spec
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import bouncing, pushed
 from tests.reporting.conftest import cases
 from tests.support import ROOT, SOFT_TISSUE
@@ -50,7 +50,7 @@ def test_free_motion_is_named_only_where_its_loss_is_covered():
     """The function of kept contact says nothing about the modes of free motion."""
     result = run_certification(read_spec(SOFT_TISSUE))
     conewise = result.certification.evidence
-    kept = CommonQuadratic(conewise.Q, conewise.denominator_log2, conewise.rate)
+    kept = common_quadratic(conewise.nodes[0].form, conewise.denominator_log2, conewise.rate)
     without = replace(result, certification=replace(result.certification, statements=(kept,)))
     said = "among 4 modes in contact and 2 of free motion, with contact lost"
     assert said in summary_of(result)[0]

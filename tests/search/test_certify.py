@@ -15,17 +15,19 @@ from hypothesis import strategies as st
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.errors import ClockError, DesignError, InternalError
 from nrs_design.pipeline import run_certification
-from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic, Shows
+from nrs_design.proof.evidence import BlockTriangular, FormsOnGraph, Shows
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search import certify as certify_module
-from nrs_design.search import common_quadratic, gradient, ladder, lmi, unstable_mode
+from nrs_design.search import common_quadratic as searches
+from nrs_design.search import gradient, ladder, lmi, unstable_mode
 from nrs_design.search.candidates import Candidate
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify, first_accepted
 from nrs_design.search.gradient import GradientResult
 from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
+from tests.proof.graphs import common_quadratic, shape_of
 from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
 
 ROTATION = [[0, 1], [-1, 0]]
@@ -104,7 +106,7 @@ def settle(system, method=Method.AUTO, limits=None):
         assert Shows.NO_COMMON_QUADRATIC not in shown
     if result.verdict is Verdict.REFUTED:
         assert result.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
-    if isinstance(result.evidence, CommonQuadratic):
+    if shape_of(result.evidence) == "common-quadratic":
         assert result.common_quadratic is CommonQuadraticStatus.EXISTS
     return result
 
@@ -590,9 +592,7 @@ class TestLyingSolvers:
                 lambda matrices, *_: GradientResult(lie(matrices.shape[1]), 1),
             )
 
-        monkeypatch.setattr(
-            common_quadratic, "find_common_quadratic", lambda *arguments, **options: None
-        )
+        monkeypatch.setattr(searches, "find_common_quadratic", lambda *arguments, **options: None)
         assert not wrong_lies(name, tell)
 
     def test_every_semidefinite_program(self, monkeypatch, name):
@@ -613,7 +613,7 @@ class TestLyingSolvers:
 def test_slightly_wrong_answers_do_not_pass(monkeypatch):
     """A Q for a = 5.82 is not one for a = 5.9, however near."""
     below = certify(dayawansa_martin("5.82"), limits=ANY_RATE).evidence
-    Q = np.array(below.Q, dtype=float)
+    Q = np.array(below.nodes[0].form, dtype=float)
     monkeypatch.setattr(lmi, "solve_by_interior_point", lambda *arguments: Q)
     assert settle(dayawansa_martin("5.9"), Method.LMI).verdict is Verdict.INCONCLUSIVE
     assert outcome(dayawansa_martin("5.9")) == ("proved", "impossible")
@@ -622,15 +622,13 @@ def test_slightly_wrong_answers_do_not_pass(monkeypatch):
 def test_a_wrong_check_is_stopped(monkeypatch):
     """If the trusted check accepted anything, flint would still stop a wrong proof."""
     monkeypatch.setattr(certify_module, "find_fault", lambda evidence, system, charge: None)
-    monkeypatch.setattr(
-        common_quadratic, "find_common_quadratic", lambda *arguments, **options: np.eye(2)
-    )
-    monkeypatch.setattr(common_quadratic, "rate_of", lambda *arguments: 0.5)
+    monkeypatch.setattr(searches, "find_common_quadratic", lambda *arguments, **options: np.eye(2))
+    monkeypatch.setattr(searches, "rate_of", lambda *arguments: 0.5)
     with pytest.raises(InternalError):
         certify(NOT_QUADRATIC, limits=ANY_RATE)
 
 
-GOOD = CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+GOOD = common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
 WRONG = replace(GOOD, rate=Fraction(2))
 ROUND = family([[-1, 1], [-1, -2]], [[-2, 1], [-1, -1]])
 
@@ -657,9 +655,9 @@ class TestFirstAccepted:
 
     def test_each_candidate_is_checked_once(self, monkeypatch):
         calls = []
-        find_unfit = CommonQuadratic.find_unfit
+        find_unfit = FormsOnGraph.find_unfit
         monkeypatch.setattr(
-            CommonQuadratic, "find_unfit", lambda self, s: calls.append(self) or find_unfit(self, s)
+            FormsOnGraph, "find_unfit", lambda self, s: calls.append(self) or find_unfit(self, s)
         )
         monkeypatch.setattr(ladder, "LADDER", one_rung([WRONG, GOOD]))
         assert certify(ROUND).evidence is GOOD
@@ -688,7 +686,7 @@ def one_rung(lies):
     return (ladder.Rung("lies", Method.LMI, lambda facts: True, search),)
 
 
-@pytest.mark.parametrize("lie", [WRONG, replace(GOOD, Q=((1, 0), (0, -1)))])
+@pytest.mark.parametrize("lie", [WRONG, common_quadratic(((1, 0), (0, -1)), 0, Fraction(1, 2))])
 @pytest.mark.parametrize("twice", [False, True])
 def test_a_search_that_lies_proves_nothing(monkeypatch, lie, twice):
     monkeypatch.setattr(ladder, "LADDER", one_rung([lie]))
@@ -702,7 +700,7 @@ def test_a_search_that_lies_proves_nothing(monkeypatch, lie, twice):
 def test_evidence_that_does_not_hold_for_all_modes_is_found_out(monkeypatch):
     """Merged modes get what holds for them; what is made of it for all modes is checked again."""
     twice = replace(ROUND, modes=(*ROUND.modes, replace(ROUND.modes[0], name="again")))
-    monkeypatch.setattr(CommonQuadratic, "spread", lambda self, merged, system: WRONG)
+    monkeypatch.setattr(FormsOnGraph, "spread", lambda self, merged, system: WRONG)
     assert certify(ROUND, Method.LMI).verdict is Verdict.PROVED
     with pytest.raises(InternalError, match="does not hold"):
         certify(twice, Method.LMI)

@@ -40,13 +40,14 @@ def test_fast_ones_are_proposed_first_and_the_sure_one_at_last():
 
 def test_few_bits_are_enough_for_a_good_candidate():
     evidence = rounded(SYSTEM, GOOD)
-    assert evidence.Q == ((3, 0), (0, 10)) or evidence.Q[0][0] < 16
+    form = evidence.nodes[0].form
+    assert form == ((3, 0), (0, 10)) or form[0][0] < 16
     assert holds(SYSTEM, evidence)
 
 
 def test_denominator_gives_back_the_candidate():
     evidence = rounded(SYSTEM, GOOD * 1e200)
-    Q = np.array(evidence.Q, dtype=float)
+    Q = np.array(evidence.nodes[0].form, dtype=float)
     np.testing.assert_allclose(Q[0, 0] / Q[1, 1], 0.2, rtol=0.2)
     assert evidence.denominator_log2 >= 0
 

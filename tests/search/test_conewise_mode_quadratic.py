@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from nrs_design.certificates.certificate import Verdict
-from nrs_design.proof.evidence import ConewiseModeQuadratic
 from nrs_design.reporting.evidence.norms import largest_norm
 from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.search import conewise_mode_quadratic
@@ -15,6 +14,7 @@ from nrs_design.search.family import Family
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
 from nrs_design.work import Allowance, NotAffordableError
+from tests.proof.graphs import shape_of
 from tests.proof.systems import bouncing, bouncing_in_steps
 from tests.search.support import found, outcome, thesis_robot
 
@@ -38,10 +38,10 @@ def test_a_stiffness_that_moves_far_is_proved_while_contact_is_lost(k, Mt, delay
     assert found(search_conewise, system, optimize_rate=False) is None
     result = certify(system, limits=Limits(optimize_rate=False))
     assert result.verdict is Verdict.PROVED
-    assert isinstance(result.evidence, ConewiseModeQuadratic)
-    functions = dict(result.evidence.touching)
+    assert shape_of(result.evidence) == "conewise-mode-quadratic"
+    forms = [form for place, form in result.evidence.nodes if place == "modes"]
     # Both ends of an enclosed number share theirs.
-    assert (len(functions), len(set(functions.values()))) == (8, 4)
+    assert (len(forms), len(set(forms))) == (8, 4)
 
 
 def test_the_rate_is_raised():

@@ -1,7 +1,6 @@
 """The fast check against the plain one: products, definiteness, and evidence, forged too."""
 
 import json
-from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
 
@@ -9,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.evidence import CommonQuadratic, read_evidence
+from nrs_design.proof.evidence import read_evidence
 from nrs_design.proof.exact import MAX_WORK, is_positive_definite, multiply
 from nrs_design.proof.mode import Time
 from nrs_design.search import fast_check
@@ -20,6 +19,7 @@ from nrs_design.search.fast_check import (
     is_clearly_positive_definite,
     multiply_packed,
 )
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import SYSTEMS, family, genuine
 from tests.proof.tamper import mutations
 
@@ -138,6 +138,6 @@ def test_large_orders_meet_the_same_answer(time, data):
     A = [[Fraction(e + own * (i == j), 20) for j, e in enumerate(r)] for i, r in enumerate(rows)]
     system = family(A, time=time)
     Q = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
-    claimed = CommonQuadratic(Q, 0, Fraction(data.draw(st.integers(1, 39)), 40))
-    for evidence in (claimed, replace(claimed, Q=(*Q[:-1], (1, *Q[-1][1:])))):
+    claimed = common_quadratic(Q, 0, Fraction(data.draw(st.integers(1, 39)), 40))
+    for evidence in (claimed, common_quadratic((*Q[:-1], (1, *Q[-1][1:])), 0, claimed.rate)):
         assert find_fault(evidence, system) == evidence.find_fault(system)

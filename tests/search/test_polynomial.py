@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.evidence.common_polynomial import MAX_DEGREE, MAX_MONOMIALS
+from nrs_design.proof.evidence.graph import MAX_DEGREE, MAX_MONOMIALS
 from nrs_design.proof.lift import monomials, vanishes
 from nrs_design.proof.mode import Time
 from nrs_design.search import polynomial

@@ -47,7 +47,7 @@ def test_two_samples_of_delay_without_inertia_by_one_function_for_each_vertex():
     system = loop("0", 2, 53.1)
     assert certify(system, Method.OBSTRUCTION, QUICK).statements
     found = certify(system, Method.MODE_QUADRATIC, QUICK).evidence
-    functions = dict(found.functions)
+    functions = dict(found.nodes)
     assert len(functions) == len(system.modes) == 8
     assert len(set(functions.values())) == 4
     for name, Q in functions.items():

@@ -74,13 +74,11 @@ def test_nothing_is_watched():
     z = np.array([0.0, 1.0, 1.0])
     assert one.first_doubtful(np.repeat(z[None], 3, axis=0), np.zeros(0)) == 3
     assert one.first_crossing(z, one.h, np.zeros(0)) is None
-    assert one.stays(z, CHUNK, np.zeros(0))
 
 
 @settings(max_examples=100)
 @given(st.integers(0, 10_000), st.integers(0, CHUNK))
 def test_signals_that_stay_do_not_cross(seed, count):
-    """The one bound for many steps knows no more than the bounds of each."""
     rng = np.random.default_rng(seed)
     A = rng.standard_normal((4, 4)) * 10.0 ** rng.uniform(-1, 1, (4, 4)) - 2 * np.eye(4)
     rows, z = rng.standard_normal((3, 4)), rng.standard_normal(4)
@@ -90,8 +88,7 @@ def test_signals_that_stay_do_not_cross(seed, count):
     one = Flow(A, rows, np.full(3, 1e-12), 1.0)
     sides = np.where(rows @ z > 0, 1.0, -1.0)
     states = one.chunk(z, count)
-    stays = one.stays(z, count, sides)
-    assert not stays or one.first_doubtful(states, sides) == count + 1
+    stays = one.first_doubtful(states, sides) == count + 1
     fine = [one.after(state, share * one.h) for state in states for share in (0.0, 0.3, 0.6, 1.0)]
     crosses = bool((np.array(fine) @ rows.T * sides < -1e-9).any())
     assert not (stays and crosses)
@@ -104,7 +101,6 @@ def test_a_pair_of_crossings_in_a_later_step_is_no_stay(exponent, later):
     one, side = flow(np.cos(d)), np.array([-1.0])
     begin = np.pi / 2 - (later + 1 / 3) * one.h
     z = np.array([np.sin(begin), np.cos(begin), 1.0])
-    assert not one.stays(z, later, side)
-    assert later == 0 or one.stays(z, later - 1, side)
+    assert one.first_doubtful(one.chunk(z, later), side) == later
     # On the other side from the beginning, and not for long.
-    assert not one.stays(z, CHUNK, -side)
+    assert one.first_doubtful(one.chunk(z, CHUNK), -side) <= CHUNK

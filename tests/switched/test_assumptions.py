@@ -72,7 +72,7 @@ class Loop:
 
 def lyapunov(result):
     evidence = result.certification.evidence
-    return np.array(evidence.Q, dtype=float), float(
+    return np.array(evidence.nodes[0].form, dtype=float), float(
         evidence.proved_rate(result.certification.system)
     )
 

@@ -15,13 +15,13 @@ from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline import run_design
-from nrs_design.proof.evidence import CommonQuadratic, ConewiseQuadratic
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import DECLARED, assemble_from_text
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.modes import to_force_coordinates, velocity_mode
+from tests.proof.graphs import shape_of
 from tests.proof.truth import combine, decrease, is_definite
 from tests.support import ROOT
 
@@ -72,7 +72,7 @@ class TestPublished:
         assert float(high[2][2]) == pytest.approx(-215, rel=1e-6)
         found = certify(system, limits=Limits(optimize_rate=False))
         assert found.verdict is Verdict.PROVED
-        assert isinstance(found.evidence, ConewiseQuadratic)
+        assert shape_of(found.evidence) == "conewise-quadratic"
 
     def test_too_soft_a_corner_is_refuted(self):
         """With Mt = 0.01 and Bt = 1.04 the loop is unstable from 75.9 N m/rad on."""
@@ -115,11 +115,11 @@ class TestCorners:
     def test_a_proof_for_the_corners_holds_inside(self):
         system = replace(SYSTEMS[False, "deflection"], contact=None)
         evidence = certify(system, limits=Limits(optimize_rate=False)).evidence
-        assert isinstance(evidence, CommonQuadratic)
+        assert shape_of(evidence) == "common-quadratic"
         for at in product((F(0), F(1, 3), F(1, 2), F(1)), repeat=4):
             k, b, m, d = (between(s, *ends) for s, ends in zip(at, BOX, strict=True))
             rows = loop_rows(False, Admittance(m, d), KelvinVoigt(k, b), "deflection")
-            assert is_definite(decrease(rows, evidence.Q, evidence.rate, system.time))
+            assert is_definite(decrease(rows, evidence.nodes[0].form, evidence.rate, system.time))
 
 
 def between(share, low, high):

@@ -16,10 +16,10 @@ from scipy.linalg import expm
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import AssemblyError
 from nrs_design.models.interval import Interval
-from nrs_design.proof.evidence import CoupledAxes
 from nrs_design.search.certify import Limits, certify
 from nrs_design.switched.coupled import AxesCoupling
 from nrs_design.switched.sampled_coupled import pushes
+from tests.proof.graphs import shape_of
 from tests.search.support import thesis_robot
 from tests.switched.test_coupled import rotation
 
@@ -131,7 +131,7 @@ def proof(*Bt, **sections):
 
 def test_both_controllers_are_proved_with_rounding_and_loss_of_contact():
     found = proof("2.15", "1.5")
-    assert isinstance(found.evidence, CoupledAxes)
+    assert shape_of(found.evidence) == "coupled-axes"
     assert found.evidence.covers_rounding
     claim = found.evidence.claim(found.system)
     assert claim.startswith("For any number of axes that act on each other")
@@ -168,7 +168,7 @@ def test_ten_thousand_steps_of_three_axes(seed):
     """V falls at its rate at every step, whatever modes the axes are in, and what links do."""
     found, generator = proof("2.15", "1.5"), np.random.default_rng(seed)
     system, item = found.system, found.evidence
-    Q = np.array(item.Q, dtype=float) / 2.0**item.denominator_log2
+    Q = np.array(item.nodes[0].form, dtype=float) / 2.0**item.denominator_log2
     states, keeps = system.states, float(item.rate) ** 2 * (1 + 1e-9)
     omega, taus = states.index("omega [rad/s]"), np.full(3, float(TAU))
     contact, free = (

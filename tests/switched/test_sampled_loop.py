@@ -19,6 +19,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify
 from nrs_design.spec import read_spec
 from nrs_design.switched.assemble import assemble
+from tests.proof.graphs import shape_of
 from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
@@ -266,7 +267,7 @@ def test_two_periods_of_the_thesis_robot(tmp_path, sampling, verdict, least):
     if least is None:
         assert evidence.kind == "growing-sequence"
     else:
-        assert evidence.kind == "periodic-quadratic"
+        assert shape_of(evidence) == "periodic-quadratic"
         assert (1 - evidence.rate) / system.sample_time > Fraction(least)
 
 
@@ -373,7 +374,7 @@ def test_contact_lost_under_force_control_is_a_mode_without_force(tmp_path):
     assert "environment would pull" not in texts
     found = certify(system)
     assert found.verdict is Verdict.PROVED
-    assert found.evidence.roundings
+    assert found.evidence.covers_rounding
 
 
 def test_an_admittance_beside_others_leaves_its_states_idle(tmp_path):

@@ -15,40 +15,24 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular
-    from nrs_design.proof.evidence.common_polynomial import CommonPolynomial
-    from nrs_design.proof.evidence.common_quadratic import CommonQuadratic
-    from nrs_design.proof.evidence.conewise_mode_quadratic import ConewiseModeQuadratic
-    from nrs_design.proof.evidence.conewise_polynomial import ConewisePolynomial
-    from nrs_design.proof.evidence.conewise_quadratic import ConewiseQuadratic
     from nrs_design.proof.evidence.constant_force import ConstantForce
-    from nrs_design.proof.evidence.coupled_axes import CoupledAxes
+    from nrs_design.proof.evidence.graph import FormsOnGraph
     from nrs_design.proof.evidence.growing_sequence import GrowingSequence
     from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
-    from nrs_design.proof.evidence.mode_polynomial import ModePolynomial
-    from nrs_design.proof.evidence.mode_quadratic import ModeQuadratic
     from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
     from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
-    from nrs_design.proof.evidence.periodic_quadratic import PeriodicQuadratic
     from nrs_design.proof.evidence.saturated_ellipsoid import SaturatedEllipsoid
 
 __all__ = [
     "KINDS",
     "AbstractEvidence",
     "BlockTriangular",
-    "CommonPolynomial",
-    "CommonQuadratic",
-    "ConewiseModeQuadratic",
-    "ConewisePolynomial",
-    "ConewiseQuadratic",
     "ConstantForce",
-    "CoupledAxes",
+    "FormsOnGraph",
     "GrowingSequence",
     "InvariantEllipsoid",
-    "ModePolynomial",
-    "ModeQuadratic",
     "NoCommonQuadratic",
     "ParameterQuadratic",
-    "PeriodicQuadratic",
     "SaturatedEllipsoid",
     "Shows",
     "class_of",
@@ -58,20 +42,12 @@ __all__ = [
 # The name in a certificate file, and the class; its module has the same name as the kind.
 KINDS: Mapping[str, str] = {
     "block-triangular": "BlockTriangular",
-    "common-polynomial": "CommonPolynomial",
-    "common-quadratic": "CommonQuadratic",
-    "conewise-mode-quadratic": "ConewiseModeQuadratic",
-    "conewise-polynomial": "ConewisePolynomial",
-    "conewise-quadratic": "ConewiseQuadratic",
     "constant-force": "ConstantForce",
-    "coupled-axes": "CoupledAxes",
+    "graph": "FormsOnGraph",
     "growing-sequence": "GrowingSequence",
     "invariant-ellipsoid": "InvariantEllipsoid",
-    "mode-polynomial": "ModePolynomial",
-    "mode-quadratic": "ModeQuadratic",
     "no-common-quadratic": "NoCommonQuadratic",
     "parameter-quadratic": "ParameterQuadratic",
-    "periodic-quadratic": "PeriodicQuadratic",
     "saturated-ellipsoid": "SaturatedEllipsoid",
 }
 

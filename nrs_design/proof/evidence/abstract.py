@@ -80,25 +80,49 @@ class AbstractEvidence(ABC):
     """
 
     kind: ClassVar[str]
-    allows_unequal_modes: ClassVar[bool] = False
-    # What is said of a kind unless it shows more. Its bound holds from the first moment on, with no
-    # constant factor in front; and at the proved rate itself, not only at every slower one.
-    bounds_at_once: ClassVar[bool] = False
-    attains_rate: ClassVar[bool] = False
-    # What is shown of the modes is shown of their convex combinations too.
-    covers_mixtures: ClassVar[bool] = False
-    # It holds while contact is lost and made again, where the system says how that happens; ask
-    # `covers_loss` of evidence of instability, which may be that of free motion alone.
-    covers_lost_contact: ClassVar[bool] = False
-    # It holds for all axes at once, where the system says what they do to each other.
-    covers_coupling: ClassVar[bool] = False
-    # It is about modes that take turns, where the system says so.
-    covers_clock: ClassVar[bool] = False
 
     @property
     @abstractmethod
     def shows(self) -> Shows:
         """What follows if it holds."""
+
+    @property
+    def allows_unequal_modes(self) -> bool:
+        """Whether modes may have different numbers of states."""
+        return False
+
+    @property
+    def bounds_at_once(self) -> bool:
+        """Whether its bound has no constant factor in front."""
+        return False
+
+    @property
+    def attains_rate(self) -> bool:
+        """Whether it holds at the proved rate itself, not only at every slower one."""
+        return False
+
+    @property
+    def covers_mixtures(self) -> bool:
+        """Whether what is shown of the modes is shown of their convex combinations too."""
+        return False
+
+    @property
+    def covers_lost_contact(self) -> bool:
+        """Whether it holds while contact is lost and made, where the system says how.
+
+        Ask `covers_loss` of evidence of instability, which may be that of free motion alone.
+        """
+        return False
+
+    @property
+    def covers_coupling(self) -> bool:
+        """Whether it holds for all axes at once, where the system says what they do."""
+        return False
+
+    @property
+    def covers_clock(self) -> bool:
+        """Whether it is about modes that take turns, where the system says so."""
+        return False
 
     @property
     def is_common_quadratic(self) -> bool:

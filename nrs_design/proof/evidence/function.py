@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import ClassVar
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
@@ -15,9 +14,12 @@ from nrs_design.proof.system import SwitchedSystem
 class AbstractFunction(AbstractEvidence):
     """Lyapunov functions; the rate is alpha in 1/s, or rho per step, and is itself proved."""
 
-    attains_rate: ClassVar[bool] = True
-
     rate: Fraction
+
+    @property
+    def attains_rate(self) -> bool:
+        """True: the function decreases at it."""
+        return True
 
     @property
     def shows(self) -> Shows:

@@ -12,7 +12,6 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
-from nrs_design.proof.evidence.conewise_quadratic import find_odd_multipliers, in_threes
 from nrs_design.proof.evidence.fields import (
     Matrix,
 )
@@ -20,7 +19,7 @@ from nrs_design.proof.evidence.function import find_odd_form
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import Steps, find_odd_roundings
+from nrs_design.proof.steps import Steps, find_odd_multipliers, find_odd_roundings
 from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
@@ -150,17 +149,15 @@ class InvariantEllipsoid(AbstractEvidence):
             for where, form in flows.forms(multipliers):
                 yield where, RationalMatrix.from_rows(form).numerators
             return
-        crossing, *lagging = self.multipliers or (0,)
         yield from Steps(
             self.Q,
             self.denominator_log2,
             1 - sum(self.shares, Fraction(0)),
-            crossing,
-            roundings=self.roundings,
+            self.multipliers,
+            self.roundings,
+            self.taus,
             channels=tuple(system.channels.index(channel) for channel in named),
             weights=weights,
-            lagging=in_threes(lagging),
-            couplings=self.taus,
         ).forms(system)
 
     def bound(self, system: SwitchedSystem) -> Bound:

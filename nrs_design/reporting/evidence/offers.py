@@ -5,13 +5,14 @@ This table is the only place in the reports that knows a kind by its name.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.evidence.fields import Matrix
+from nrs_design.proof.steps import CONTACT, COUPLING, FREE
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Offer:
 
 def offer_of(evidence: AbstractEvidence) -> Offer:
     """Return what some evidence offers; nothing for a kind that is not in the table."""
-    read = _OFFERS.get(evidence.kind)
+    read = OFFERS.get(evidence.kind)
     return Offer() if read is None else read(evidence)
 
 
@@ -59,27 +60,31 @@ def _one(e: Any) -> Offer:
     return Offer((Form(e.Q),), e.denominator_log2)
 
 
-def _named(functions: Iterable[tuple[str, Matrix]], degree: int = 1, *, free: bool = False) -> Any:
-    return tuple(Form(Q, name, degree, free) for name, Q in functions)
-
-
 def _constant_force(e: Any) -> Offer:
     return Offer((Form(e.Q),), e.denominator_log2, numbers=(e.slope,))
 
 
-def _coupled_axes(e: Any) -> Offer:
-    taus = tuple(Fraction(tau, 2**e.denominator_log2) for tau in e.taus)
-    return Offer((Form(e.Q),), e.denominator_log2, numbers=taus)
+def _graph(e: Any) -> Offer:
+    """Return the forms: one of several at a place by name, free motion where it is none of them."""
+    taus = (item for item in e.multipliers if item.fact.startswith(COUPLING))
+    numbers = tuple(Fraction(item.value, 2**e.denominator_log2) for item in taus)
+    if e.stays is not None:
+        forms = tuple(Form(Q, place, e.degree) for place, Q in e.nodes)
+        return Offer(forms, e.denominator_log2, leaving=e.stays.leaving)
+    names = {edge.source: edge.mode or "" for edge in e.edges}
+    touching, flying = list[Form](), list[Form]()
+    for k, (place, Q) in enumerate(e.nodes):
+        turn = place.removeprefix(f"{CONTACT} ")
+        name = names.get(k) or (f"step {int(turn) + 1}" if turn.isdecimal() else "")
+        free = place.startswith(FREE)
+        (flying if free else touching).append(Form(Q, name, e.degree, free))
+    several = any(edge.source is not None for edge in e.edges)
+    return Offer((*touching, *(flying if several else ())), e.denominator_log2, numbers=numbers)
 
 
 def _ends(e: Any) -> Offer:
     ends = ((e.low, "low end", Fraction(0)), (e.high, "high end", Fraction(1)))
     return Offer(tuple(Form(Q, name, place=p) for Q, name, p in ends), e.denominator_log2)
-
-
-def _rounds(e: Any) -> Offer:
-    forms = tuple(Form(Q, f"step {k}") for k, Q in enumerate(e.functions, 1))
-    return Offer(forms, e.denominator_log2)
 
 
 def _traces(e: Any) -> Offer:
@@ -100,29 +105,14 @@ def _sequence(e: Any) -> Offer:
     return Offer(growth=Growth(e.steps, e.edges, None if e.factor is None else e.factor[0]))
 
 
-_OFFERS: Mapping[str, Callable[[Any], Offer]] = {
+# By kind of evidence.
+OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
-    "common-polynomial": lambda e: Offer((Form(e.Q, degree=e.degree),), e.denominator_log2),
-    "common-quadratic": _one,
-    "conewise-mode-quadratic": lambda e: Offer(
-        _named(e.touching) + _named(e.flying, free=True), e.denominator_log2
-    ),
-    "conewise-polynomial": lambda e: Offer(
-        (Form(e.in_contact.Q, degree=e.in_contact.degree),), e.in_contact.denominator_log2
-    ),
-    "conewise-quadratic": _one,
     "constant-force": _constant_force,
-    "coupled-axes": _coupled_axes,
+    "graph": _graph,
     "growing-sequence": _sequence,
     "invariant-ellipsoid": _one,
-    "mode-polynomial": lambda e: Offer(
-        _named(e.quadratic.functions, e.degree),
-        e.quadratic.denominator_log2,
-        leaving=e.quadratic.leaving,
-    ),
-    "mode-quadratic": lambda e: Offer(_named(e.functions), e.denominator_log2, leaving=e.leaving),
     "no-common-quadratic": _traces,
     "parameter-quadratic": _ends,
-    "periodic-quadratic": _rounds,
     "saturated-ellipsoid": _one,
 }

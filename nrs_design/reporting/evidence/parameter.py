@@ -55,7 +55,8 @@ class ParameterPage(AbstractPage):
             f"{words.free_bound(self.system)} Which norm |x| is, depends on the value of the "
             "parameter.",
             "The parameter must be constant: one value in all modes and at all times. Which value "
-            "it is, need not be known.",
+            "it is, need not be known. The decrease is a polynomial of degree two in the "
+            "parameter, so three matrices decide for all values between the ends.",
             *words.unneeded_rules(self.system),
             words.decision(self.system),
         )

@@ -16,7 +16,7 @@ NAMED = 8
 
 _DECIDED = (
     "The decision is exact: the modes are rational matrices, the numbers of the certificate are "
-    "integers over a power of two, and integer arithmetic decides that every form is positive "
+    "integers over a power of two, and exact arithmetic decides that every form is positive "
     "definite and every inequality of the claim holds. The solver only proposed the numbers"
 )
 _ROUNDS = (

@@ -8,9 +8,6 @@ import pytest
 from nrs_design.certificates.certificate import CommonQuadraticStatus, Verdict
 from nrs_design.proof.evidence import (
     BlockTriangular,
-    CommonPolynomial,
-    CommonQuadratic,
-    ModeQuadratic,
     NoCommonQuadratic,
     read_evidence,
 )
@@ -19,10 +16,11 @@ from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import certify
+from tests.proof.graphs import common_polynomial, common_quadratic, mode_quadratic
 from tests.proof.systems import dayawansa_martin, family, genuine, resets_between
 from tests.support import ends_soon
 
-ONE = CommonQuadratic(((1,),), 0, Fraction(1, 2))
+ONE = common_quadratic(((1,),), 0, Fraction(1, 2))
 CASCADE = family([[-1, 5], [0, -2]], [[-2, -7], [0, -1]])
 
 
@@ -123,7 +121,7 @@ def test_resets_are_not_covered_whatever_the_parts_cover():
 
 def test_every_part_must_fit_the_switching():
     ends = replace(CASCADE, switching=Switching(fixed_ends=(("m0", "m1"),)))
-    each = ModeQuadratic((("m0", ((1,),)), ("m1", ((1,),))), 0, Fraction(1, 2))
+    each = mode_quadratic((("m0", ((1,),)), ("m1", ((1,),))), 0, Fraction(1, 2))
     for parts in (((0, ONE), (1, each)), ((0, each), (1, ONE))):
         evidence = BlockTriangular(((0,), (1,)), parts)
         assert evidence.find_fault(CASCADE) is None
@@ -150,15 +148,16 @@ def test_one_unstable_block_is_named_and_no_more():
 
 
 def test_what_fails_in_a_block_is_said_of_it():
-    blocks, wide = ((0,), (1,)), CommonQuadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
+    blocks, wide = ((0,), (1,)), common_quadratic(((1, 0), (0, 1)), 0, Fraction(1, 2))
     for k in (0, 1):
         parts = [ONE, ONE]
         parts[k] = wide
         evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
-        assert evidence.find_fault(CASCADE) == f"block {k + 1}: Q is not a 1 x 1 matrix"
-        parts[k] = replace(ONE, Q=((-1,),))
+        size = "a form at modes is not a 1 x 1 matrix"
+        assert evidence.find_fault(CASCADE) == f"block {k + 1}: {size}"
+        parts[k] = common_quadratic(((-1,),), 0, Fraction(1, 2))
         evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
-        failure = "Q is not symmetric and positive definite"
+        failure = "a form at modes is not symmetric and positive definite"
         assert evidence.find_fault(CASCADE) == f"block {k + 1}: {failure}"
 
 
@@ -217,8 +216,8 @@ def test_no_rate_follows_from_a_part_without_one():
 
 
 def test_blocks_say_of_themselves_what_their_parts_do():
-    one, slow = CommonQuadratic(((1,),), 0, Fraction(1)), staying("m0")
-    form = CommonPolynomial(1, ((1,),), 0, (), Fraction(1))
+    one, slow = common_quadratic(((1,),), 0, Fraction(1)), staying("m0")
+    form = common_polynomial(2, ((1,),), 0, (((0,),),), Fraction(1))
     quadratic = BlockTriangular(((0,), (1,)), ((0, one), (1, one)))
     mixed = BlockTriangular(((0,), (1,)), ((0, one), (1, form)))
     unstable = BlockTriangular(((0,), (1,)), ((1, slow),))

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.evidence import BlockTriangular, CommonQuadratic
+from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.fields import (
     find_unreadable,
     matrix_fields,
@@ -25,6 +25,7 @@ from nrs_design.proof.evidence.fields import (
 )
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.mode import Time
+from tests.proof.graphs import common_quadratic
 from tests.support import number_in
 
 WHOLE = st.integers(-(2**70), 2**70)
@@ -146,8 +147,8 @@ def test_a_denominator_of_one():
         (((1, np.int64(2)),), "type int64"),
         (0.5, "type float"),
         (True, "type bool"),
-        (CommonQuadratic(((np.int8(1),),), 0, Fraction(1, 2)), "type int8"),
-        (BlockTriangular(((0,),), ((0, CommonQuadratic(((1.0,),), 0, LONG)),)), "type float"),
+        (common_quadratic(((np.int8(1),),), 0, Fraction(1, 2)), "type int8"),
+        (BlockTriangular(((0,),), ((0, common_quadratic(((1.0,),), 0, LONG)),)), "type float"),
         (((),) * 100_001, "100001 entries"),
     ],
     ids=lambda value: type(value).__name__,

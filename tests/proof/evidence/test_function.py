@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.evidence import CommonQuadratic
 from nrs_design.proof.evidence.abstract import Shows
 from nrs_design.proof.evidence.function import is_square
 from nrs_design.proof.mode import Time
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import genuine
 
 TINY = Fraction(1, 10**30)
@@ -25,7 +25,7 @@ TINY = Fraction(1, 10**30)
     ],
 )
 def test_a_rate_of_decay_is_positive_and_in_steps_below_one(rate, continuous, discrete):
-    evidence = CommonQuadratic(((1,),), 0, rate)
+    evidence = common_quadratic(((1,),), 0, rate)
     assert (evidence.find_rate_misfit(Time.CONTINUOUS) is None) is continuous
     assert (evidence.find_rate_misfit(Time.DISCRETE) is None) is discrete
 

@@ -11,14 +11,15 @@ from hypothesis import strategies as st
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence import CommonQuadratic, InvariantEllipsoid, Shows
+from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import Steps
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.evidence.test_conewise_quadratic import LAGGING
+from tests.proof.graphs import common_quadratic
 from tests.proof.systems import (
+    LAGGING,
     Entry,
     Rows,
     bouncing,
@@ -136,7 +137,7 @@ def test_the_bound_in_numbers():
 
 
 def test_a_function_that_decreases_bounds_no_output():
-    assert CommonQuadratic(((1,),), 0, Fraction(1)).bound(family([[-2]])) is None
+    assert common_quadratic(((1,),), 0, Fraction(1)).bound(family([[-2]])) is None
 
 
 def test_a_limit_that_is_not_kept_is_not_said_to_be():
@@ -516,7 +517,7 @@ def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
     assert evidence.find_misfit(system) is None
     assert find_contradiction(system) is None
     steps = Steps(
-        Q3, 3, 1 - sum(SHARES3), sum(multipliers), roundings, (2, 1), tuple(WEIGHTS3)
+        Q3, 3, 1 - sum(SHARES3), multipliers, roundings, (), (2, 1), tuple(WEIGHTS3)
     ).forms(system)
     wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
     _, *forms = evidence.forms(system)

@@ -7,18 +7,17 @@ import pytest
 
 from nrs_design.proof.evidence import (
     BlockTriangular,
-    CommonPolynomial,
-    CommonQuadratic,
 )
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.reporting.document import Table
 from nrs_design.reporting.evidence import page_of
+from tests.proof.graphs import common_polynomial, common_quadratic
 from tests.simulation.systems import system
 
-ONE = CommonQuadratic(((1,),), 0, Fraction(1, 2))
-FOURTH = CommonPolynomial(2, ((1,),), 0, (((0,),), ((0,),)), Fraction(1, 4))
+ONE = common_quadratic(((1,),), 0, Fraction(1, 2))
+FOURTH = common_polynomial(2, ((1,),), 0, (((0,),), ((0,),)), Fraction(1, 4))
 CASCADE = system([[-1, 5], [0, -2]], [[-2, -7], [0, -1]])
 # The second state moves by itself and grows; the first one follows it.
 GROWING = system([[-1, 5], [0, 1]], [[-2, -7], [0, -1]])

@@ -3,6 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+from nrs_design.proof.stays import Stays
 from nrs_design.proof.switching import Stay
 from nrs_design.reporting.evidence import page_of
 from tests.proof.systems import genuine
@@ -32,8 +33,8 @@ def test_modes_that_must_be_left_are_named_as_for_quadratic_functions():
     left = SYSTEM.modes[0].name
     stays = ((left, Stay(Fraction(1), Fraction(2))),)
     system = replace(SYSTEM, switching=replace(SYSTEM.switching, stays=stays))
-    own = replace(EVIDENCE.quadratic, leaving=(left,))
-    page, quadratic = page_of(system, replace(EVIDENCE, quadratic=own)), page_of(system, own)
+    own = replace(EVIDENCE, stays=Stays((left,)))
+    page, quadratic = page_of(system, own), page_of(system, replace(own, degree=1))
     assert f"Staying longer than declared in {left}." in page.limits()
     assert page.limits() == quadratic.limits()
     assert page.meaning()[:-1] == quadratic.meaning()[:-1]

@@ -1,0 +1,595 @@
+"""Forms on a graph: every step of the system leads from a form to one that is smaller."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from math import comb, lcm
+from typing import Any, ClassVar, NamedTuple, Self
+
+from nrs_design.proof.clock import on_turn
+from nrs_design.proof.evidence.fields import (
+    Matrix,
+    matrix_fields,
+    read_dyadic,
+    read_integer,
+    read_integers,
+    read_ratio,
+    read_text,
+)
+from nrs_design.proof.evidence.function import AbstractFunction, is_square
+from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
+from nrs_design.proof.exact import (
+    MAX_WORK,
+    IntegerMatrix,
+    Product,
+    add,
+    bit_length,
+    is_positive_semidefinite,
+    is_symmetric,
+    is_too_large,
+    multiply,
+)
+from nrs_design.proof.lift import derivative_lift, monomials, power_lift, vanishes
+from nrs_design.proof.mode import Time
+from nrs_design.proof.stays import EnclosedStep, Stays, find_odd_stays, steps_of_stays
+from nrs_design.proof.steps import (
+    CONTACT,
+    COUPLING,
+    FREE,
+    ROUNDING,
+    Acting,
+    Step,
+    grain_of,
+    steps_of,
+)
+from nrs_design.proof.switching import Switching
+from nrs_design.proof.system import SwitchedSystem
+
+MAX_DEGREE = 64
+MAX_MONOMIALS = 120
+MAX_SETS = 1024
+
+Forms = Iterator[tuple[str, IntegerMatrix]]
+AnyStep = Step | EnclosedStep
+
+
+class Node(NamedTuple):
+    """A form on the state, or on its monomials, at a place."""
+
+    place: str
+    form: Matrix  # Integer numerators
+
+
+class Arc(NamedTuple):
+    """Steps from node to node, by their numbers; None stands for every node, or every mode."""
+
+    source: int | None
+    mode: str | None
+    target: int | None
+
+
+class Multiplier(NamedTuple):
+    """The multiplier of a fact, for steps to one node, or to every node."""
+
+    fact: str
+    target: int | None
+    value: int
+
+
+# From every node to every node that a step may lead to.
+ALL = (Arc(None, None, None),)
+
+
+@dataclass(frozen=True, slots=True)
+class FormsOnGraph(AbstractFunction):
+    """Every step of the system has an edge from each set of nodes that a run may be at.
+
+    With F_a the form of node a on the monomials z of degree d, an edge from a to b is the
+    inequality of `nrs_design.proof.steps` for the step, at the claimed rate to the power 2d.
+    """
+
+    kind: ClassVar[str] = "graph"
+
+    nodes: tuple[Node, ...]
+    denominator_log2: int  # All forms and multipliers are over two to this power
+    rate: Fraction  # alpha in 1/s, or rho per step
+    degree: int = 1  # The d: functions have degree 2d
+    multipliers: tuple[Multiplier, ...] = ()
+    # For every edge in order: integers N with z' N z = 0 for all x, added to its form; d > 1 only.
+    vanishing: tuple[Matrix, ...] = ()
+    edges: tuple[Arc, ...] = ALL
+    # Places are modes, and this says how stays are followed; None: places are contact and free
+    # motion, at each step of a round where modes take turns.
+    stays: Stays | None = None
+
+    @property
+    def covers_rounding(self) -> bool:
+        """Whether it has multipliers for it."""
+        return any(item.fact.startswith(ROUNDING) for item in self.multipliers)
+
+    @property
+    def covers_coupling(self) -> bool:
+        """Whether it has multipliers for it."""
+        return any(item.fact.startswith(COUPLING) for item in self.multipliers)
+
+    @property
+    def covers_lost_contact(self) -> bool:
+        """Whether it has forms in free motion."""
+        return self.stays is None and any(node.place.startswith(FREE) for node in self.nodes)
+
+    @property
+    def covers_clock(self) -> bool:
+        """Whether its places know of turns."""
+        return self.stays is None
+
+    @property
+    def allows_unequal_modes(self) -> bool:
+        """Whether each mode is a place of its own."""
+        return self.stays is not None
+
+    @property
+    def bounds_at_once(self) -> bool:
+        """Whether the largest of all forms at a place decreases in every step."""
+        return self.stays is None and all(edge.target is None for edge in self.edges)
+
+    @property
+    def covers_mixtures(self) -> bool:
+        """Whether convex combinations of modes decrease it, too: where it bounds at once."""
+        return self.bounds_at_once
+
+    @property
+    def keeps_bound_in_mixtures(self) -> bool:
+        """Whether it is convex, or has a constant factor anyway."""
+        return self.degree == 1 or self.stays is not None
+
+    @property
+    def is_common_quadratic(self) -> bool:
+        """Whether in contact it is one for all modes."""
+        places = [node.place for node in self.nodes]
+        return self.degree == 1 and self.stays is None and places in ([CONTACT], [CONTACT, FREE])
+
+    def fits(self, switching: Switching) -> bool:
+        """Tell whether the steps of these signals are those of its places.
+
+        With modes as places every mode in force must be one of them: a constant parameter is
+        anywhere between its ends.
+        """
+        return not (switching.resets if self.stays is None else switching.fixed_ends)
+
+    def find_misfit(self, system: SwitchedSystem) -> str | None:
+        """Check places, sizes, rate and multipliers, and that no run is left without an edge."""
+        return (
+            self.find_rate_misfit(system.time)
+            or self._find_odd_places(system)
+            or self._find_odd_size(system)
+            or (self.stays and find_odd_stays(system, self.stays, self._rate_bits))
+            or self._find_odd_shape(system)
+            or self._find_odd_multiplier(system)
+            or self._find_gap(system)
+            or self._find_odd_vanishing(system)
+            or self._find_rise(system)
+        )
+
+    @property
+    def _rate_bits(self) -> int:
+        return (self.rate**self.degree).denominator.bit_length()
+
+    def _places(self, system: SwitchedSystem) -> dict[str, int]:
+        """Return every place with the number of its states."""
+        if self.stays is not None:
+            return {mode.name: mode.A.shape[0] for mode in system.modes}
+        sizes = {CONTACT: system.order}
+        if self.covers_lost_contact:
+            sizes[FREE] = system.order - 1
+        if system.clock is None:
+            return sizes
+        return {_at(place, k): n for k in range(system.clock.length) for place, n in sizes.items()}
+
+    def _find_odd_places(self, system: SwitchedSystem) -> str | None:
+        if self.covers_lost_contact and system.contact is None:
+            return "the system does not say how contact is lost"
+        if {node.place for node in self.nodes} != self._places(system).keys():
+            return "there is not a form at every place of the system"
+        return None
+
+    def _find_odd_size(self, system: SwitchedSystem) -> str | None:
+        d = self.degree
+        if not 1 <= d <= MAX_DEGREE // 2:
+            return f"degree {2 * d} is not between 2 and {MAX_DEGREE}"
+        places = self._places(system)
+        sizes = {place: comb(n + d - 1, d) for place, n in places.items()}
+        if d > 1 and max(sizes.values()) > MAX_MONOMIALS:
+            return f"there are more than {MAX_MONOMIALS} monomials of degree {d}"
+        for place, form in self.nodes:
+            if not is_square(form, sizes[place]):
+                return f"a form at {place} is not a {sizes[place]} x {sizes[place]} matrix"
+        count = sum(len([n for n in self.nodes if n.place == place]) ** 2 for place in places)
+        if self.stays is None and count * len(system.modes) * max(sizes.values()) ** 3 > MAX_WORK:
+            return "there are too many edges to check"
+        if d > 1:
+            matrices = [mode.A.numerators for mode in system.modes]
+            matrices += [reset.map.numerators for reset in system.switching.resets]
+            matrices += [((mode.A.denominator,),) for mode in system.modes]
+            factors = 1 if system.time is Time.CONTINUOUS else 2 * d
+            bits = max(bit_length(node.form) for node in self.nodes)
+            bits += factors * max(map(bit_length, matrices))
+            if max(sizes.values()) ** 3 * bits > MAX_WORK:
+                return "its numbers are too large to check"
+        return None
+
+    def _find_odd_shape(self, system: SwitchedSystem) -> str | None:
+        """Refuse shapes of which no argument is known."""
+        flows, alone = system.time is Time.CONTINUOUS, len(self.nodes) == len(self._places(system))
+        lost = self.covers_lost_contact
+        if flows and not alone:
+            return "in continuous time there is one form at each place"
+        if system.couplings and self.covers_coupling and not (alone and system.clock is None):
+            return "axes that act on each other have one form at each place, and no turns"
+        if self.stays is not None:
+            if self.multipliers:
+                return "a form of each mode has no multipliers"
+            if flows and self.degree > 1:
+                return "polynomials for each mode are for discrete time"
+            return None
+        if self.degree > 1 and lost and not flows:
+            return "a polynomial for contact and free motion is for continuous time"
+        pulls = system.contact is not None and system.contact.pulls
+        if self.degree > 1 and (self.multipliers or (lost and pulls)):
+            return "a polynomial has no multipliers, and covers no environment that could pull"
+        return None
+
+    def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
+        if any(item.value < 0 for item in self.multipliers):
+            return "a multiplier is negative"
+        if any(
+            item.fact.startswith(COUPLING) and item.target is not None for item in self.multipliers
+        ):
+            return "the multiplier of what axes do to each other is one for all"
+        facts = {fact for step in self._steps(system) for fact in step.facts}
+        keys = [(item.fact, item.target) for item in self.multipliers]
+        nodes = (None, *range(len(self.nodes)))
+        fit = all(fact in facts and target in nodes for fact, target in keys)
+        if len(set(keys)) < len(keys) or not fit:
+            return "a multiplier belongs to no fact of the system, or a fact has two"
+        return None
+
+    def _multipliers_to(self, target: int) -> Mapping[str, int]:
+        """Return the multipliers of the facts on steps to a node; the others are zero."""
+        found = {item.fact: item.value for item in self.multipliers if item.target is None}
+        return found | {item.fact: item.value for item in self.multipliers if item.target == target}
+
+    def _steps(self, system: SwitchedSystem) -> tuple[AnyStep, ...]:
+        """Return every step of the system; the certificate has none of its own."""
+        if self.stays is not None:
+            return steps_by_mode(system, self.stays, self.rate, self.degree)
+        acting = Acting(rounding=self.covers_rounding, coupling=self.covers_coupling)
+        rate = Fraction(1) if self.degree > 1 else self.rate
+        return steps_together(system, acting, rate, self.covers_lost_contact)
+
+    def _edges(self, system: SwitchedSystem) -> Iterator[tuple[int, AnyStep, int]]:
+        """Yield the edges of the graph: nodes before and after, and the step between them."""
+        at: dict[str, list[int]] = {}
+        for k, node in enumerate(self.nodes):
+            at.setdefault(node.place, []).append(k)
+        for step in self._steps(system):
+            for a in at[step.source]:
+                for b in at[step.target]:
+                    if (a == b or not step.is_flow) and self._has(a, step.mode, b):
+                        yield a, step, b
+
+    def edges_in_time(self, system: SwitchedSystem) -> list[tuple[int, AnyStep, int]]:
+        """Return the edges that take some time, in order."""
+        return [edge for edge in self._edges(system) if edge[1].time]
+
+    def _has(self, source: int, mode: str, target: int) -> bool:
+        return any(
+            edge.source in (None, source)
+            and edge.mode in (None, mode)
+            and edge.target in (None, target)
+            for edge in self.edges
+        )
+
+    def _find_gap(self, system: SwitchedSystem) -> str | None:
+        """Say that a run can reach nodes from which some step has no edge, or None."""
+        if self.edges == ALL:
+            return None  # From every node to every node: a node at every place is enough.
+        after: dict[tuple[int, int], set[int]] = {}
+        steps = self._steps(system)
+        number = {id(step): k for k, step in enumerate(steps)}
+        for a, step, b in self._edges(system):
+            after.setdefault((a, number[id(step)]), set()).add(b)
+        every = {
+            frozenset(k for k, node in enumerate(self.nodes) if node.place == place)
+            for place in self._places(system)
+        }
+        todo = list(every)
+        while todo:
+            nodes = todo.pop()
+            place = self.nodes[min(nodes)].place
+            for k, step in enumerate(steps):
+                if step.source != place:
+                    continue
+                reached = frozenset(b for a in nodes for b in after.get((a, k), ()))
+                if not reached:
+                    return f"the graph has no edge {step.where}"
+                if reached not in every:
+                    every.add(reached)
+                    todo.append(reached)
+                if len(every) > MAX_SETS:
+                    return "the graph has too many sets of nodes"
+        return None
+
+    def _find_odd_vanishing(self, system: SwitchedSystem) -> str | None:
+        if self.degree == 1:
+            return "quadratic forms have nothing that vanishes" if self.vanishing else None
+        strict = [a for a, _, _ in self.edges_in_time(system)]
+        if len(self.vanishing) != len(strict):
+            return "there is not one vanishing form for each decrease"
+        places = self._places(system)
+        for a, N in zip(strict, self.vanishing, strict=True):
+            place, form = self.nodes[a]
+            if not is_square(N, len(form)):
+                return "a form that must vanish has the wrong size"
+            if not vanishes(N, places[place], self.degree):
+                return "a form that must vanish does not"
+        return None
+
+    def _find_rise(self, system: SwitchedSystem) -> str | None:
+        """Check the steps that take no time: exact, equality allowed."""
+        for a, step, b in self._edges(system):
+            if step.time:
+                continue
+            form = self.inequality(step, a, b, system)
+            if is_too_large(form):
+                return f"the numbers {step.where} are too large to check"
+            if not is_symmetric(form) or not is_positive_semidefinite(form):
+                return f"V rises {step.where}"
+        return None
+
+    def forms(self, system: SwitchedSystem, multiply: Product = multiply) -> Forms:
+        """Yield the form of every node, and the inequality of every edge over some time."""
+        for node in self.nodes:
+            yield f"a form at {node.place} is not symmetric and positive definite", node.form
+        added = iter(self.vanishing)
+        decided = set()
+        for a, step, b in self.edges_in_time(system):
+            if isinstance(step, Step) and not step.facts and self.degree == 1:
+                # A landing at the surface often is what free motion is.
+                key = a, id(step.rows), self._after(step, b, system)
+                if key in decided:
+                    continue
+                decided.add(key)
+            form = self.inequality(step, a, b, system, multiply)
+            yield (
+                f"V does not decrease at the claimed rate {step.where}",
+                form if self.degree == 1 else add(form, next(added)),
+            )
+
+    def inequality(
+        self, step: AnyStep, a: int, b: int, system: SwitchedSystem, multiply: Product = multiply
+    ) -> IntegerMatrix:
+        """Return the inequality of an edge.
+
+        Parameters
+        ----------
+        step : Step or EnclosedStep
+            Of the system.
+        a, b : int
+            The nodes before and after it.
+        system : SwitchedSystem
+            That moves.
+        multiply : callable
+            How matrices are multiplied; only a search has reason to ask for another way.
+        """
+        if isinstance(step, EnclosedStep):
+            return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
+        before, after = self._restricted(a, step.states, system), self._after(step, b, system)
+        facts, d = self._multipliers_to(b), self.degree
+        keeps = 2 * d * self.rate if step.is_flow else self.rate ** (2 * d * step.time)
+        moved = step if d == 1 else lifted(step, d, self.rate)
+        return moved.form(before, after, keeps, lambda fact: facts.get(fact, 0), multiply=multiply)
+
+    def _after(self, step: Step, b: int, system: SwitchedSystem) -> Matrix:
+        return self._restricted(b, len(step.rows), system)
+
+    def _restricted(self, node: int, states: int, system: SwitchedSystem) -> Matrix:
+        """Return the form of a node where all but the first states are zero."""
+        place, form = self.nodes[node]
+        n = self._places(system)[place]
+        if n == states:
+            return form
+        kept = [k for k, term in enumerate(monomials(n, self.degree)) if not any(term[states:])]
+        return tuple(tuple(form[i][j] for j in kept) for i in kept)
+
+    def claim_in_scope(self, system: SwitchedSystem) -> str:
+        """State the bound on every solution, and in which norm."""
+        if self.stays is not None:
+            return ruled_sentence(system, self.rate)
+        each = Counter(node.place for node in self.nodes)
+        count, once = max(each.values()), self.bounds_at_once
+        lost = self.covers_lost_contact
+        return free_sentence(system, self.rate, self.degree, count, lost=lost, once=once)
+
+    def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
+        """Repeat what belongs to a mode for its equals."""
+        first = {mode.A: mode.name for mode in merged.modes}
+        like = {mode.name: first[mode.A] for mode in system.modes}
+        equals: dict[str, list[str]] = {}
+        for name, one in like.items():
+            equals.setdefault(one, []).append(name)
+        nodes = self.nodes
+        if self.stays is not None:
+            forms = dict(self.nodes)
+            nodes = tuple(Node(name, forms[one]) for name, one in like.items())
+        edges = tuple(
+            edge._replace(mode=name)
+            for edge in self.edges
+            for name in ([None] if edge.mode is None else equals.get(edge.mode, [edge.mode]))
+        )
+        carried = replace(self, nodes=nodes, edges=edges, vanishing=())
+        if not self.vanishing:
+            return carried
+        key = {}
+        for (a, step, b), N in zip(self.edges_in_time(merged), self.vanishing, strict=True):
+            key[self.nodes[a].place, step.mode, self.nodes[b].place, step.time] = N
+        found = []
+        for a, step, b in carried.edges_in_time(system):
+            source, target = (like.get(nodes[k].place, nodes[k].place) for k in (a, b))
+            found.append(key[source, like.get(step.mode, step.mode), target, step.time])
+        return replace(carried, vanishing=tuple(found))
+
+    def to_fields(self) -> dict[str, Any]:
+        """Return forms, rate and multipliers, and of all else what is not as usual."""
+        fields: dict[str, Any] = {
+            "nodes": [
+                {"place": place, "Q": matrix_fields(form, self.denominator_log2)}
+                for place, form in self.nodes
+            ],
+            "rate": str(self.rate),
+        }
+        if self.degree > 1:
+            fields["degree"] = 2 * self.degree
+            fields["vanishing"] = [[list(row) for row in N] for N in self.vanishing]
+        if self.multipliers:
+            fields["multipliers"] = [list(item) for item in self.multipliers]
+        if self.edges != ALL:
+            fields["edges"] = [list(edge) for edge in self.edges]
+        if self.stays is not None:
+            fields["stays"] = {"leaving": list(self.stays.leaving), "pieces": self.stays.pieces}
+        return fields
+
+    @classmethod
+    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
+        """Read forms, rate and multipliers, and how places and edges are drawn."""
+        nodes, exponents = [], set()
+        for item in fields["nodes"]:
+            form, exponent = read_dyadic(item["Q"])
+            nodes.append(Node(read_text(item["place"]), form))
+            exponents.add(exponent)
+        if len(exponents) != 1:
+            raise ValueError("the forms do not share one denominator")
+        half, odd = divmod(read_integer(fields.get("degree", 2)), 2)
+        if odd:
+            raise ValueError("the degree is odd")
+        multipliers = tuple(
+            Multiplier(read_text(fact), _optional(target), read_integer(value))
+            for fact, target, value in fields.get("multipliers", [])
+        )
+        edges = tuple(
+            Arc(_optional(a), None if mode is None else read_text(mode), _optional(b))
+            for a, mode, b in fields.get("edges", ALL)
+        )
+        vanishing = tuple(read_integers(N) for N in fields.get("vanishing", []))
+        stays = None
+        if "stays" in fields:
+            leaving = tuple(read_text(name) for name in fields["stays"]["leaving"])
+            stays = Stays(leaving, read_integer(fields["stays"]["pieces"]))
+        return cls(
+            tuple(nodes),
+            exponents.pop(),
+            read_ratio(fields["rate"]),
+            half,
+            multipliers,
+            vanishing,
+            edges,
+            stays,
+        )
+
+
+def _optional(value: object) -> int | None:
+    return None if value is None else read_integer(value)
+
+
+def _at(place: str, turn: int) -> str:
+    """Return a place at a step of a round."""
+    return f"{place} {turn}"
+
+
+@lru_cache(maxsize=8)
+def steps_together(
+    system: SwitchedSystem, acting: Acting, rate: Fraction, lost: bool
+) -> tuple[Step, ...]:
+    """TRUSTED: return the steps of a system with contact and free motion as places.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With modes of one size, which may take turns.
+    acting : Acting
+        What acts on the state.
+    rate : Fraction
+        That maps are to keep; it decides in which units they are counted.
+    lost : bool
+        Whether contact is lost and made; it is kept otherwise.
+    """
+    grain = grain_of(rate**2)
+    if system.clock is None:
+        return tuple(steps_of(system, acting, grain, lost=lost))
+    length = system.clock.length
+    parts = [
+        tuple(steps_of(on_turn(system, system.clock, k), acting, grain, lost=lost)) for k in (0, 1)
+    ]
+    return tuple(
+        replace(
+            step,
+            where=f"{step.where}, at step {k}",
+            source=_at(step.source, k),
+            target=_at(step.target, (k + 1) % length),
+        )
+        for k in range(length)
+        for step in parts[min(k, 1)]
+    )
+
+
+@lru_cache(maxsize=8)
+def steps_by_mode(
+    system: SwitchedSystem, stays: Stays, rate: Fraction, degree: int
+) -> tuple[AnyStep, ...]:
+    """TRUSTED: return the steps of a system with the modes as places.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules of switching.
+    stays : Stays
+        How stays are followed.
+    rate : Fraction
+        That maps are to keep; it decides in which units they are counted.
+    degree : int
+        Of the monomials.
+    """
+
+    def grain(steps: int) -> int:
+        return grain_of(rate ** (2 * steps)) if degree == 1 else 1
+
+    return tuple(steps_of_stays(system, stays, grain))
+
+
+def lifted(step: Step, degree: int, rate: Fraction) -> Step:
+    """TRUSTED: return a step without facts as one of the monomials of a degree.
+
+    Parameters
+    ----------
+    step : Step
+        Of the state.
+    degree : int
+        The d.
+    rate : Fraction
+        That maps are to keep; it decides in which units they are counted.
+    """
+    if step.is_flow:
+        rows, unit, over = derivative_lift(step.rows, degree), 1, step.over
+    else:
+        even, over = lcm(*step.units), 1
+        whole = [
+            [e * (even // u) for e, u in zip(row, step.units, strict=True)] for row in step.rows
+        ]
+        grain = grain_of(rate ** (2 * degree * step.time))
+        rows = [[grain * entry for entry in row] for row in power_lift(whole, degree)]
+        unit = grain * even**degree
+    size = len(rows[0])
+    return replace(step, states=size, units=(unit,) * size, rows=rows, over=over)

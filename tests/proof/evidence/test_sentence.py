@@ -1,0 +1,115 @@
+"""The sentence of a graph: its signals, its norm, and what it covers."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Stay, Switching
+from tests.proof.graphs import common_polynomial, common_quadratic, one_form
+from tests.proof.systems import bouncing, bouncing_in_steps, family, leaning, matrix, resets_between
+
+HALF = Fraction(1, 2)
+RESETS = resets_between(("m0", "m1", [[1]]), ("m1", "m0", [[1]]))
+EIGHT = ", ".join(f"at least 1 s in m{k}" for k in range(8))
+
+
+def left_within(*stays: tuple, **rules: object) -> Switching:
+    named = (
+        (f"m{k}", Stay(Fraction(first), None if last is None else Fraction(last)))
+        for k, (first, last) in enumerate(stays)
+    )
+    return Switching(stays=tuple(named), **rules)
+
+
+def test_one_form_for_all_modes():
+    pair = family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])
+    evidence = common_quadratic(((1, 0), (0, 1)), 0, HALF)
+    assert evidence.claim(pair) == (
+        "Every solution of x' = A x, switching arbitrarily among the 2 modes, satisfies "
+        "|x(t)| <= exp(-alpha t) |x(0)| with alpha = 0.5 1/s, in the norm |x| = sqrt(x' Q x)."
+    )
+    assert "among its one mode," in evidence.claim(replace(pair, modes=pair.modes[:1]))
+    sixth = common_polynomial(3, ((1,),), 0, (((0,),),), HALF)
+    said = "where |x|^6 is a positive definite form of degree 6 in x."
+    assert sixth.claim(family([[-1]])).endswith(said)
+
+
+def test_lost_contact_is_said_with_its_modes_and_its_rate_in_seconds():
+    system = bouncing_in_steps()
+    evidence = one_form(
+        system, ((40, 20), (20, 60)), 0, Fraction(99, 100), crossings=(16,), lost=True
+    )
+    assert evidence.claim(system) == (
+        "Every solution of x+ = A x, with contact lost and made again at any time and switching "
+        "arbitrarily among 2 modes in contact and 1 mode of free motion, satisfies "
+        "|w(t)| <= rho^t |w(0)| with rho = 0.99, where w holds the states other than the "
+        "deflection, and the deflection where it is positive, and |w| = sqrt(w' Q w). Where free "
+        "motion ends is not claimed. A step takes 0.1 s, so that is exp(-alpha t) with "
+        "alpha = 0.1 1/s."
+    )
+    free = (*system.contact.free, Mode("g", matrix([[-1, 0], [1, 0]])))
+    two = replace(system, modes=system.modes[:1], contact=Contact(free))
+    assert "among 1 mode in contact and 2 modes of free motion" in evidence.claim(two)
+    flowing = free_sentence(bouncing(), HALF, 1, 1, lost=True, once=True)
+    assert flowing.startswith("Every solution, with contact lost")
+    each = free_sentence(system, HALF, 1, 3, lost=True, once=True)
+    assert "|w| is the largest of all sqrt(w' Q w) there" in each
+
+
+def test_axes_are_added_up():
+    system = leaning(replace(bouncing(), contact=None), "1/8")
+    said = free_sentence(system, HALF, 1, 1, lost=False, once=True)
+    assert "(acceleration), which are taken on trust, each by itself in any of its modes" in said
+    assert said.endswith(
+        "where w_i is the state of an axis, and |w|^2 = sum of w_i' Q w_i over the axes."
+    )
+    lost = free_sentence(leaning(bouncing(), "1/8"), HALF, 1, 1, lost=True, once=True)
+    assert "w_i holds the states of an axis other than the deflection" in lost
+
+
+def test_a_constant_in_front_is_said():
+    system = family([["1/2"]], [["1/2"]], time=Time.DISCRETE)
+    said = free_sentence(system, HALF, 1, 2, lost=False, once=False)
+    assert "|x(t)| <= c rho^t |x(0)|" in said
+    assert said.endswith("and with some constant c that is the same for all signals.")
+
+
+@pytest.mark.parametrize(
+    ("switching", "time", "words"),
+    [
+        (Switching(), Time.CONTINUOUS, "arbitrary"),
+        (Switching(HALF), Time.CONTINUOUS, "at least 0.5 s in each mode"),
+        (Switching(Fraction(1)), Time.DISCRETE, "at least 1 step in each mode"),
+        (Switching(Fraction(2)), Time.DISCRETE, "at least 2 steps in each mode"),
+        (left_within((0, 1)), Time.CONTINUOUS, "at most 1 s in m0"),
+        (left_within((1, 3)), Time.DISCRETE, "1 to 3 steps in m0"),
+        (
+            left_within((1, None), dwell_time=HALF),
+            Time.CONTINUOUS,
+            "at least 0.5 s in each other mode, at least 1 s in m0",
+        ),
+        (left_within(*[(1, None)] * 8), Time.CONTINUOUS, EIGHT),
+        (
+            left_within(*[(1, None)] * 9),
+            Time.CONTINUOUS,
+            f"{EIGHT}, 9 modes with dwell times of their own",
+        ),
+        (Switching(transitions=()), Time.CONTINUOUS, "0 allowed transitions"),
+        (
+            Switching(transitions=(("m0", "m1"),), resets=RESETS),
+            Time.CONTINUOUS,
+            "1 allowed transition, 2 resets",
+        ),
+    ],
+)
+def test_words_for_the_signals(switching, time, words):
+    system = family([[-1]], [[-1]], time=time, switching=switching)
+    law = "x' = A x" if time is Time.CONTINUOUS else "x+ = A x"
+    bound = "exp(-alpha t)" if time is Time.CONTINUOUS else "rho^t"
+    said = ruled_sentence(system, HALF)
+    assert f"Every solution of {law} under the declared switching ({words})" in said
+    assert f"satisfies |x(t)| <= c {bound} |x(0)|" in said

@@ -1,0 +1,75 @@
+"""Graphs of the usual shapes, drawn from their numbers, and what such a shape is called."""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+
+from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
+from nrs_design.proof.evidence.fields import Matrix
+from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
+from nrs_design.proof.stays import Stays
+from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING
+from nrs_design.search.draw import in_turns, one_form
+
+__all__ = [
+    "common_polynomial",
+    "common_quadratic",
+    "conewise_modes",
+    "in_turns",
+    "mode_quadratic",
+    "one_form",
+    "shape_of",
+]
+
+
+def common_quadratic(
+    Q: Matrix, log2: int, rate: Fraction, roundings: Sequence[int] = ()
+) -> FormsOnGraph:
+    found = (Multiplier(f"{ROUNDING} {k}", None, m) for k, m in enumerate(roundings, 1))
+    return FormsOnGraph((Node(CONTACT, Q),), log2, rate, multipliers=tuple(found))
+
+
+def common_polynomial(
+    degree: int, Q: Matrix, log2: int, vanishing: tuple[Matrix, ...], rate: Fraction
+) -> FormsOnGraph:
+    return FormsOnGraph((Node(CONTACT, Q),), log2, rate, degree, vanishing=vanishing)
+
+
+def mode_quadratic(
+    functions: Iterable[tuple[str, Matrix]],
+    log2: int,
+    rate: Fraction,
+    leaving: tuple[str, ...] = (),
+    pieces: int = 1,
+) -> FormsOnGraph:
+    nodes = tuple(Node(name, Q) for name, Q in functions)
+    return FormsOnGraph(nodes, log2, rate, stays=Stays(leaving, pieces))
+
+
+def conewise_modes(
+    touching: Sequence[tuple[str, Matrix]],
+    flying: Sequence[tuple[str, Matrix]],
+    log2: int,
+    rate: Fraction,
+    multipliers: Sequence[int],
+) -> FormsOnGraph:
+    """The function of a state is that of the mode that takes the next step."""
+    nodes = [Node(CONTACT, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
+    edges = (Arc(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
+    lost = (Multiplier(LOST, k, m) for k, m in enumerate(multipliers, len(touching)))
+    return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(lost), edges=tuple(edges))
+
+
+def shape_of(evidence: AbstractEvidence | None) -> str | None:
+    """Name the shape of a graph, and otherwise the kind."""
+    if not isinstance(evidence, FormsOnGraph):
+        return None if evidence is None else evidence.kind
+    degree = "quadratic" if evidence.degree == 1 else "polynomial"
+    if evidence.stays is not None:
+        return f"mode-{degree}"
+    if evidence.covers_coupling:
+        return "coupled-axes"
+    if any(node.place[-1].isdecimal() for node in evidence.nodes):
+        return f"periodic-{degree}"
+    if len(evidence.edges) > 1:
+        return f"conewise-mode-{degree}"
+    return f"conewise-{degree}" if evidence.covers_lost_contact else f"common-{degree}"

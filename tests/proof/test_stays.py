@@ -1,0 +1,245 @@
+"""Stays and switches as steps: powers, enclosures and limits, against the definition."""
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+
+from nrs_design.proof import stays as module
+from nrs_design.proof.evidence.graph import Node
+from nrs_design.proof.exact import is_positive_definite
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.stays import (
+    EnclosedStep,
+    Stays,
+    find_odd_stays,
+    power,
+    shifted,
+    steps_of_stays,
+)
+from nrs_design.proof.switching import Edge, Stay, Switching
+from tests.proof.graphs import mode_quadratic
+from tests.proof.systems import family, resets_between
+
+A = RationalMatrix.from_rows([[Fraction(1, 2), 3], [-1, Fraction(2, 7)]])
+HALF, IN_STEPS = Fraction(1, 2), {"time": Time.DISCRETE}
+LONG = "the dwell time is too long for such large numbers"
+NOT_THOSE = "the modes that must be left are not those of the system"
+PIECES = "the stays are enclosed in too few or too many pieces"
+SWITCHES = "there are too many switches to check"
+RESETS = resets_between(("m0", "m1", [[1, 0], [0, 1]]), ("m1", "m0", [[1, 0], [0, 1]]))
+
+
+def scalars(*values: int, rate: Fraction = HALF, **stays: object):
+    named = tuple((f"m{i}", ((value,),)) for i, value in enumerate(values))
+    return mode_quadratic(named, 0, rate, **stays)
+
+
+def left_within(*stays: tuple, **rules: object) -> Switching:
+    """Rules with a shortest and a longest stay for the first modes."""
+    named = (
+        (f"m{k}", Stay(Fraction(first), None if last is None else Fraction(last)))
+        for k, (first, last) in enumerate(stays)
+    )
+    return Switching(stays=tuple(named), **rules)
+
+
+def odd(system, leaving=(), pieces=1, bits=1):
+    return find_odd_stays(system, Stays(leaving, pieces), bits)
+
+
+@pytest.mark.parametrize("M", [A, RationalMatrix.from_rows([[3]])])
+def test_a_power_is_a_product_of_as_many_factors(M):
+    n = range(M.shape[0])
+    product = [[Fraction(int(i == j)) for j in n] for i in n]
+    for exponent in range(9):
+        assert power(M, exponent).fractions() == product
+        F = M.fractions()
+        product = [[sum(product[i][k] * F[k][j] for k in n) for j in n] for i in n]
+
+
+def test_a_shift_is_added_to_the_diagonal():
+    assert shifted(A, Fraction(1, 3)).fractions() == [[Fraction(5, 6), 3], [-1, Fraction(13, 21)]]
+
+
+# exp(-2) is 0.1353...: one thousand decreases to a tenth of it, 7389 being exp(2) of it.
+@pytest.mark.parametrize(
+    ("given", "shown"),
+    [
+        ((-1, 0, 1, 1, 1000, 7389), True),
+        ((-1, 0, 1, 1, 1000, 7390), False),
+        # The rate takes away from the decay.
+        ((-2, 1, 1, 1, 1000, 7390), False),
+        # A reset to one half is worth a factor of four.
+        ((-1, 0, 1, 1, 1000, 29556, "1/2"), True),
+        ((-1, 0, 1, 1, 1000, 29557, "1/2"), False),
+        # Every time from one to the other counts, for decay the first, for growth the last.
+        ((-1, 0, "0.99", 1, 1000, 7389), False),
+        ((1, 0, 0, "0.01", 1000, 1000), False),
+        ((1, 0, 0, "0.01", 1021, 1000), True),
+    ],
+)
+def test_the_form_of_a_stay_against_the_exponential(given, shown):
+    entry, rate, begin, end, before, after, *gain = given
+    source, target = (Mode(name, RationalMatrix.from_rows([[entry]])) for name in "ij")
+    reset = RationalMatrix.from_rows([[Fraction(gain[0])]]) if gain else None
+    step = EnclosedStep("", Edge(source, target, reset), Fraction(begin), Fraction(end))
+    form = step.form(((before,),), ((after,),), Fraction(rate))
+    assert is_positive_definite(form) is shown
+    assert (step.mode, step.source, step.target) == ("i", "i", "j")
+
+
+def test_forms_of_steps_by_hand():
+    """``rho^2k Q0 - (G A^k)^2 Q1`` for A = 1/3, G = 2/5, rho = 3/4, over ``(5 3^k 4^k)^2``."""
+    resets = resets_between(("m0", "m1", [["2/5"]]))
+    rules = replace(left_within((2, 3), (1, None)), resets=resets)
+    system = family([["1/3"]], [["1/2"]], **IN_STEPS, switching=rules)
+    evidence = scalars(7, 11, rate=Fraction(3, 4), leaving=("m0",))
+    first, second, m1, two, three, back = (form[0][0] for _, form in evidence.forms(system))
+    assert (first, second) == (7, 11)
+    assert m1 == 4**2 * 11 * (Fraction(9, 16) - Fraction(1, 4))
+    for k, form in ((2, two), (3, three)):
+        decrease = Fraction(3, 4) ** (2 * k) * 7 - (Fraction(2, 5) / 3**k) ** 2 * 11
+        assert form == (5 * 3**k * 4**k) ** 2 * decrease
+    assert back == 4**2 * (Fraction(9, 16) * 11 - Fraction(1, 4) * 7)
+    words = [failure.removeprefix("V does not decrease at the claimed rate ") for failure, _ in
+             evidence.forms(system)]  # fmt: skip
+    assert words[2:] == [
+        "in mode m1",
+        "after some stay, from m0 to m1",
+        "after some stay, from m0 to m1",
+        "after the dwell time, from m1 to m0",
+    ]
+
+
+def test_the_state_moves_before_it_is_reset():
+    resets = resets_between(("m0", "m1", [[0, 1], [0, 0]]))
+    rules = Switching(transitions=(("m0", "m1"),), resets=resets)
+    system = family([[0, 0], ["1/2", 0]], [[0, 0], [0, 0]], **IN_STEPS, switching=rules)
+    forms = (("m0", ((1, 0), (0, 1))), ("m1", ((1, 0), (0, 1))))
+    *_, (_, form) = mode_quadratic(forms, 0, Fraction(3, 4)).forms(system)
+    # A x = (0, x1/2), and the reset takes that to (x1/2, 0).
+    assert form[0][0] * 9 * 4 == form[1][1] * (9 * 4 - 16) * (4 if form[0][0] > form[1][1] else 1)
+
+
+def test_pieces_of_a_stay():
+    system = family([[1]], [[-2]], switching=left_within((HALF, 2), (3, 4)))
+    steps = steps_of_stays(system, Stays(("m0",), 3), lambda count: 1)
+    asked = [(s.mode, s.begin, s.end) for s in steps if isinstance(s, EnclosedStep)]
+    ends = [HALF, Fraction(1), Fraction(3, 2), Fraction(2)]
+    pieces = [("m0", *pair) for pair in pairwise(ends)]
+    assert asked == [*pieces, ("m1", Fraction(3), Fraction(3))]
+
+
+@pytest.mark.parametrize(("gain", "rises"), [("4/3", False), ("-4/3", False), ("1.34", True)])
+def test_a_switch_at_once_may_not_raise_the_function(gain, rises):
+    """``16 - (4/3)^2 9`` is zero."""
+    rules = Switching(transitions=(("m0", "m1"),), resets=resets_between(("m0", "m1", [[gain]])))
+    system = family([[-1]], [[-1]], switching=rules)
+    fault = "V rises at the switch from m0 to m1" if rises else None
+    assert scalars(16, 9).find_misfit(system) == fault
+    # Half a second of decay makes up for a function that is twice as large.
+    later = Switching(HALF, (("m0", "m1"),))
+    slow = replace(scalars(1, 2), rate=Fraction(1, 100))
+    assert "rises" in slow.find_fault(replace(system, switching=replace(later, dwell_time=0)))
+    assert slow.find_fault(replace(system, switching=later)) is None
+
+
+@pytest.mark.parametrize(
+    ("dwell", "time", "fault"),
+    [
+        (4096, Time.CONTINUOUS, None),
+        (4097, Time.CONTINUOUS, "the dwell time is too long"),
+        (4097, Time.DISCRETE, "the dwell time is too long"),
+        (Fraction(3, 2), Time.DISCRETE, "the dwell time is not a whole number of steps"),
+        (Fraction(3, 2), Time.CONTINUOUS, None),
+    ],
+)
+def test_dwell_times_within_the_limits(dwell, time, fault):
+    system = family([["-1/2"]], [["-1/2"]], time=time)
+    assert odd(replace(system, switching=Switching(Fraction(dwell)))) == fault
+    for stays in ((1, dwell), (dwell, dwell)), ((dwell, dwell), (1, dwell)):
+        left = replace(system, switching=left_within(*stays))
+        assert odd(left, ("m0", "m1")) == fault
+
+
+@pytest.mark.parametrize(
+    ("leaving", "fault"),
+    [
+        ((), None),
+        (("m0",), None),
+        (("m0", "m0"), NOT_THOSE),
+        (("m3",), NOT_THOSE),
+        (("m0", "m1"), "a mode in which the function need not decrease has no longest dwell time"),
+    ],
+)
+def test_only_what_must_be_left_need_not_decrease(leaving, fault):
+    assert odd(family([[-1]], [[-1]], switching=left_within((0, 1))), leaving) == fault
+
+
+def test_pieces_are_limited(monkeypatch):
+    """Of three modes two are left, each in two ways."""
+    system = family([[-1]], [[-1]], [[-1]], switching=left_within((1, 2), (1, 2)))
+    for pieces in (0, -1, 4097):
+        assert odd(system, ("m0",), pieces) == PIECES
+    assert odd(system, ("m0",), 4096) is None
+    monkeypatch.setattr(module, "MAX_ENCLOSED", 20)
+    assert odd(system, ("m0", "m1"), 5) is None
+    monkeypatch.setattr(module, "MAX_ENCLOSED", 19)
+    assert odd(system, ("m0", "m1"), 5) == PIECES
+
+
+def test_a_switch_needs_a_fitting_reset():
+    system = family([[-1]], [[-1, 0], [0, -1]], switching=Switching(transitions=(("m0", "m1"),)))
+    assert odd(system) == "the switch from m0 to m1 has no fitting reset"
+
+
+@pytest.mark.parametrize(
+    ("switching", "count"),
+    [
+        (Switching(), 6),
+        (Switching(transitions=(("m0", "m1"), ("m1", "m2"))), 2),
+        (Switching(resets=RESETS), 8),
+        (Switching(transitions=(("m0", "m1"),), resets=RESETS), 3),
+    ],
+)
+def test_the_most_switches(monkeypatch, switching, count):
+    system = family(*[[[-1, 0], [0, -1]]] * 3, switching=switching)
+    for limit, value in (("SWITCHES", count), ("WORK", count * 2**3)):
+        with monkeypatch.context() as patch:
+            patch.setattr(module, f"MAX_{limit}", value)
+            assert odd(system) is None
+            patch.setattr(module, f"MAX_{limit}", value - 1)
+            assert odd(system) == SWITCHES
+
+
+@pytest.mark.parametrize(
+    ("system", "limit", "value"),
+    [
+        # The bits of the largest number, once for every step of the longest stay that counts.
+        (family([[7]], [[1]], **IN_STEPS, switching=Switching(Fraction(4))), "POWER_BITS", 12),
+        (family([[1]], [["1/4"]], **IN_STEPS, switching=Switching(Fraction(4))), "POWER_BITS", 12),
+        (family([[7]], [[1]], **IN_STEPS, switching=left_within((1, 4))), "POWER_BITS", 12),
+        # The same for products of matrices, and for all stays in modes that are left.
+        (family([[7]], [[1]], **IN_STEPS, switching=Switching(Fraction(4))), "WORK", 12),
+        (family([[7]], [[1]], **IN_STEPS, switching=left_within((1, 4))), "WORK", 3 * 10),
+        (family([[7]], [[1]], [[1]], **IN_STEPS, switching=left_within((2, 4))), "WORK", 3 * 18),
+    ],
+)
+def test_the_largest_powers(monkeypatch, system, limit, value):
+    left = dict(system.switching.stays).get("m0", Stay()).longest is not None
+    leaving = ("m0",) if left else ()
+    monkeypatch.setattr(module, f"MAX_{limit}", value)
+    assert odd(system, leaving) is None
+    monkeypatch.setattr(module, f"MAX_{limit}", value - 1)
+    assert odd(system, leaving) == LONG
+    # The rate counts among the numbers of a power; in continuous time none is formed.
+    monkeypatch.setattr(module, f"MAX_{limit}", value)
+    assert odd(system, leaving, bits=20) == LONG
+    assert odd(replace(system, time=Time.CONTINUOUS), leaving, bits=20) is None
+
+
+def test_nodes_are_modes():
+    assert scalars(1, 2).nodes == (Node("m0", ((1,),)), Node("m1", ((2,),)))

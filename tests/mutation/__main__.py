@@ -28,7 +28,7 @@ TESTS = ROOT / "tests" / "proof"
 KINDS = TESTS / "evidence"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, or all: what tampers with examples is the mirror of the last.
-SHARED = {"abstract", "fields", "flow", "function", "__init__"}
+SHARED = {"abstract", "fields", "__init__"}
 # What decides for a kind in a file of its own, and the kind that tests it.
 DECIDES_FOR = {"growth": "growing_sequence"}
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it

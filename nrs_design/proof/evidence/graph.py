@@ -10,7 +10,7 @@ from functools import lru_cache
 from math import comb, lcm
 from typing import Any, ClassVar, NamedTuple, Self
 
-from nrs_design.proof.clock import on_turn
+from nrs_design.proof.evidence.abstract import AbstractFunction, is_square
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
@@ -20,7 +20,6 @@ from nrs_design.proof.evidence.fields import (
     read_ratio,
     read_text,
 )
-from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.exact import (
     MAX_WORK,
@@ -529,6 +528,8 @@ def steps_together(
     grain = grain_of(rate**2)
     if system.clock is None:
         return tuple(steps_of(system, acting, grain, lost=lost))
+    from nrs_design.proof.clock import on_turn
+
     length = system.clock.length
     parts = [
         tuple(steps_of(on_turn(system, system.clock, k), acting, grain, lost=lost)) for k in (0, 1)

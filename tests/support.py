@@ -23,7 +23,7 @@ from flint import fmpq, fmpq_mat
 
 from nrs_design.cli import main
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
-from nrs_design.proof.evidence.function import AbstractFunction
+from nrs_design.proof.evidence.abstract import AbstractFunction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem

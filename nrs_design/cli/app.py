@@ -13,7 +13,6 @@ import typer
 
 from nrs_design import __version__
 from nrs_design.cli import exit_codes
-from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.groups import CommandGroup
 from nrs_design.cli.printing import insist, print_json
 from nrs_design.cli.streams import lasting
@@ -141,6 +140,8 @@ def main() -> None:
     try:
         _run()
     except NrsDesignError as error:
+        from nrs_design.cli.errors import error_summary, print_error
+
         if "--json" in sys.argv:
             print_json("error", error_summary(error))
         print_error(error)

@@ -12,14 +12,15 @@ nothing saturates.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, TypeVar
 
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.step_logic import StepLogic
 
+V = TypeVar("V")
 # How the result of an operation, or the reading of an input, counts as rounded: with the terms that
 # it is made of; as a number of its own, of which the next operations take the rounded value; in
 # proportion to the largest angle, apart from all terms.
@@ -186,3 +187,23 @@ class StepLaw:
     def coefficient(self) -> Mapping[str, Coefficient]:
         """The coefficients by name."""
         return {c.name: c for c in self.coefficients}
+
+    def read(
+        self, known: Mapping[str, V], compute: Mapping[Kind, Callable[[V, V], V]]
+    ) -> dict[str, V]:
+        """Return all values of a step: the operations, read with some kind of number.
+
+        Parameters
+        ----------
+        known : mapping of str
+            Inputs, states and coefficients.
+        compute : mapping of str to callable
+            What each kind of operation makes of its operands.
+        """
+        found = dict(known)
+        for operation in self.operations:
+            right = found[operation.right]
+            # A root has no left operand.
+            left = found.get(operation.left, right)
+            found[operation.name] = compute[operation.kind](left, right)
+        return found

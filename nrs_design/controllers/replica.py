@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.controllers.operations import Coefficient, Kind, Operation, StepLaw
+from nrs_design.controllers.operations import Coefficient, Kind, StepLaw
 
 Single = NDArray[np.float32]
 
@@ -47,8 +47,7 @@ def step(law: StepLaw, mode: NDArray[np.uint32], given: Mapping[str, Single]) ->
     known |= {c.name: _numbers(law, c, np.where(valid, mode, 0)) for c in law.coefficients}
     # What is no number or too large is found afterwards, by the checks.
     with np.errstate(all="ignore") if law.checks else nullcontext():
-        for operation in law.operations:
-            known[operation.name] = _result(operation, known)
+        known = law.read(known, _COMPUTED)
     for name, limit in law.checks.items():
         valid = valid & _is_within(known[name], float(limit))
     outputs = {
@@ -73,12 +72,6 @@ def _numbers(law: StepLaw, coefficient: Coefficient, mode: NDArray[np.uint32]) -
         return np.full(mode.shape, float(coefficient.of(0)), np.float32)
     numbers = np.array([float(coefficient.of(k)) for k in range(len(law.modes))], np.float32)
     return numbers[mode]
-
-
-def _result(operation: Operation, known: Mapping[str, Single]) -> Single:
-    right = known[operation.right]
-    # A root has no left operand.
-    return _COMPUTED[operation.kind](known.get(operation.left, right), right)
 
 
 def _saturated(limit: Single, value: Single) -> Single:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 
 from nrs_design.controllers.float32 import PRECISION
-from nrs_design.controllers.operations import LINEAR, Operation, StepLaw
+from nrs_design.controllers.operations import LINEAR, Kind, Operation, StepLaw
 from nrs_design.errors import DesignError
-from nrs_design.models.linear_form import LinearForm, combine
+from nrs_design.models.linear_form import LinearForm, combine, zero
 
 # Single precision reaches to 2^128; what a bound itself leaves out is far less than the other half.
 LARGEST = Fraction(2) ** 127
@@ -65,13 +66,7 @@ class Term:
         return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
 
 
-def linear_forms(
-    law: StepLaw,
-    mode: int,
-    given: Mapping[str, LinearForm],
-    numbers: Mapping[str, Fraction] | None = None,
-    errors: Mapping[str, LinearForm] | None = None,
-) -> dict[str, LinearForm]:
+def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> dict[str, LinearForm]:
     """Return every value of a step as a linear form, computed without rounding or saturation.
 
     Parameters
@@ -82,10 +77,6 @@ def linear_forms(
         Which controller is in force.
     given : mapping of str to LinearForm
         Inputs and states in coordinates of the caller's choice.
-    numbers : mapping of str to Fraction, optional
-        Coefficients by name, where they are not those of the law in that mode.
-    errors : mapping of str to LinearForm, optional
-        What is added to results, by name, for all that is computed from them.
 
     Raises
     ------
@@ -93,19 +84,19 @@ def linear_forms(
         If the law is not linear.
     """
     _check_linear(law)
-    held = {c.name: c.of(mode) for c in law.coefficients} | dict(numbers or {})
-    forms, off = dict(given), errors or {}
-    for operation in law.operations:
-        form = forms[operation.right]
-        if operation.kind == "multiply":
-            form = combine((held[operation.left], form))
-        elif operation.kind != "saturate":
-            sign = ONE if operation.kind == "add" else -ONE
-            form = combine((ONE, forms[operation.left]), (sign, form))
-        if operation.name in off:
-            form = combine((ONE, form), (ONE, off[operation.name]))
-        forms[operation.name] = form
-    return forms
+    held: dict[str, LinearForm] = {c.name: [c.of(mode)] for c in law.coefficients}
+    found = law.read(held | dict(given), _FORMS)
+    return {name: form for name, form in found.items() if name not in held}
+
+
+_FORMS: Mapping[Kind, Callable[[LinearForm, LinearForm], LinearForm]] = MappingProxyType(
+    {
+        "add": lambda left, right: combine((ONE, left), (ONE, right)),
+        "subtract": lambda left, right: combine((ONE, left), (-ONE, right)),
+        "multiply": lambda left, right: combine((left[0], right)),
+        "saturate": lambda _, right: right,
+    }
+)
 
 
 def _check_linear(law: StepLaw) -> None:
@@ -144,8 +135,9 @@ def rounded_terms(
     errors : mapping of str to LinearForm, optional
         Of results with a rounding of their own, what that adds to all that takes them.
     """
-    forms = linear_forms(law, mode, given, numbers, errors)
-    held, terms = numbers or {}, dict[str, tuple[Term, ...]]()
+    _check_linear(law)
+    held, off, terms = numbers or {}, errors or {}, dict[str, tuple[Term, ...]]()
+    size = len(next(iter(given.values())))
     for value in law.values:
         count = int(value.rounding == "term")
         terms[value.name] = (Term(value.symbol, given[value.name], count),)
@@ -156,7 +148,9 @@ def rounded_terms(
         if operation.rounding == "own" or operation.name in targets:
             kept[operation.name] = found
         if operation.rounding == "own":
-            found = (Term(operation.symbol, forms[operation.name], 0),)
+            forms = [zero(size), *(term.form for term in found)]
+            forms += [off[operation.name]] if operation.name in off else []
+            found = (Term(operation.symbol, combine(*((ONE, form) for form in forms)), 0),)
         terms[operation.name] = found
     return kept
 
@@ -208,19 +202,24 @@ def check_range(law: StepLaw) -> None:
     """
     _check_linear(law)
     bounds = {value.name: value.limit for value in law.values}
+    bounds |= {c.name: max(map(abs, c.values)) for c in law.coefficients}
+    found = law.read(bounds, _BOUNDS)
     for operation in law.operations:
-        right = bounds[operation.right]
-        if operation.kind in ("multiply", "saturate"):
-            left = max(map(abs, law.coefficient[operation.left].values))
-            bound = min(left, right) if operation.kind == "saturate" else left * right * SLACK
-        else:
-            bound = (bounds[operation.left] + right) * SLACK
-        if bound >= LARGEST:
+        if found[operation.name] >= LARGEST:
             raise DesignError(
                 f"{operation.name} of the law may be beyond single precision",
                 remedy="choose smaller gains, or other units",
             )
-        bounds[operation.name] = bound
+
+
+_BOUNDS: Mapping[Kind, Callable[[Fraction, Fraction], Fraction]] = MappingProxyType(
+    {
+        "add": lambda left, right: (left + right) * SLACK,
+        "subtract": lambda left, right: (left + right) * SLACK,
+        "multiply": lambda left, right: left * right * SLACK,
+        "saturate": min,
+    }
+)
 
 
 def counted_terms(

@@ -237,7 +237,7 @@ OTHERS = _F(
     _controller(lambda c: c.commands != "velocity"),
 )
 DAMPED_FORCE = _F(
-    "force control {0[0]!r} in contact with {0[1]!r}, which has damping or remembers",
+    "force control by {0[0]!r} in contact with {0[1]!r}, which has damping or remembers",
     "controllers.{0[0]}",
     "use an elastic environment for force controllers",
     _damped_force,

@@ -57,7 +57,7 @@ def test_tune_and_report(tmp_path):
         (
             "model: elastic",
             "model: kelvin-voigt\n    damping: 1 N*m*s/rad",
-            "force control in contact",
+            "which has damping or remembers: not modelled",
         ),
         ("switching:", "contact: losable\nswitching:", None),
     ],
@@ -76,4 +76,4 @@ def test_what_is_refused(tmp_path, old, new, message):
 def test_others_beside_it_share_no_state(tmp_path):
     path = changed(tmp_path, ("controllers:\n", "controllers:\n  position: {type: position}\n"))
     result = run("certify-switching", path, cwd=tmp_path, code=2)
-    assert "mix no parallel controllers" in result.stderr
+    assert "a parallel controller, beside 'position'" in result.stderr

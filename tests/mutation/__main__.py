@@ -28,7 +28,9 @@ TESTS = ROOT / "tests" / "proof"
 KINDS = TESTS / "evidence"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 # Files of evidence that are no kind, or all: what tampers with examples is the mirror of the last.
-SHARED = {"abstract", "fields", "flow", "function", "__init__"}
+SHARED = {"abstract", "fields", "__init__"}
+# What decides for a kind in a file of its own, and the kind that tests it.
+DECIDES_FOR = {"growth": "growing_sequence"}
 # A mutant may loop for ever, or count to the end of memory. A test gets so many times what it
 # takes without a change, and so many seconds more.
 TIMES, SECONDS, BYTES = 5, 5, 4 << 30
@@ -174,6 +176,7 @@ def in_words(count: Counter[str]) -> str:
 
 def own_tests(path: Path) -> list[str]:
     """Return what mirrors a module, and for a kind of evidence the tests of all kinds, too."""
+    path = path.with_stem(DECIDES_FOR.get(path.stem, path.stem))
     mirror = TESTS / path.relative_to(PROOF).with_name(f"test_{path.name}")
     if path.parent == PROOF or path.stem in SHARED:
         return [str(mirror if mirror.exists() else KINDS / "test_tampering.py")]

@@ -12,7 +12,12 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.bounds import at_least
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence.fields import find_unreadable, read_object, written
+from nrs_design.proof.evidence.fields import (
+    MAX_INTEGER_BITS,
+    find_unreadable,
+    read_object,
+    written,
+)
 from nrs_design.proof.exact import (
     IntegerMatrix,
     is_positive_definite,
@@ -20,6 +25,7 @@ from nrs_design.proof.exact import (
     is_too_large,
 )
 from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
@@ -355,3 +361,53 @@ def find_indefinite(
         if not is_symmetric(form) or not is_positive_definite(form):
             return failure
     return None
+
+
+class AbstractFunction(AbstractEvidence):
+    """Lyapunov functions; the rate is alpha in 1/s, or rho per step, and is itself proved."""
+
+    rate: Fraction
+
+    @property
+    def attains_rate(self) -> bool:
+        """True: the function decreases at it."""
+        return True
+
+    @property
+    def shows(self) -> Shows:
+        """Stability."""
+        return Shows.STABILITY
+
+    def proved_rate(self, system: SwitchedSystem) -> Fraction:
+        """Return the claimed rate."""
+        return self.rate
+
+    def find_rate_misfit(self, time: Time) -> str | None:
+        """Say why the rate is not one of exponential decay, or None."""
+        if self.rate <= 0 or (time is Time.DISCRETE and self.rate >= 1):
+            return "the claimed rate is not one of exponential decay"
+        return None
+
+
+def find_odd_form(Q: IntegerMatrix, denominator_log2: int, order: int) -> str | None:
+    """Say why a form does not have its shape, or None.
+
+    Parameters
+    ----------
+    Q : integer matrix
+        Its numerators.
+    denominator_log2 : int
+        They are over two to this power.
+    order : int
+        Number of states.
+    """
+    if not is_square(Q, order):
+        return f"Q is not a {order} x {order} matrix"
+    if not 0 <= denominator_log2 <= MAX_INTEGER_BITS:
+        return f"the denominator of Q is not two to a power up to {MAX_INTEGER_BITS}"
+    return None
+
+
+def is_square(M: IntegerMatrix, n: int) -> bool:
+    """Tell whether a matrix has n rows and n columns."""
+    return len(M) == n and all(len(row) == n for row in M)

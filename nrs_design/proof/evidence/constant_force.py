@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows, find_odd_form
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.evidence.function import find_odd_form
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, with_crossing
 from nrs_design.proof.mode import Time

@@ -10,6 +10,7 @@ from functools import lru_cache
 from math import comb, lcm
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
+from nrs_design.proof.evidence.abstract import AbstractFunction, is_square
 from nrs_design.proof.evidence.fields import (
     Matrix,
     matrix_fields,
@@ -19,7 +20,6 @@ from nrs_design.proof.evidence.fields import (
     read_ratio,
     read_text,
 )
-from nrs_design.proof.evidence.function import AbstractFunction, is_square
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.exact import (
     MAX_WORK,

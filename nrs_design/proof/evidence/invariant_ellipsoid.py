@@ -11,11 +11,10 @@ from typing import ClassVar
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows
+from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows, find_odd_form
 from nrs_design.proof.evidence.fields import (
     Matrix,
 )
-from nrs_design.proof.evidence.function import find_odd_form
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
 from nrs_design.proof.mode import Time

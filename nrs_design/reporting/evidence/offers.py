@@ -52,7 +52,7 @@ class Offer:
 
 def offer_of(evidence: AbstractEvidence) -> Offer:
     """Return what some evidence offers; nothing for a kind that is not in the table."""
-    read = _OFFERS.get(evidence.kind)
+    read = OFFERS.get(evidence.kind)
     return Offer() if read is None else read(evidence)
 
 
@@ -105,7 +105,8 @@ def _sequence(e: Any) -> Offer:
     return Offer(growth=Growth(e.steps, e.edges, None if e.factor is None else e.factor[0]))
 
 
-_OFFERS: Mapping[str, Callable[[Any], Offer]] = {
+# By kind of evidence.
+OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
     "constant-force": _constant_force,
     "graph": _graph,

@@ -14,13 +14,17 @@ from nrs_design.proof.evidence import (
     AbstractEvidence,
     Shows,
 )
-from nrs_design.proof.evidence.abstract import GROWN_WITHOUT_ROUNDING, find_indefinite
+from nrs_design.proof.evidence.abstract import (
+    GROWN_WITHOUT_ROUNDING,
+    find_indefinite,
+    is_square,
+)
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Clock, Reset, Switching
-from tests.proof.graphs import shape_of
+from tests.proof.graphs import common_quadratic, shape_of
 from tests.proof.systems import (
     SYSTEMS,
     bouncing,
@@ -419,3 +423,44 @@ def test_it_is_given_none_beyond_the_first_that_fails():
     made = []
     assert find_indefinite([good, bad, good], made) == "bad"
     assert made == [((1,),), ((-1,),)]
+
+
+TINY = Fraction(1, 10**30)
+
+
+@pytest.mark.parametrize(
+    ("rate", "continuous", "discrete"),
+    [
+        (Fraction(0), False, False),
+        (-TINY, False, False),
+        (TINY, True, True),
+        (1 - TINY, True, True),
+        (Fraction(1), True, False),
+        (1 + TINY, True, False),
+    ],
+)
+def test_a_rate_of_decay_is_positive_and_in_steps_below_one(rate, continuous, discrete):
+    evidence = common_quadratic(((1,),), 0, rate)
+    assert (evidence.find_rate_misfit(Time.CONTINUOUS) is None) is continuous
+    assert (evidence.find_rate_misfit(Time.DISCRETE) is None) is discrete
+
+
+def test_functions_show_stability_at_the_rate_that_they_claim():
+    system, evidence = genuine("common-quadratic")
+    assert evidence.shows is Shows.STABILITY
+    assert evidence.attains_rate
+    assert evidence.proved_rate(system) == evidence.rate
+
+
+@pytest.mark.parametrize(
+    ("M", "square"),
+    [
+        ([[1]], False),
+        ([[1, 2], [3, 4]], True),
+        ([[1, 2], [3]], False),
+        ([[1, 2], [3, 4], [5, 6]], False),
+        ([[1, 2, 3], [4, 5, 6]], False),
+    ],
+)
+def test_as_many_rows_and_columns_as_asked_for(M, square):
+    assert is_square(M, 2) is square

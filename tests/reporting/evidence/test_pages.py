@@ -32,7 +32,7 @@ LONG = frozenset(
 
 
 def test_every_kind_has_a_row_in_the_table_of_what_it_offers():
-    assert set(offers._OFFERS) == TEXTS
+    assert set(offers.OFFERS) == TEXTS
 
 
 def test_outside_proof_and_search_only_the_table_names_a_kind():

@@ -72,40 +72,6 @@ def one_form(
     return FormsOnGraph(tuple(nodes), log2, rate, degree, found, vanishing)
 
 
-def in_turns(
-    system: SwitchedSystem,
-    forms: Sequence[Matrix],
-    log2: int,
-    rate: Fraction,
-    crossings: Sequence[Integers] = (),
-    roundings: Sequence[Integers] = (),
-) -> FormsOnGraph:
-    """Draw one form for each step of a round, with the multipliers of each step.
-
-    Parameters
-    ----------
-    system, log2, rate
-        As for `one_form`.
-    forms : sequence of matrix
-        In contact, in the order of the steps.
-    crossings, roundings : sequence of sequence of int
-        Multipliers of every step; none where contact is kept, or the arithmetic exact.
-    """
-    lost, count = system.contact is not None, len(forms)
-    nodes, multipliers = [], []
-    for k, Q in enumerate(forms):
-        nodes.append(Node(f"{CONTACT} {k}", Q))
-        if lost:
-            nodes.append(Node(f"{FREE} {k}", undeflected(Q, system.order)))
-    width = len(nodes) // count
-    for k in range(count):
-        own = crossings[k] if crossings else (), roundings[k] if roundings else ()
-        targets = range((k + 1) % count * width, (k + 1) % count * width + width)
-        for fact, value in _multipliers(system, *own, ()):
-            multipliers += [Multiplier(fact, target, value) for target in targets]
-    return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(multipliers))
-
-
 def _multipliers(
     system: SwitchedSystem, crossings: Integers, roundings: Integers, couplings: Integers
 ) -> list[tuple[str, int]]:

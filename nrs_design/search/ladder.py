@@ -29,7 +29,7 @@ LADDER: tuple[Rung, ...] = (
         "periodic quadratic",
         Method.PERIODIC_QUADRATIC,
         _always,
-        _in("periodic_quadratic", "search_periodic_quadratic"),
+        _in("graphs", "search_periodic_quadratic"),
         clocked=True,
     ),
     Rung("rounds", Method.PERIOD, _always, _in("rounds", "search_rounds"), clocked=True),
@@ -84,7 +84,7 @@ LADDER: tuple[Rung, ...] = (
         "conewise mode quadratic",
         Method.CONEWISE_MODE_QUADRATIC,
         lambda f: f.may_bounce and not f.is_continuous,
-        _in("conewise_mode_quadratic", "search_conewise_modes"),
+        _in("graphs", "search_conewise_modes"),
     ),
     Rung(
         "conewise polynomial",

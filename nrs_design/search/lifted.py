@@ -163,3 +163,14 @@ def _difference(one: Pair, other: Pair, scaling: Exponents) -> Array:
         form[i, j] += sign / 2
         form[j, i] += sign / 2
     return np.asarray(np.ldexp(form, -scaling[:, None] - scaling[None, :]))
+
+
+def make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
+    """Correct one entry for each product of monomials so that ``z' N z`` vanishes exactly."""
+    for group in groups:
+        total = sum(N[i][j] * (1 if i == j else 2) for i, j in group)
+        i, j = group[0]
+        # Without a diagonal pair in the group, the total is even.
+        N[i][j] -= total if i == j else total // 2
+        N[j][i] = N[i][j]
+    return N

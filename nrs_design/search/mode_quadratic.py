@@ -27,9 +27,14 @@ from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family
-from nrs_design.search.lifted import lift_system, monomial_weights, products, vanishing_basis
+from nrs_design.search.lifted import (
+    lift_system,
+    make_vanish,
+    monomial_weights,
+    products,
+    vanishing_basis,
+)
 from nrs_design.search.lmi import decreases, time_unit
-from nrs_design.search.polynomial import make_vanish
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import (
     begin,

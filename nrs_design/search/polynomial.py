@@ -26,7 +26,14 @@ from nrs_design.search.candidates import NO_MARGIN, Candidate, Candidates
 from nrs_design.search.decay import bisect_position
 from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
-from nrs_design.search.lifted import Lift, Pair, lift_family, orthonormal, products, vanishing_in
+from nrs_design.search.lifted import (
+    Lift,
+    lift_family,
+    make_vanish,
+    orthonormal,
+    products,
+    vanishing_in,
+)
 from nrs_design.search.lmi import decreases
 from nrs_design.search.rounding import claims, digits, rate_at, round_form
 from nrs_design.search.sdp import (
@@ -297,14 +304,3 @@ def _factor(mode: Mode, degree: int, rate: Fraction, time: Time) -> int:
 
 def _shift(value: int, exponent: int) -> int:
     return value << exponent if exponent >= 0 else value >> -exponent
-
-
-def make_vanish(N: list[list[int]], groups: list[list[Pair]]) -> list[list[int]]:
-    """Correct one entry for each product of monomials so that ``z' N z`` vanishes exactly."""
-    for group in groups:
-        total = sum(N[i][j] * (1 if i == j else 2) for i, j in group)
-        i, j = group[0]
-        # Without a diagonal pair in the group, the total is even.
-        N[i][j] -= total if i == j else total // 2
-        N[j][i] = N[i][j]
-    return N

@@ -9,12 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.work import Allowance, Cost
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
 
 Array = NDArray[np.float64]
 
@@ -180,7 +183,7 @@ def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) ->
 
 
 def maximize_margin(
-    rows: Array,
+    rows: Array | csc_matrix[np.float64],
     offset: Array,
     sizes: Sequence[int],
     begun: Begun,
@@ -190,7 +193,7 @@ def maximize_margin(
 
     Parameters
     ----------
-    rows : ndarray, shape (M, N)
+    rows : ndarray or sparse matrix, shape (M, N)
         The first `equalities` rows are equations, the others packed positive semidefinite cones.
     offset : ndarray, shape (M,)
         Right-hand side.

@@ -7,8 +7,9 @@ from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.stays import Stays
-from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING
-from nrs_design.search.draw import in_turns, one_form
+from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING, multiplier_names
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.draw import one_form, undeflected
 
 __all__ = [
     "common_polynomial",
@@ -32,6 +33,33 @@ def common_polynomial(
     degree: int, Q: Matrix, log2: int, vanishing: tuple[Matrix, ...], rate: Fraction
 ) -> FormsOnGraph:
     return FormsOnGraph((Node(CONTACT, Q),), log2, rate, degree, vanishing=vanishing)
+
+
+def in_turns(
+    system: SwitchedSystem,
+    forms: Sequence[Matrix],
+    log2: int,
+    rate: Fraction,
+    crossings: Sequence[Sequence[int]] = (),
+    roundings: Sequence[Sequence[int]] = (),
+) -> FormsOnGraph:
+    """One form for each step of a round, with the multipliers of each step."""
+    lost, count = system.contact is not None, len(forms)
+    nodes, multipliers = [], []
+    for k, Q in enumerate(forms):
+        nodes.append(Node(f"{CONTACT} {k}", Q))
+        if lost:
+            nodes.append(Node(f"{FREE} {k}", undeflected(Q, system.order)))
+    width = len(nodes) // count
+    for k in range(count):
+        first = (k + 1) % count * width
+        named = [(f"{ROUNDING} {i}", m) for i, m in enumerate(roundings[k] if roundings else (), 1)]
+        if crossings and crossings[k]:
+            named += zip(multiplier_names(system), crossings[k], strict=True)
+        multipliers += [
+            Multiplier(fact, first + i, value) for fact, value in named for i in range(width)
+        ]
+    return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(multipliers))
 
 
 def mode_quadratic(

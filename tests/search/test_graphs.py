@@ -1,4 +1,4 @@
-"""Search for functions of each mode for contact and free motion, in the sampled loop."""
+"""Graphs that searches draw: what they decide, and where they apply."""
 
 import numpy as np
 import pytest
@@ -6,16 +6,20 @@ import pytest
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.reporting.evidence.norms import largest_norm
 from nrs_design.reporting.evidence.offers import offer_of
-from nrs_design.search import conewise_mode_quadratic
+from nrs_design.search import graphs
 from nrs_design.search.certify import Limits, certify
-from nrs_design.search.conewise_mode_quadratic import ConewiseModeProgram, search_conewise_modes
 from nrs_design.search.conewise_quadratic import search_conewise
-from nrs_design.search.family import Family
+from nrs_design.search.graphs import search_conewise_modes, search_periodic_quadratic
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
-from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.graphs import shape_of
-from tests.proof.systems import bouncing, bouncing_in_steps
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    bouncing_in_turns,
+    dayawansa_martin,
+    doubled_in_turns,
+)
 from tests.search.support import found, outcome, thesis_robot
 
 BOTH = ("2.15", "1.04")
@@ -44,18 +48,30 @@ def test_a_stiffness_that_moves_far_is_proved_while_contact_is_lost(k, Mt, delay
     assert (len(forms), len(set(forms))) == (8, 4)
 
 
-def test_the_rate_is_raised():
-    system = bouncing_in_steps()
-    rates = [
-        found(search_conewise_modes, system, optimize_rate=wanted).rate for wanted in (True, False)
-    ]
-    assert rates[0] < rates[1]
+@pytest.mark.parametrize(
+    ("search", "system"),
+    [
+        (search_conewise_modes, bouncing_in_steps()),
+        (search_periodic_quadratic, bouncing_in_turns(0, rounded=True)),
+        (search_periodic_quadratic, bouncing_in_turns(1, rounded=True)),
+    ],
+)
+def test_the_rate_is_raised(search, system):
+    rates = [found(search, system, optimize_rate=wanted).rate for wanted in (True, False)]
+    assert rates[0] < rates[1] < 1
 
 
-def test_where_it_applies():
-    for system in (bouncing(), bouncing(1)):
-        assert Method.CONEWISE_MODE_QUADRATIC not in applicable_methods(system)
-    assert Method.CONEWISE_MODE_QUADRATIC in applicable_methods(bouncing_in_steps())
+def test_where_they_apply():
+    turns, steps = {Method.PERIODIC_QUADRATIC}, {Method.CONEWISE_MODE_QUADRATIC}
+    assert applicable_methods(bouncing_in_turns()) == turns | {Method.PERIOD}
+    assert outcome(search_periodic_quadratic, bouncing_in_steps())[0] is None
+    for system, methods in (
+        (bouncing_in_steps(), steps),
+        (bouncing(), set()),
+        (bouncing(1), set()),
+        (dayawansa_martin(5), set()),
+    ):
+        assert applicable_methods(system) & (turns | steps) == methods
 
 
 def test_five_samples_of_delay_are_not_found():
@@ -66,24 +82,35 @@ def test_five_samples_of_delay_are_not_found():
     assert why
 
 
-@pytest.mark.parametrize("spoil", [lambda Q: -Q, lambda Q: Q * np.nan, lambda Q: np.eye(len(Q))])
-def test_solutions_that_lie_give_no_false_evidence(monkeypatch, spoil):
-    system = bouncing_in_steps()
-    solution = ConewiseModeProgram(Family.of(system)).solve(1.0, Allowance())
-    lie = type(solution)([spoil(Q) for Q in solution.touching], solution.flying, np.ones(1))
-    monkeypatch.setattr(ConewiseModeProgram, "solve", lambda *_: lie)
-    try:
-        evidence = found(search_conewise_modes, system, optimize_rate=False)
-    except (np.linalg.LinAlgError, ValueError, OverflowError):
-        return
-    assert evidence is None or evidence.find_fault(system) is None
+def test_the_rate_of_one_state_is_nearly_the_best():
+    """2 (3/4)^4 = 0.6328 in five steps: 0.91256 a step."""
+    evidence = found(search_periodic_quadratic, doubled_in_turns(5))
+    assert shape_of(evidence) == "periodic-quadratic"
+    best = (2 * 0.75**4) ** (1 / 5)
+    assert best < evidence.rate < best + 0.005
 
 
-def test_a_program_that_does_not_fit_is_not_built(monkeypatch):
-    program = ConewiseModeProgram(Family.of(bouncing_in_steps()))
-    monkeypatch.setattr(conewise_mode_quadratic, "symmetric_basis", lambda n: pytest.fail("built"))
-    with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
-        program.solve(1.0, Allowance(1e-4))
+def test_what_grows_is_not_found():
+    evidence, words = outcome(search_periodic_quadratic, doubled_in_turns(3))
+    assert evidence is None
+    assert "no solution" in words
+
+
+def test_too_many_conditions_leave_roundings_out(monkeypatch):
+    system = bouncing_in_turns(rounded=True)
+    assert found(search_periodic_quadratic, system).covers_rounding
+    monkeypatch.setattr(graphs, "MOST_ROUNDED", 9)
+    assert not found(search_periodic_quadratic, system).covers_rounding
+
+
+def test_roundings_that_leave_no_room_are_left_out():
+    sampling = "{period: 2 ms, outer_period: 4 ms, delay: 0}"
+    system = thesis_robot(("41.5", "44.2"), BOTH, "0.01", sampling=sampling)
+    assert certify(system).evidence.covers_rounding
+
+
+def test_numbers_beyond_floating_point():
+    assert certify(doubled_in_turns(4, 10**400)).verdict is Verdict.INCONCLUSIVE
 
 
 @pytest.mark.slow
@@ -109,7 +136,3 @@ def test_runs_through_contact_and_flight_never_leave_the_bound():
         # Moved along the ray, as a run goes on for ever.
         x = after / norm(after)[:, None]
     assert np.median(bounced) >= 1
-
-
-def _floats(functions):
-    return [np.array(Q, dtype=float) for _, Q in functions]

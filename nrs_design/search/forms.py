@@ -1,0 +1,718 @@
+"""One semidefinite program for forms on any graph that is drawn (untrusted).
+
+Margin form: maximize t subject to ``0 <= Q <= I`` for every form and the inequality of every edge
+with at least t to spare. The edges are those of the evidence, in floating point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import exp, inf, isfinite
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import FormsOnGraph
+from nrs_design.proof.evidence.graph import AnyStep, Multiplier, Node, lifted
+from nrs_design.proof.lift import monomials
+from nrs_design.proof.mode import Time
+from nrs_design.proof.stays import EnclosedStep
+from nrs_design.proof.steps import COUPLING, ROUNDING, Step
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.family import NEARLY
+from nrs_design.search.lifted import make_vanish, products, vanishing_basis
+from nrs_design.search.lmi import time_unit
+from nrs_design.search.rounding import round_form, round_rate
+from nrs_design.search.sdp import (
+    begin,
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+    triangle,
+)
+from nrs_design.work import Allowance, Cost
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+# The name of a fact, and the node after the step if there are several that it is known of.
+Fact = tuple[str, int | None]
+
+# A multiplier of a crossing lies between 0 and this, where all numbers are of like size.
+LARGEST_MULTIPLIER = 64.0
+# What is rounded takes a little more than in the first order.
+LOST_TO_ERRORS = 1.25
+# Times at which a stay of any length in a range is looked at.
+SAMPLES = 17
+# What floating point hides where a form need not decrease, relative to its size.
+SLACK = 1e-9
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Of a form: ``x = 2^d T z``."""
+
+    exponents: Indices  # The d
+    T: Array  # It keeps apart the states that are zero at some place of the form
+
+    @property
+    def whole(self) -> Array:
+        """Return ``2^d T``."""
+        return np.asarray(np.ldexp(self.T, self.exponents[:, None]))
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A graph of which the forms are to be found."""
+
+    system: SwitchedSystem
+    graph: FormsOnGraph  # Of its forms only the places count, of its multipliers only the facts
+    forms: tuple[int, ...]  # For each node, which form it has: whole, or without the deflection
+    coordinates: tuple[Coordinates, ...]  # Of each form
+    # Errors whose multipliers are unknowns, by the beginnings of their names.
+    solved: tuple[str, ...] = ()
+
+    def like(self, node: int) -> list[int]:
+        """Return the nodes with the form of one at its place."""
+        nodes = zip(self.forms, (node.place for node in self.graph.nodes), strict=True)
+        same = self.forms[node], self.graph.nodes[node].place
+        return [k for k, other in enumerate(nodes) if other == same]
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether floating point holds coordinates and modes."""
+        return all(np.isfinite(one.whole).all() for one in self.coordinates) and all(
+            np.isfinite(mode.A.floats()).all() for mode in self.system.modes
+        )
+
+
+@dataclass(frozen=True)
+class Error:
+    """What a step adds to the state, ``|e| <= |q z|``; both in the coordinates of the forms."""
+
+    fact: Fact
+    column: Array
+    q: Array
+
+
+@dataclass(frozen=True)
+class Edge:
+    """The inequality of an edge, in the coordinates of its forms."""
+
+    before: int  # Which form, and which of its entries, that of the state before it is
+    kept: Indices
+    after: int
+    left: Indices
+    M: Array  # From the state before it and the errors that are solved for
+    # Facts with the forms that their multipliers have.
+    facts: tuple[tuple[Fact, Array], ...]
+    errors: tuple[Error, ...]  # Those that are not solved for
+    is_flow: bool
+    lasts: float  # Steps, or time in s of an enclosed stay
+    is_strict: bool
+
+    def weight(self, rate: float, degree: int, time: Time) -> float:
+        """Return what the form after a map counts, if that before it counts one."""
+        if time is Time.CONTINUOUS:
+            return exp(2 * rate * self.lasts)
+        return float(rate ** (-2 * degree * self.lasts))
+
+    @property
+    def size(self) -> int:
+        """Number of entries of z."""
+        return int(self.M.shape[1])
+
+    def changed(self, Q: Array) -> Array:
+        """Return ``M' Q M`` of a map, ``Q M + M' Q`` of a flow, for one form or several."""
+        if not self.is_flow:
+            return np.asarray(self.M.T @ Q @ self.M)
+        half = self.padded(Q @ self.M)
+        return np.asarray(half + np.swapaxes(half, -1, -2))
+
+    def padded(self, Q: Array) -> Array:
+        """Fill up with zeros for the errors."""
+        rows, columns = Q.shape[-2:]
+        if (rows, columns) == (self.size, self.size):
+            return Q
+        filled = np.zeros((*Q.shape[:-2], self.size, self.size))
+        filled[..., :rows, :columns] = Q
+        return filled
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Forms, multipliers and forms that vanish for each edge, in floating point."""
+
+    forms: list[Array]
+    multipliers: Array
+    vanishing: list[Array]
+
+
+class Program:
+    """The program of a drawing, at any rate."""
+
+    def __init__(self, drawing: Drawing) -> None:
+        self.drawing = drawing
+        self.time, self.degree = drawing.system.time, drawing.graph.degree
+        self.sizes = [len(one.T) for one in drawing.coordinates]
+        self.every, self.scales = _edges(drawing)
+        self.edges, self.stands_for = _distinct(self.every)
+        self.bounded = [
+            fact for fact in self.scales if not fact[0].startswith((ROUNDING, COUPLING))
+        ]
+        flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
+        self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
+
+    @cached_property
+    def _vanishing(self) -> list[Array]:
+        """Return a basis of the forms that vanish, for each edge."""
+        if self.degree == 1:
+            return [np.zeros((0, edge.size, edge.size)) for edge in self.edges]
+        found: dict[tuple[int, int], Array] = {}
+        for edge in self.edges:
+            key = edge.before, edge.size
+            if key not in found:
+                exponents = self.drawing.coordinates[edge.before].exponents[edge.kept]
+                variables = self._variables(edge.size)
+                found[key] = vanishing_basis(variables, self.degree, -exponents)
+        return [found[edge.before, edge.size] for edge in self.edges]
+
+    def _variables(self, size: int) -> int:
+        return next(
+            n
+            for n in range(1, self.drawing.system.order + 1)
+            if len(monomials(n, self.degree)) == size
+        )
+
+    def cost(self) -> tuple[Cost, str]:
+        """Predict what one solution takes; say for what."""
+        own = [n * (n + 1) // 2 for n in self.sizes]
+        shared, cones = sum(own) + len(self.scales) + 1, []
+        for edge, forms in zip(self.edges, self._vanishing, strict=True):
+            touched = own[edge.before] + len(forms)
+            touched += own[edge.after] * (edge.after != edge.before)
+            cones.append((edge.size, touched))
+        cones += [(n, width) for n, width in zip(self.sizes, own, strict=True) for _ in (0, 1)]
+        unknowns = shared + sum(map(len, self._vanishing))
+        return program_cost(unknowns, shared, cones), f"a program with {len(cones)} blocks"
+
+    @cached_property
+    def _built(self) -> _Built:
+        return _Built.of(self)
+
+    def solve(self, rate: float, allowance: Allowance) -> Solution | None:
+        """Maximize the margin at a rate; None if it is not positive.
+
+        Raises
+        ------
+        NotAffordableError
+            If work or memory do not suffice.
+        """
+        begun = begin(allowance, *self.cost())
+        factors = [
+            2 * self.degree * float(np.ldexp(rate, self.unit))
+            if edge.is_flow
+            else edge.weight(rate, self.degree, self.time)
+            for edge in self.edges
+        ]
+        x = maximize_margin(self._built.rows(factors), self._built.offset, self._built.cones, begun)
+        if x is None or x[-1] <= 0:
+            return None
+        parts = np.split(x[:-1], self._built.ends)
+        forms = [
+            np.tensordot(part, symmetric_basis(n), axes=1)
+            for part, n in zip(parts, self.sizes, strict=False)
+        ]
+        # Inequalities of maps have been divided by what is left of the form after a step.
+        keeps = [
+            1.0 if edge.is_flow else 1 / f for edge, f in zip(self.edges, factors, strict=True)
+        ]
+        vanishing = [
+            keep * np.tensordot(part, basis, axes=1)
+            for keep, part, basis in zip(keeps, parts[len(forms) :], self._vanishing, strict=False)
+        ]
+        share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
+        return Solution(forms, share * parts[-1], vanishing)
+
+    def _rest(self, edge: Edge, solution: Solution, N: Array) -> Array:
+        """Return the inequality of an edge without what counts for the rate."""
+        Q = solution.forms[edge.after][np.ix_(edge.left, edge.left)]
+        form = -np.ldexp(edge.changed(Q), self.unit if edge.is_flow else 0) + N
+        place = {fact: k for k, fact in enumerate(self.scales)}
+        for fact, own in edge.facts:
+            form = form + solution.multipliers[place[fact]] * own
+        n = len(edge.kept)
+        if n == edge.size:
+            return np.asarray(form)
+        coupled = form[:n, n:] @ np.linalg.inv(form[n:, n:]) @ form[n:, :n]
+        return np.asarray(form[:n, :n] - coupled)
+
+    def own_rate(self, solution: Solution) -> float:
+        """Return the rate that a solution shows where every edge is a flow or some steps."""
+        rates = []
+        for edge, N in zip(self.edges, solution.vanishing, strict=True):
+            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+            inverse = np.linalg.inv(np.linalg.cholesky(Q))
+            form = inverse @ self._rest(edge, solution, N) @ inverse.T
+            least = float(np.linalg.eigvalsh(form)[0])
+            if edge.is_flow:
+                rates.append(float(np.ldexp(least / (2 * self.degree), -self.unit)))
+            elif edge.lasts:
+                rates.append(max(-least, 0.0) ** (0.5 / (self.degree * edge.lasts)))
+        return min(rates) if self.time is Time.CONTINUOUS else max(rates)
+
+    def _seems_to_hold(self, solution: Solution, rate: float) -> bool:
+        """Tell in floating point whether forms are worth the time of the exact check."""
+        for edge, N in zip(self.edges, solution.vanishing, strict=True):
+            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+            if edge.is_flow:
+                keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
+            else:
+                keeps = 1 / edge.weight(rate, self.degree, self.time)
+            form = self._rest(edge, solution, N) + keeps * Q
+            least = 0.0 if edge.is_strict else -SLACK * np.abs(Q).max()
+            if not np.linalg.eigvalsh(form)[0] >= least:
+                return False
+        return True
+
+    def roundings(
+        self, solution: Solution, claim: Fraction, digits: Sequence[int], *, errors: bool = False
+    ) -> Iterator[FormsOnGraph]:
+        """Yield roundings of all forms to integers over one denominator.
+
+        Parameters
+        ----------
+        solution : Solution
+            For which the claim holds in floating point.
+        claim : Fraction
+            The rate.
+        digits : sequence of int
+            After the binary point.
+        errors : bool
+            Whether errors that were not solved for are covered, at a rate that leaves room.
+        """
+        drawing, coordinates = self.drawing, self.drawing.coordinates
+        inverses = [np.linalg.inv(one.T) for one in coordinates]
+        balanced = [V.T @ Q @ V for V, Q in zip(inverses, solution.forms, strict=True)]
+        exponent = int(np.frexp(max(np.abs(Q).max() for Q in balanced))[1])
+        top = max(int(one.exponents.max()) for one in coordinates)
+        scales = np.array([*self.scales.values()])
+        multipliers = np.ldexp(solution.multipliers * scales, -self.unit)
+        found = dict(zip(self.scales, multipliers, strict=True))
+        if errors:
+            taus, claim = self._allow_for(solution, claim)
+            if claim >= 1:
+                return
+            found |= taus
+        for bits in digits:
+            if bits != digits[-1] and not errors:
+                coarse = [_rounded(Q, bits - exponent) for Q in balanced]
+                own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
+                if not self._seems_to_hold(replace(solution, forms=own), float(claim)):
+                    continue
+            log2 = bits + 2 * top
+            whole = [
+                round_form(Q, top - one.exponents, bits - exponent)
+                for one, Q in zip(coordinates, balanced, strict=True)
+            ]
+            nodes = []
+            for node, k in zip(drawing.graph.nodes, drawing.forms, strict=True):
+                kept = _entries(drawing, k, _states(drawing, node))
+                nodes.append(
+                    Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept))
+                )
+            facts = tuple(
+                Multiplier(name, target, _numerator(float(value), log2 - exponent))
+                for (name, b), value in found.items()
+                for target in ([None] if b is None else drawing.like(b))
+            )
+            graph = replace(
+                drawing.graph,
+                nodes=tuple(nodes),
+                denominator_log2=max(log2, 0),
+                rate=claim,
+                multipliers=facts,
+            )
+            if self.degree > 1:
+                forms = self._round_vanishing(graph, solution, bits - exponent, top)
+                graph = replace(graph, vanishing=forms)
+            yield graph
+
+    def _round_vanishing(
+        self, graph: FormsOnGraph, solution: Solution, bits: int, top: int
+    ) -> tuple[tuple[tuple[int, ...], ...], ...]:
+        """Round forms so that they vanish exactly, in the units of the exact inequalities."""
+        found, timed = [], [k for k, edge in enumerate(self.every) if edge.is_strict]
+        for k, (_, step, _) in zip(timed, graph.edges_in_time(self.drawing.system), strict=True):
+            edge = self.every[k]
+            assert isinstance(step, Step)  # polynomials are enclosed by nobody
+            exponents = self.drawing.coordinates[edge.before].exponents[edge.kept]
+            N = round_form(solution.vanishing[self.stands_for[k]], top - exponents, bits)
+            factor, unit = _factor(step, self.degree, graph.rate), self.unit * edge.is_flow
+            scaled = [[_shift(factor * entry, -unit) for entry in row] for row in N]
+            groups = products(self._variables(edge.size), self.degree)
+            found.append(tuple(map(tuple, make_vanish(scaled, groups))))
+        return tuple(found)
+
+    def _allow_for(self, solution: Solution, claim: Fraction) -> tuple[dict[Fact, float], Fraction]:
+        """Return multipliers of errors, and what is left of a rate if a form loses what they take.
+
+        In the norm of the forms, an error of size ``s`` times that of the state takes ``2 s`` of
+        V; with the multiplier ``|C| / |q|`` half of it is taken by either term.
+        """
+        pushed, sizes = dict[Fact, float](), dict[Fact, float]()
+        loss: dict[int, set[Fact]] = {}
+        for edge in self.every:
+            L, inverse = (
+                np.linalg.cholesky(solution.forms[k][np.ix_(entries, entries)])
+                for k, entries in ((edge.after, edge.left), (edge.before, edge.kept))
+            )
+            inverse = np.linalg.inv(inverse)
+            for error in edge.errors:
+                fact = error.fact
+                pushed[fact] = max(pushed.get(fact, 0.0), float(np.linalg.norm(error.column @ L)))
+                size = float(np.linalg.norm(inverse @ error.q))
+                sizes[fact] = max(sizes.get(fact, 0.0), size)
+                loss.setdefault(fact[1] or 0, set()).add(fact)
+        worst = max(sum(2 * pushed[f] * sizes[f] for f in facts) for facts in loss.values())
+        taus = {f: pushed[f] / sizes[f] if pushed[f] * sizes[f] else 1.0 for f in pushed}
+        left = float(claim) ** 2 + LOST_TO_ERRORS * worst
+        return taus, round_rate(float(np.sqrt(left)), Time.DISCRETE)
+
+
+@dataclass(frozen=True)
+class _Built:
+    """The constraints for any rate: entries that stay, and those that a rate multiplies."""
+
+    places: tuple[Indices, Indices]
+    fixed: Array
+    varying: Array
+    edges: Indices  # To which edge an entry that varies belongs; the last is none
+    offset: Array
+    cones: list[int]
+    ends: Indices  # Where forms, vanishing forms and multipliers end, but the last
+    shape: tuple[int, int]
+
+    def rows(self, factors: list[float]) -> csc_matrix[np.float64]:
+        from scipy import sparse
+
+        values = self.fixed + self.varying * np.array([*factors, 0.0])[self.edges]
+        return sparse.csc_matrix((values, self.places), shape=self.shape)
+
+    @classmethod
+    def of(cls, program: Program) -> _Built:
+        own = [n * (n + 1) // 2 for n in program.sizes]
+        widths = [*own, *map(len, program._vanishing), len(program.scales)]
+        starts = np.concatenate([[0], np.cumsum(widths)])
+        facts = {fact: int(starts[-2]) + k for k, fact in enumerate(program.scales)}
+        margin, none = int(starts[-1]), len(program.edges)
+        parts: list[tuple[Indices, Indices, Array, Array, int]] = []
+        offsets, cones, row = list[Array](), list[int](), 0
+
+        def add(columns: Indices, fixed: Array, varying: Array | None = None, k: int = 0) -> None:
+            i, j = np.nonzero(fixed if varying is None else np.abs(fixed) + np.abs(varying))
+            grown = np.zeros(len(i)) if varying is None else -varying[i, j]
+            parts.append(
+                (row + j, columns[i], -fixed[i, j], grown, k if varying is not None else none)
+            )
+
+        def close(size: int, constant: float, *, strict: bool) -> int:
+            identity = pack(np.eye(size))
+            if strict:
+                add(np.array([margin]), -identity[None])
+            offsets.append(constant * identity)
+            cones.append(size)
+            return row + len(identity)
+
+        for k, n in enumerate(program.sizes):
+            columns, images = starts[k] + np.arange(own[k]), np.eye(own[k])
+            add(columns, images)
+            row = close(n, 0.0, strict=True)
+            add(columns, -images)
+            row = close(n, 1.0, strict=False)
+        for fact, column in facts.items():
+            add(np.array([column]), np.ones((1, 1)))
+            row = close(1, 0.0, strict=False)
+            if fact in program.bounded:
+                add(np.array([column]), -np.ones((1, 1)))
+                row = close(1, LARGEST_MULTIPLIER, strict=False)
+        for k, edge in enumerate(program.edges):
+            before, after = (
+                starts[form] + _columns(entries)
+                for form, entries in ((edge.before, edge.kept), (edge.after, edge.left))
+            )
+            given = pack(edge.padded(symmetric_basis(len(edge.kept))))
+            changed = -pack(edge.changed(symmetric_basis(len(edge.left))))
+            if edge.is_flow:
+                add(before, np.ldexp(changed, program.unit), -given, k)
+            else:
+                add(before, given)
+                add(after, np.zeros_like(changed), changed, k)
+            columns = starts[len(own) + k] + np.arange(len(program._vanishing[k]))
+            if len(columns):
+                add(columns, pack(program._vanishing[k]))
+            for fact, form in edge.facts:
+                add(np.array([facts[fact]]), pack(form)[None])
+            row = close(edge.size, 0.0, strict=edge.is_strict)
+        columns, places, fixed, varying = (
+            np.concatenate([part[i] for part in parts]) for i in (1, 0, 2, 3)
+        )
+        edges = np.concatenate([np.full(len(part[0]), part[4]) for part in parts])
+        ends = starts[1:-1]
+        shape = row, margin + 1
+        return cls(
+            (places, columns), fixed, varying, edges, np.concatenate(offsets), cones, ends, shape
+        )
+
+
+def _columns(entries: Indices) -> Indices:
+    """Return where the coordinates of a block are among those of the whole form."""
+    i, j = triangle(len(entries))
+    a, b = entries[i], entries[j]
+    return np.asarray(b * (b + 1) // 2 + a)
+
+
+def _states(drawing: Drawing, node: Node) -> int:
+    """Return how many states there are at the place of a node."""
+    if drawing.graph.stays is not None:
+        return next(m.A.shape[0] for m in drawing.system.modes if m.name == node.place)
+    return drawing.system.order - node.place.startswith("free")
+
+
+def _entries(drawing: Drawing, form: int, states: int) -> list[int]:
+    """Return the entries of a form that are left where all but the first states are zero."""
+    if drawing.graph.degree == 1:
+        return list(range(states))
+    n = drawing.system.order
+    if len(drawing.coordinates[form].T) == len(monomials(states, drawing.graph.degree)):
+        return list(range(len(drawing.coordinates[form].T)))
+    terms = enumerate(monomials(n, drawing.graph.degree))
+    return [k for k, term in terms if not any(term[states:])]
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """A step between two nodes, with the coordinates of their forms."""
+
+    step: Step
+    floats: _Floats
+    before: int
+    kept: Indices
+    after: int
+    left: Indices
+    S: Array  # Of the state before
+    M: Array  # In coordinates, but for errors
+    names: Mapping[str, Fact]
+
+    @property
+    def states(self) -> int:
+        return len(self.kept)
+
+    def sizes(self) -> Iterator[tuple[str, float, float]]:
+        """Yield what the multiplier of each fact has to balance."""
+        for name, i, q in self.floats.errors:
+            size = float(np.linalg.norm(q[: self.states] @ self.S))
+            yield name, float(np.linalg.norm(self.M[:, i])), size
+        for name, _ in self.floats.crossings:
+            yield name, 1.0, float(self.S[-1, -1] ** 2)
+
+    def edge(self, scales: Mapping[Fact, float], *, lasts: float) -> Edge:
+        """Return the edge, with the multipliers of the facts that have a scale."""
+        n, found = self.states, self.floats.errors
+        solved = [(self.names[name], i, q) for name, i, q in found if self.names[name] in scales]
+        columns = [*range(n), *(i for _, i, _ in solved)]
+        weights = np.array([1.0] * n + [scales[fact] ** -0.5 for fact, *_ in solved])
+
+        def row(q: Array) -> Array:
+            own = np.concatenate([q[:n] @ self.S, q[n:]])[columns]
+            return np.asarray(own * weights)
+
+        facts = []
+        for k, (fact, _, q) in enumerate(solved, n):
+            form = -scales[fact] * np.outer(row(q), row(q))
+            form[k, k] += 1.0
+            facts.append((fact, form))
+        for name, c in self.floats.crossings:
+            fact, form = self.names[name], np.zeros((len(columns), len(columns)))
+            form[n - 1] = scales[fact] * self.S[-1, -1] * row(c)
+            facts.append((fact, form + form.T))
+        errors = tuple(
+            Error(self.names[name], self.M[:, i], q[:n] @ self.S)
+            for name, i, q in found
+            if self.names[name] not in scales
+        )
+        return Edge(
+            self.before,
+            self.kept,
+            self.after,
+            self.left,
+            self.M[:, columns] * weights,
+            tuple(facts),
+            errors,
+            self.step.is_flow,
+            lasts,
+            self.step.time > 0,
+        )
+
+
+def _edges(drawing: Drawing) -> tuple[list[Edge], dict[Fact, float]]:
+    """Return all edges, and of what size the multipliers of the facts are that are solved for."""
+    system, graph = drawing.system, drawing.graph
+    wholes = [one.whole for one in drawing.coordinates]
+    inverses = [np.linalg.inv(whole) for whole in wholes]
+    listed = [*graph.edges_in_time(system), *_at_once(drawing)]
+    names = _named(drawing, listed)
+    cached: dict[int, _Floats] = {}
+    edges, moved = list[Edge](), list[_Moved]()
+    for a, step, b in listed:
+        before, after = drawing.forms[a], drawing.forms[b]
+        if isinstance(step, EnclosedStep):
+            whole = [np.arange(len(wholes[k])) for k in (before, after)]
+            for lasts, flow in _stays(step):
+                M = inverses[after] @ flow @ wholes[before]
+                edges.append(Edge(before, whole[0], after, whole[1], M, (), (), False, lasts, True))
+            continue
+        if id(step) not in cached:
+            lift = step if graph.degree == 1 else lifted(step, graph.degree, Fraction(1))
+            cached[id(step)] = _Floats.of(lift)
+        floats = cached[id(step)]
+        kept = np.array(_entries(drawing, before, step.states), dtype=np.int64)
+        left = np.array(_entries(drawing, after, len(step.rows)), dtype=np.int64)
+        S, n = wholes[before][np.ix_(kept, kept)], len(kept)
+        own = inverses[after][np.ix_(left, left)]
+        M = own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]])
+        moved.append(_Moved(step, floats, before, kept, after, left, S, M, names[b]))
+    sizes: dict[Fact, tuple[float, float]] = {}
+    for item in moved:
+        for name, pushed, size in item.sizes():
+            if not name.startswith((ROUNDING, COUPLING)) or name.startswith(drawing.solved):
+                fact = item.names[name]
+                known = sizes.get(fact, (0.0, 0.0))
+                sizes[fact] = max(pushed, known[0]), max(size, known[1])
+    scales = {
+        fact: pushed / size if pushed * size > 0 and isfinite(pushed / size) else 1.0
+        for fact, (pushed, size) in sizes.items()
+    }
+    for item in moved:
+        lasts = item.step.time if system.time is Time.DISCRETE else 0.0
+        edges.append(item.edge(scales, lasts=lasts))
+    return edges, scales
+
+
+def _named(drawing: Drawing, listed: Sequence[tuple[int, AnyStep, int]]) -> list[dict[str, Fact]]:
+    """Return for each node what the facts of steps to it are called."""
+    first = [drawing.like(k)[0] for k in range(len(drawing.graph.nodes))]
+    targets: dict[str, set[int]] = {}
+    for _, step, b in listed:
+        for name in step.facts:
+            targets.setdefault(name, set()).add(first[b])
+    return [
+        {
+            name: (name, None if name.startswith(COUPLING) or len(known) == 1 else b)
+            for name, known in targets.items()
+        }
+        for b in first
+    ]
+
+
+def _at_once(drawing: Drawing) -> Iterator[tuple[int, Step, int]]:
+    """Yield the switches that take no time, which are not among the edges in time."""
+    graph, system = drawing.graph, drawing.system
+    if graph.stays is None:
+        return  # At the surface a form agrees with itself without the deflection.
+    from nrs_design.proof.stays import steps_of_stays
+
+    number = {node.place: k for k, node in enumerate(graph.nodes)}
+    for step in steps_of_stays(system, graph.stays, lambda _: 1):
+        if isinstance(step, Step) and not step.time:
+            yield number[step.source], step, number[step.target]
+
+
+def _stays(step: EnclosedStep) -> Iterator[tuple[float, Array]]:
+    """Yield what a stay makes of the state, for some of its lengths."""
+    from scipy.linalg import expm
+
+    A = np.array(step.edge.source.A.floats())
+    G = np.eye(len(A)) if step.edge.map is None else np.array(step.edge.map.floats())
+    first, last = float(step.begin), float(step.end)
+    for lasts in np.linspace(first, last, SAMPLES if last > first else 1):
+        yield float(lasts), G @ np.asarray(expm(A * lasts))
+
+
+@dataclass(frozen=True)
+class _Floats:
+    """A step in the units of the system."""
+
+    M: Array
+    errors: tuple[tuple[str, int, Array], ...]
+    crossings: tuple[tuple[str, Array], ...]
+
+    @classmethod
+    def of(cls, step: Step) -> _Floats:
+        units = step.units
+
+        def row(entries: Sequence[int], below: int) -> list[float]:
+            given = [_ratio(e, unit * below) for e, unit in zip(entries, units, strict=False)]
+            return given + [0.0] * (len(units) - len(given))
+
+        return cls(
+            np.array([row(entries, step.over) for entries in step.rows]),
+            tuple((name, i, np.array(row(q, below))) for name, i, q, below in step.errors),
+            tuple((name, np.array(row(c, below))) for name, c, below in step.crossings),
+        )
+
+
+def _ratio(above: int, below: int) -> float:
+    try:
+        return above / below
+    except OverflowError:
+        return inf
+
+
+def _distinct(edges: list[Edge]) -> tuple[list[Edge], list[int]]:
+    """Leave out edges that differ by the last digits of a number; say which stand for them."""
+    kept: list[Edge] = []
+    groups: dict[object, list[tuple[int, Array]]] = {}
+    found = []
+    for edge in edges:
+        facts = tuple(fact for fact, _ in edge.facts)
+        sizes = len(edge.kept), len(edge.left)
+        key = edge.before, edge.after, sizes, facts, edge.is_flow, edge.lasts, edge.is_strict
+        numbers = np.concatenate([edge.M.ravel(), *(form.ravel() for _, form in edge.facts)])
+        group = groups.setdefault(key, [])
+        near = NEARLY * np.abs(numbers).max(initial=0.0)
+        k = next((k for k, other in group if np.abs(other - numbers).max() <= near), len(kept))
+        if k == len(kept):
+            kept.append(edge)
+            group.append((k, numbers))
+        found.append(k)
+    return kept, found
+
+
+def _factor(step: Step, degree: int, rate: Fraction) -> int:
+    """Return what the exact inequality of a lifted step is multiplied with."""
+    moved = lifted(step, degree, rate)
+    if not step.is_flow:
+        return int(moved.units[0]) ** 2
+    return (2 * degree * rate * moved.over).denominator * moved.over
+
+
+def _numerator(value: float, log2: int) -> int:
+    """Round a multiplier to an integer over two to a power; it does not become negative."""
+    return round(max(Fraction(value), Fraction(0)) * Fraction(2) ** log2)
+
+
+def _shift(value: int, exponent: int) -> int:
+    return value << exponent if exponent >= 0 else value >> -exponent
+
+
+def _rounded(Q: Array, bits: int) -> Array:
+    """Round to so many bits after the binary point, in floating point."""
+    return np.asarray(np.ldexp(np.rint(np.ldexp((Q + Q.T) / 2, bits)), -bits))

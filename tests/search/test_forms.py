@@ -1,0 +1,58 @@
+"""One program for forms on any graph."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from nrs_design.search import forms
+from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.forms import Program
+from nrs_design.search.graphs import (
+    draw_conewise_modes,
+    draw_turns,
+    search_conewise_modes,
+    search_periodic_quadratic,
+)
+from nrs_design.work import Allowance, NotAffordableError
+from tests.proof.systems import bouncing_in_steps, bouncing_in_turns
+from tests.search.support import found
+
+DRAWN = [
+    (search_conewise_modes, bouncing_in_steps(), draw_conewise_modes),
+    (
+        search_periodic_quadratic,
+        bouncing_in_turns(1, rounded=True),
+        lambda f: draw_turns(f, f.system.clock),
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    "spoil", [lambda Q: -Q, lambda Q: Q * np.nan, lambda Q: np.eye(len(Q)), lambda Q: 1e300 * Q]
+)
+@pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
+def test_solutions_that_lie_give_no_false_evidence(monkeypatch, search, system, draw, spoil):
+    with floats_in_silence():
+        solution = Program(draw(Family.of(system))).solve(1.0, Allowance())
+        lie = replace(solution, forms=[spoil(Q) for Q in solution.forms])
+    monkeypatch.setattr(Program, "solve", lambda *_: lie)
+    try:
+        evidence = found(search, system, optimize_rate=False)
+    except (np.linalg.LinAlgError, ValueError, OverflowError):
+        return
+    assert evidence is None or evidence.find_fault(system) is None
+
+
+@pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
+def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, draw):
+    program = Program(draw(Family.of(system)))
+    monkeypatch.setattr(forms, "symmetric_basis", lambda n: pytest.fail("built"))
+    with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
+        program.solve(1.0, Allowance(1e-4))
+
+
+@pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
+def test_a_solution_shows_the_rate_that_it_was_asked_for(search, system, draw):
+    program = Program(draw(Family.of(system)))
+    assert program.own_rate(program.solve(0.99, Allowance())) < 0.99

@@ -92,10 +92,10 @@ def _steps(system: SwitchedSystem, evidence: GrowingSequence) -> Iterator[Expone
 
 
 def _stays(system: SwitchedSystem, evidence: FormsOnGraph) -> Iterator[Exponent]:
-    from nrs_design.proof.stays import shifted
-
     if evidence.stays is None:
         return
+    from nrs_design.proof.stays import shifted
+
     modes = {mode.name: mode.A for mode in system.modes}
     for name, stay in system.stays().items():
         for time in (stay.shortest, stay.longest if name in evidence.stays.leaving else None):

@@ -43,7 +43,7 @@ class SampledMode:
         name : str
             Of the mode.
         rows : sequence of LinearForm
-            As `Frame.rows_and_slip` gives them.
+            As `Frame.rows` gives them.
         n : int
             Number of states.
         begins : bool

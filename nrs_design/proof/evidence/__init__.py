@@ -10,34 +10,25 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
+from nrs_design.proof.evidence.abstract import AbstractEvidence as AbstractEvidence
+from nrs_design.proof.evidence.abstract import Shows as Shows
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
-    from nrs_design.proof.evidence.block_triangular import BlockTriangular
-    from nrs_design.proof.evidence.constant_force import ConstantForce
-    from nrs_design.proof.evidence.graph import FormsOnGraph
-    from nrs_design.proof.evidence.growing_sequence import GrowingSequence
-    from nrs_design.proof.evidence.invariant_ellipsoid import InvariantEllipsoid
-    from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic
-    from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
-    from nrs_design.proof.evidence.saturated_ellipsoid import SaturatedEllipsoid
-
-__all__ = [
-    "KINDS",
-    "AbstractEvidence",
-    "BlockTriangular",
-    "ConstantForce",
-    "FormsOnGraph",
-    "GrowingSequence",
-    "InvariantEllipsoid",
-    "NoCommonQuadratic",
-    "ParameterQuadratic",
-    "SaturatedEllipsoid",
-    "Shows",
-    "class_of",
-    "read_evidence",
-]
+    from nrs_design.proof.evidence.block_triangular import BlockTriangular as BlockTriangular
+    from nrs_design.proof.evidence.constant_force import ConstantForce as ConstantForce
+    from nrs_design.proof.evidence.graph import FormsOnGraph as FormsOnGraph
+    from nrs_design.proof.evidence.growing_sequence import GrowingSequence as GrowingSequence
+    from nrs_design.proof.evidence.invariant_ellipsoid import (
+        InvariantEllipsoid as InvariantEllipsoid,
+    )
+    from nrs_design.proof.evidence.no_common_quadratic import NoCommonQuadratic as NoCommonQuadratic
+    from nrs_design.proof.evidence.parameter_quadratic import (
+        ParameterQuadratic as ParameterQuadratic,
+    )
+    from nrs_design.proof.evidence.saturated_ellipsoid import (
+        SaturatedEllipsoid as SaturatedEllipsoid,
+    )
 
 # The name in a certificate file, and the class; its module has the same name as the kind.
 KINDS: Mapping[str, str] = {

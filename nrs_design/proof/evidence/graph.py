@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from math import comb, lcm
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 from nrs_design.proof.evidence.abstract import AbstractFunction, is_square
 from nrs_design.proof.evidence.fields import (
@@ -32,9 +32,7 @@ from nrs_design.proof.exact import (
     is_too_large,
     multiply,
 )
-from nrs_design.proof.lift import derivative_lift, monomials, power_lift, vanishes
 from nrs_design.proof.mode import Time
-from nrs_design.proof.stays import EnclosedStep, Stays, find_odd_stays, steps_of_stays
 from nrs_design.proof.steps import (
     CONTACT,
     COUPLING,
@@ -48,12 +46,15 @@ from nrs_design.proof.steps import (
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 
+if TYPE_CHECKING:
+    from nrs_design.proof.stays import EnclosedStep, Stays
+
 MAX_DEGREE = 64
 MAX_MONOMIALS = 120
 MAX_SETS = 1024
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
-AnyStep = Step | EnclosedStep
+AnyStep: TypeAlias = "Step | EnclosedStep"
 
 
 class Node(NamedTuple):
@@ -165,7 +166,7 @@ class FormsOnGraph(AbstractFunction):
             self.find_rate_misfit(system.time)
             or self._find_odd_places(system)
             or self._find_odd_size(system)
-            or (self.stays and find_odd_stays(system, self.stays, self._rate_bits))
+            or self._find_odd_stays(system)
             or self._find_odd_shape(system)
             or self._find_odd_multiplier(system)
             or self._find_gap(system)
@@ -173,9 +174,13 @@ class FormsOnGraph(AbstractFunction):
             or self._find_rise(system)
         )
 
-    @property
-    def _rate_bits(self) -> int:
-        return (self.rate**self.degree).denominator.bit_length()
+    def _find_odd_stays(self, system: SwitchedSystem) -> str | None:
+        if self.stays is None:
+            return None
+        from nrs_design.proof.stays import find_odd_stays
+
+        bits = (self.rate**self.degree).denominator.bit_length()
+        return find_odd_stays(system, self.stays, bits)
 
     def _places(self, system: SwitchedSystem) -> dict[str, int]:
         """Return every place with the number of its states."""
@@ -328,6 +333,8 @@ class FormsOnGraph(AbstractFunction):
         strict = [a for a, _, _ in self.edges_in_time(system)]
         if len(self.vanishing) != len(strict):
             return "there is not one vanishing form for each decrease"
+        from nrs_design.proof.lift import vanishes
+
         places = self._places(system)
         for a, N in zip(strict, self.vanishing, strict=True):
             place, form = self.nodes[a]
@@ -384,7 +391,7 @@ class FormsOnGraph(AbstractFunction):
         multiply : callable
             How matrices are multiplied; only a search has reason to ask for another way.
         """
-        if isinstance(step, EnclosedStep):
+        if not isinstance(step, Step):
             return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
         before, after = self._restricted(a, step.states, system), self._after(step, b, system)
         facts, d = self._multipliers_to(b), self.degree
@@ -401,7 +408,12 @@ class FormsOnGraph(AbstractFunction):
         n = self._places(system)[place]
         if n == states:
             return form
-        kept = [k for k, term in enumerate(monomials(n, self.degree)) if not any(term[states:])]
+        kept = list(range(states))
+        if self.degree > 1:
+            from nrs_design.proof.lift import monomials
+
+            terms = enumerate(monomials(n, self.degree))
+            kept = [k for k, term in terms if not any(term[states:])]
         return tuple(tuple(form[i][j] for j in kept) for i in kept)
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
@@ -454,9 +466,9 @@ class FormsOnGraph(AbstractFunction):
             fields["degree"] = 2 * self.degree
             fields["vanishing"] = [[list(row) for row in N] for N in self.vanishing]
         if self.multipliers:
-            fields["multipliers"] = [list(item) for item in self.multipliers]
+            fields["multipliers"] = [_named(item) for item in self.multipliers]
         if self.edges != ALL:
-            fields["edges"] = [list(edge) for edge in self.edges]
+            fields["edges"] = [_named(edge) for edge in self.edges]
         if self.stays is not None:
             fields["stays"] = {"leaving": list(self.stays.leaving), "pieces": self.stays.pieces}
         return fields
@@ -475,16 +487,24 @@ class FormsOnGraph(AbstractFunction):
         if odd:
             raise ValueError("the degree is odd")
         multipliers = tuple(
-            Multiplier(read_text(fact), _optional(target), read_integer(value))
-            for fact, target, value in fields.get("multipliers", [])
+            Multiplier(
+                read_text(item["fact"]), _optional(item.get("target")), read_integer(item["value"])
+            )
+            for item in fields.get("multipliers", [])
         )
         edges = tuple(
-            Arc(_optional(a), None if mode is None else read_text(mode), _optional(b))
-            for a, mode, b in fields.get("edges", ALL)
+            Arc(
+                _optional(item.get("source")),
+                read_text(item["mode"]) if "mode" in item else None,
+                _optional(item.get("target")),
+            )
+            for item in fields.get("edges", [{}])
         )
         vanishing = tuple(read_integers(N) for N in fields.get("vanishing", []))
         stays = None
         if "stays" in fields:
+            from nrs_design.proof.stays import Stays
+
             leaving = tuple(read_text(name) for name in fields["stays"]["leaving"])
             stays = Stays(leaving, read_integer(fields["stays"]["pieces"]))
         return cls(
@@ -497,6 +517,11 @@ class FormsOnGraph(AbstractFunction):
             edges,
             stays,
         )
+
+
+def _named(item: Multiplier | Arc) -> dict[str, Any]:
+    """Return what is said of a multiplier or an edge; nothing stands for any."""
+    return {key: value for key, value in item._asdict().items() if value is not None}
 
 
 def _optional(value: object) -> int | None:
@@ -563,6 +588,7 @@ def steps_by_mode(
     degree : int
         Of the monomials.
     """
+    from nrs_design.proof.stays import steps_of_stays
 
     def grain(steps: int) -> int:
         return grain_of(rate ** (2 * steps)) if degree == 1 else 1
@@ -582,6 +608,8 @@ def lifted(step: Step, degree: int, rate: Fraction) -> Step:
     rate : Fraction
         That maps are to keep; it decides in which units they are counted.
     """
+    from nrs_design.proof.lift import derivative_lift, power_lift
+
     if step.is_flow:
         rows, unit, over = derivative_lift(step.rows, degree), 1, step.over
     else:

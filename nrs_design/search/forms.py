@@ -587,7 +587,7 @@ def _edges(drawing: Drawing) -> tuple[list[Edge], dict[Fact, float]]:
         left = np.array(_entries(drawing, after, len(step.rows)), dtype=np.int64)
         S, n = wholes[before][np.ix_(kept, kept)], len(kept)
         own = inverses[after][np.ix_(left, left)]
-        M = own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]])
+        M = np.asarray(own @ np.hstack([floats.M[:, :n] @ S, floats.M[:, n:]]), dtype=float)
         moved.append(_Moved(step, floats, before, kept, after, left, S, M, names[b]))
     sizes: dict[Fact, tuple[float, float]] = {}
     for item in moved:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import product
 from math import exp, inf, isfinite
 from typing import TYPE_CHECKING
 
@@ -56,7 +57,7 @@ SLACK = 1e-9
 
 
 @dataclass(frozen=True)
-class Coordinates:
+class FormCoordinates:
     """Of a form: ``x = 2^d T z``."""
 
     exponents: Indices  # The d
@@ -75,7 +76,7 @@ class Drawing:
     system: SwitchedSystem
     graph: FormsOnGraph  # Of its forms only the places count, of its multipliers only the facts
     forms: tuple[int, ...]  # For each node, which form it has: whole, or without the deflection
-    coordinates: tuple[Coordinates, ...]  # Of each form
+    coordinates: tuple[FormCoordinates, ...]  # Of each form
     # Errors whose multipliers are unknowns, by the beginnings of their names.
     solved: tuple[str, ...] = ()
 
@@ -103,7 +104,7 @@ class Error:
 
 
 @dataclass(frozen=True)
-class Edge:
+class Inequality:
     """The inequality of an edge, in the coordinates of its forms."""
 
     before: int  # Which form, and which of its entries, that of the state before it is
@@ -119,7 +120,17 @@ class Edge:
     is_strict: bool
 
     def weight(self, rate: float, degree: int, time: Time) -> float:
-        """Return what the form after a map counts, if that before it counts one."""
+        """Return what the form after a map counts, if that before it counts one.
+
+        Parameters
+        ----------
+        rate : float
+            The alpha in 1/s, or rho per step.
+        degree : int
+            Of the monomials.
+        time : Time
+            Continuous or discrete.
+        """
         if time is Time.CONTINUOUS:
             return exp(2 * rate * self.lasts)
         return float(rate ** (-2 * degree * self.lasts))
@@ -155,7 +166,7 @@ class Solution:
     vanishing: list[Array]
 
 
-class Program:
+class FormsProgram:
     """The program of a drawing, at any rate."""
 
     def __init__(self, drawing: Drawing) -> None:
@@ -241,7 +252,7 @@ class Program:
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
         return Solution(forms, share * parts[-1], vanishing)
 
-    def _rest(self, edge: Edge, solution: Solution, N: Array) -> Array:
+    def _rest(self, edge: Inequality, solution: Solution, N: Array) -> Array:
         """Return the inequality of an edge without what counts for the rate."""
         Q = solution.forms[edge.after][np.ix_(edge.left, edge.left)]
         form = -np.ldexp(edge.changed(Q), self.unit if edge.is_flow else 0) + N
@@ -283,7 +294,13 @@ class Program:
         return True
 
     def roundings(
-        self, solution: Solution, claim: Fraction, digits: Sequence[int], *, errors: bool = False
+        self,
+        solution: Solution,
+        claim: Fraction,
+        digits: Sequence[int],
+        pieces: Sequence[int] = (1,),
+        *,
+        errors: bool = False,
     ) -> Iterator[FormsOnGraph]:
         """Yield roundings of all forms to integers over one denominator.
 
@@ -295,6 +312,8 @@ class Program:
             The rate.
         digits : sequence of int
             After the binary point.
+        pieces : sequence of int
+            How finely stays of any length are enclosed.
         errors : bool
             Whether errors that were not solved for are covered, at a rate that leaves room.
         """
@@ -311,7 +330,7 @@ class Program:
             if claim >= 1:
                 return
             found |= taus
-        for bits in digits:
+        for count, bits in product(pieces, digits):
             if bits != digits[-1] and not errors:
                 coarse = [_rounded(Q, bits - exponent) for Q in balanced]
                 own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
@@ -339,6 +358,7 @@ class Program:
                 denominator_log2=max(log2, 0),
                 rate=claim,
                 multipliers=facts,
+                stays=drawing.graph.stays and replace(drawing.graph.stays, pieces=count),
             )
             if self.degree > 1:
                 forms = self._round_vanishing(graph, solution, bits - exponent, top)
@@ -407,7 +427,7 @@ class _Built:
         return sparse.csc_matrix((values, self.places), shape=self.shape)
 
     @classmethod
-    def of(cls, program: Program) -> _Built:
+    def of(cls, program: FormsProgram) -> _Built:
         own = [n * (n + 1) // 2 for n in program.sizes]
         widths = [*own, *map(len, program._vanishing), len(program.scales)]
         starts = np.concatenate([[0], np.cumsum(widths)])
@@ -523,7 +543,7 @@ class _Moved:
         for name, _ in self.floats.crossings:
             yield name, 1.0, float(self.S[-1, -1] ** 2)
 
-    def edge(self, scales: Mapping[Fact, float], *, lasts: float) -> Edge:
+    def edge(self, scales: Mapping[Fact, float], *, lasts: float) -> Inequality:
         """Return the edge, with the multipliers of the facts that have a scale."""
         n, found = self.states, self.floats.errors
         solved = [(self.names[name], i, q) for name, i, q in found if self.names[name] in scales]
@@ -548,7 +568,7 @@ class _Moved:
             for name, i, q in found
             if self.names[name] not in scales
         )
-        return Edge(
+        return Inequality(
             self.before,
             self.kept,
             self.after,
@@ -562,7 +582,7 @@ class _Moved:
         )
 
 
-def _edges(drawing: Drawing) -> tuple[list[Edge], dict[Fact, float]]:
+def _edges(drawing: Drawing) -> tuple[list[Inequality], dict[Fact, float]]:
     """Return all edges, and of what size the multipliers of the facts are that are solved for."""
     system, graph = drawing.system, drawing.graph
     wholes = [one.whole for one in drawing.coordinates]
@@ -570,14 +590,16 @@ def _edges(drawing: Drawing) -> tuple[list[Edge], dict[Fact, float]]:
     listed = [*graph.edges_in_time(system), *_at_once(drawing)]
     names = _named(drawing, listed)
     cached: dict[int, _Floats] = {}
-    edges, moved = list[Edge](), list[_Moved]()
+    edges, moved = list[Inequality](), list[_Moved]()
     for a, step, b in listed:
         before, after = drawing.forms[a], drawing.forms[b]
         if isinstance(step, EnclosedStep):
             whole = [np.arange(len(wholes[k])) for k in (before, after)]
             for lasts, flow in _stays(step):
                 M = inverses[after] @ flow @ wholes[before]
-                edges.append(Edge(before, whole[0], after, whole[1], M, (), (), False, lasts, True))
+                edges.append(
+                    Inequality(before, whole[0], after, whole[1], M, (), (), False, lasts, True)
+                )
             continue
         if id(step) not in cached:
             lift = step if graph.degree == 1 else lifted(step, graph.degree, Fraction(1))
@@ -676,9 +698,9 @@ def _ratio(above: int, below: int) -> float:
         return inf
 
 
-def _distinct(edges: list[Edge]) -> tuple[list[Edge], list[int]]:
+def _distinct(edges: list[Inequality]) -> tuple[list[Inequality], list[int]]:
     """Leave out edges that differ by the last digits of a number; say which stand for them."""
-    kept: list[Edge] = []
+    kept: list[Inequality] = []
     groups: dict[object, list[tuple[int, Array]]] = {}
     found = []
     for edge in edges:

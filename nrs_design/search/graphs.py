@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,21 +14,27 @@ from nrs_design.proof.clock import on_turn
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
+from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.steps import CONTACT, FREE, ROUNDING
-from nrs_design.proof.switching import Clock
+from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.stays import Stays
+from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING
+from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import own_norm, scale_states
+from nrs_design.search.balance import balance, own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import WITH_ERRORS
-from nrs_design.search.decay import RESOLUTION, SMALLEST, fastest_first, limit_rate
+from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import Coordinates, Drawing, Program
+from nrs_design.search.forms import SAMPLES, FormCoordinates, Drawing, FormsProgram
+from nrs_design.search.lifted import monomial_weights
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
+from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
+Exponents = NDArray[np.int64]
 
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
@@ -37,6 +44,12 @@ ANY_RATE = Fraction(1)
 KEPT = 0.99
 # Where more conditions than this are to be checked, what the arithmetic rounds is left out.
 MOST_ROUNDED = 250
+# Numbers of steps that are each shown for a mode that is stable, too.
+FEW_STAYS = 64
+# How finely the stays of a mode that must be left are enclosed.
+PIECES = (32, 256, 1024)
+# Work of checking that a form is positive in exact arithmetic, per entry of its matrix.
+PER_CHECK = 6e-5
 
 
 @dataclass(frozen=True)
@@ -49,56 +62,72 @@ class Rates:
     nearest: float = BACK_OFFS[0]
     few: bool = False
     bits: Sequence[int] = field(default_factory=digits)
+    pieces: Sequence[int] = (1,)  # How finely stays of any length are enclosed
+    always: bool = False  # Look for the largest rate, whatever was asked for
+    words: str = "found with the largest decay rate"
 
 
 def propose(
-    program: Program, family: Family, limit: float, rates: Rates, errors: Sequence[bool] = (False,)
+    programs: Sequence[FormsProgram],
+    family: Family,
+    limit: float,
+    rates: Rates,
+    *,
+    errors: bool = False,
 ) -> Candidates[FormsOnGraph]:
     """Solve for any rate; then, if asked to, for the largest, which is proposed first.
 
     Parameters
     ----------
-    program : Program
-        Of a graph.
+    programs : sequence of FormsProgram
+        For the same graph; the last one is asked for rates, each of them for forms.
     family : Family
         Of its system.
     limit : float
         The rate that no form can beat.
     rates : Rates
         How the largest rate is looked for.
-    errors : sequence of bool
-        Whether to cover what the arithmetic rounds: all ways in order.
+    errors : bool
+        Whether all but the last leave room for errors that they do not solve for.
 
     Raises
     ------
     NotAffordableError
         If work or memory do not suffice.
     """
-    time, allowance = family.system.time, family.allowance
-    first = program.solve(rate_at(0.0, limit, time), allowance)
+    time, allowance, asked = family.system.time, family.allowance, programs[-1]
+    first, best = asked.solve(rate_at(0.0, limit, time), allowance), 0.0
     if first is None:
         return NO_MARGIN
-    for covered in errors:
+    part = allowance.part(rates.share)
+    if family.optimize_rate or rates.always:
+        half = part.part(0.5)
+        best = bisect_position(
+            lambda s: asked.solve(rate_at(s, limit, time), half) is not None,
+            rates.resolution,
+            rates.smallest,
+        )
+    for k, program in enumerate(programs, 1):
+        covered = errors and k < len(programs)
         bits = WITH_ERRORS if covered else rates.bits
-        if family.optimize_rate:
-            try:
-                for solution, claim in fastest_first(
-                    program.solve,
-                    limit,
-                    time,
-                    allowance.part(rates.share),
-                    resolution=rates.resolution,
-                    smallest=rates.smallest,
-                    nearest=rates.nearest,
-                    few=rates.few,
+        try:
+            for claim in claims(best, limit, time, rates.nearest, few=rates.few):
+                if not best or (solution := program.solve(float(claim), part)) is None:
+                    continue
+                for evidence in program.roundings(
+                    solution, claim, bits, rates.pieces, errors=covered
                 ):
-                    for evidence in program.roundings(solution, claim, bits, errors=covered):
-                        yield Candidate(evidence, "found with the largest decay rate")
-            except NotAffordableError:
-                pass
-        for claim in claims(1.0, program.own_rate(first), time):
-            for evidence in program.roundings(first, claim, bits, errors=covered):
-                yield Candidate(evidence)
+                    yield Candidate(evidence, rates.words)
+        except NotAffordableError:
+            if rates.always:
+                raise
+        if rates.always:
+            continue
+        for claim in claims(1.0, asked.own_rate(first), time):
+            slow = first if program.drawing == asked.drawing else program.solve(float(claim), part)
+            if slow is not None:
+                for evidence in program.roundings(slow, claim, bits, errors=covered):
+                    yield Candidate(evidence)
     return None
 
 
@@ -120,14 +149,14 @@ def search_conewise_modes(family: Family) -> Candidates[FormsOnGraph]:
     if not drawing.is_finite:
         return OUT_OF_RANGE
     own = replace(family, allowance=allowance)
-    return (yield from propose(Program(drawing), own, family.limit, Rates(bits=digits(12))))
+    return (yield from propose([FormsProgram(drawing)], own, family.limit, Rates(bits=digits(12))))
 
 
 def draw_conewise_modes(family: Family) -> Drawing:
     """Draw a node for each mode, in contact and free, which takes its steps to every node."""
     system, motions = family.system, Motions.of(family)
-    own = Coordinates(family.exponents, separating_coordinates(motions))
-    flying = Coordinates(family.exponents[:-1], own.T[:-1, :-1])
+    own = FormCoordinates(family.exponents, separating_coordinates(motions))
+    flying = FormCoordinates(family.exponents[:-1], own.T[:-1, :-1])
     free = _free(system)
     names = [mode.name for mode in (*system.modes, *free)]
     like = stand_ins(names[: len(system.modes)], motions.contact)
@@ -168,10 +197,11 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     if not drawing.is_finite:
         return OUT_OF_RANGE
     checked = (len(system.modes) + len(_free(system))) * clock.length
-    ways = (True, False) if system.roundings and checked <= MOST_ROUNDED else (False,)
+    ways = 2 if system.roundings and checked <= MOST_ROUNDED else 1
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
-    return (yield from propose(Program(drawing), family, _limit(family, clock), rates, ways))
+    programs, limit = [FormsProgram(drawing)] * ways, _limit(family, clock)
+    return (yield from propose(programs, family, limit, rates, errors=True))
 
 
 def draw_turns(family: Family, clock: Clock) -> Drawing:
@@ -187,7 +217,7 @@ def draw_turns(family: Family, clock: Clock) -> Drawing:
         multipliers=tuple(Multiplier(f"{ROUNDING} {k}", None, 0) for k in roundings),
     )
     forms = tuple(k for k in range(clock.length) for _ in places)
-    coordinates = (Coordinates(family.exponents, T) for T in _coordinates(family, clock))
+    coordinates = (FormCoordinates(family.exponents, T) for T in _coordinates(family, clock))
     return Drawing(system, graph, forms, tuple(coordinates))
 
 
@@ -237,3 +267,180 @@ def _limit(family: Family, clock: Clock) -> float:
 
 def _free(system: SwitchedSystem) -> tuple[Mode, ...]:
     return (system.contact or Contact(())).free
+
+
+def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
+    """Search for a form for each mode, under its rules of switching.
+
+    Parameters
+    ----------
+    family : Family
+        The modes, of any sizes, and their switching.
+    degree : int
+        Half the degree of the forms; beyond 1 for discrete time.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice for another solution.
+    """
+    system, allowance = family.system, family.allowance
+    cost, what = functions_cost(system, degree)
+    checked = replace(cost, work=cost.work + _work_of_checks(system, degree))
+    allowance.require(checked, f"{what}, with the exact check of what it finds,")
+    drawing = draw_each_mode(family, degree)
+    if not drawing.is_finite:
+        return OUT_OF_RANGE
+    left = drawing.graph.stays is not None and drawing.graph.stays.leaving
+    rates = Rates(nearest=0.999, bits=digits(6))
+    if left and system.time is Time.CONTINUOUS:
+        # Enclosures take time: few attempts, and wider gaps.
+        rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True), pieces=PIECES)
+    always = family.optimize_rate or not family.stand_ins()
+    rates = replace(rates, always=always, words="found")
+    return (yield from propose([FormsProgram(drawing)], family, family.limit, rates))
+
+
+def draw_each_mode(family: Family, degree: int) -> Drawing:
+    """Draw a node for each mode, as a place of its own."""
+    system = family.system
+    like = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
+    number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
+    matrices = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
+    shared = [balance(np.array(list(matrices.values())))] if system.is_uniform else []
+    coordinates = []
+    for name in number:
+        d = shared[0] if shared else balance(matrices[name][None])
+        coordinates.append(lifted_coordinates(d, degree))
+    leaving = tuple(
+        mode.name for mode in system.modes if _is_left(system, mode, system.stays()[mode.name])
+    )
+    graph = FormsOnGraph(
+        tuple(Node(mode.name, ()) for mode in system.modes),
+        0,
+        ANY_RATE,
+        degree,
+        stays=Stays(leaving),
+    )
+    forms = tuple(number[like[mode.name]] for mode in system.modes)
+    return Drawing(system, graph, forms, tuple(coordinates))
+
+
+def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all axes that act on each other.
+
+    Where the arithmetic rounds, forms that cover that are tried before others.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    ways = [(COUPLING, ROUNDING), (COUPLING,)] if family.system.roundings else [(COUPLING,)]
+    drawings = [draw_together(family, 1, solved=solved) for solved in ways]
+    if not drawings[-1].is_finite:
+        return OUT_OF_RANGE
+    rates = Rates(resolution=2.0**-9, smallest=2.0**-12, bits=(16, 24, 32, 40, 50, 60))
+    programs = [FormsProgram(drawing) for drawing in drawings]
+    return (yield from propose(programs, family, family.limit, rates))
+
+
+def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
+    """Search for a polynomial of degree 2d, also for free motion where contact may be lost there.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    rates = Rates(
+        resolution=2.0**-8,
+        smallest=2.0**-10,
+        nearest=0.99,
+        bits=digits(10),
+        words="found with a decay rate near the largest",
+    )
+    program = FormsProgram(draw_together(family, degree))
+    return (yield from propose([program], family, family.limit, rates))
+
+
+def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
+    """Return coordinates of monomials, in which forms have a nearly orthonormal basis."""
+    if degree > 1:
+        basis = np.array(monomials(len(d), degree), dtype=np.int64)
+        d = np.asarray(basis @ d - monomial_weights(len(d), degree))
+    return FormCoordinates(d, np.eye(len(d)))
+
+
+def draw_together(family: Family, degree: int, *, solved: tuple[str, ...] = ()) -> Drawing:
+    """Draw a node for all modes, and in free motion the same form without the deflection.
+
+    Parameters
+    ----------
+    family : Family
+        The modes.
+    degree : int
+        Of the monomials.
+    solved : tuple of str
+        Errors that are solved for.
+    """
+    system = family.system
+    places = [CONTACT] if system.contact is None else [CONTACT, FREE]
+    facts = [*(f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1))]
+    if ROUNDING not in solved:
+        facts = []
+    facts += [f"{COUPLING} {k}" for k, _ in enumerate(system.couplings, 1)]
+    graph = FormsOnGraph(
+        tuple(Node(place, ()) for place in places),
+        0,
+        ANY_RATE,
+        degree,
+        multipliers=tuple(Multiplier(fact, None, 0) for fact in facts),
+    )
+    own = lifted_coordinates(family.exponents, degree)
+    if degree == 1:
+        own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
+    return Drawing(system, graph, (0,) * len(places), (own,), solved)
+
+
+def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
+    """Predict what one solution takes, before anything is lifted; say for what."""
+    n = max(mode.A.shape[0] for mode in system.modes)
+    order = comb(n + degree - 1, degree)
+    own = order * (order + 1) // 2
+    forms = own - comb(n + 2 * degree - 1, 2 * degree)
+    decreases = _count_decreases(system)
+    shared = own * len(system.modes) + 1
+    cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
+    what = f"a program with {len(cones)} blocks of order {order}"
+    return program_cost(shared + forms * decreases, shared, cones), what
+
+
+def _work_of_checks(system: SwitchedSystem, degree: int) -> float:
+    """Predict the work of checking what is found, by us and by the second library."""
+    n = max(mode.A.shape[0] for mode in system.modes)
+    order = comb(n + degree - 1, degree)
+    return 2 * _count_decreases(system) * PER_CHECK * order**2
+
+
+def _count_decreases(system: SwitchedSystem) -> int:
+    counts = {name: _count_stays(system, stay) for name, stay in system.stays().items()}
+    return len(system.modes) + sum(counts[edge.source.name] for edge in system.edges())
+
+
+def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
+    if stay.longest is None:
+        return 1
+    if system.time is Time.CONTINUOUS:
+        return SAMPLES
+    return int(stay.longest) - int(stay.shortest) + 1
+
+
+def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:
+    """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
+    if stay.longest is None:
+        return False
+    few = stay.longest - stay.shortest < FEW_STAYS and system.time is Time.DISCRETE
+    return few or not is_stable(mode.A, system.time)

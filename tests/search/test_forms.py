@@ -7,7 +7,7 @@ import pytest
 
 from nrs_design.search import forms
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.forms import Program
+from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
     draw_conewise_modes,
     draw_turns,
@@ -34,9 +34,9 @@ DRAWN = [
 @pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
 def test_solutions_that_lie_give_no_false_evidence(monkeypatch, search, system, draw, spoil):
     with floats_in_silence():
-        solution = Program(draw(Family.of(system))).solve(1.0, Allowance())
+        solution = FormsProgram(draw(Family.of(system))).solve(1.0, Allowance())
         lie = replace(solution, forms=[spoil(Q) for Q in solution.forms])
-    monkeypatch.setattr(Program, "solve", lambda *_: lie)
+    monkeypatch.setattr(FormsProgram, "solve", lambda *_: lie)
     try:
         evidence = found(search, system, optimize_rate=False)
     except (np.linalg.LinAlgError, ValueError, OverflowError):
@@ -46,7 +46,7 @@ def test_solutions_that_lie_give_no_false_evidence(monkeypatch, search, system, 
 
 @pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
 def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, draw):
-    program = Program(draw(Family.of(system)))
+    program = FormsProgram(draw(Family.of(system)))
     monkeypatch.setattr(forms, "symmetric_basis", lambda n: pytest.fail("built"))
     with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
         program.solve(1.0, Allowance(1e-4))
@@ -54,5 +54,5 @@ def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, d
 
 @pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
 def test_a_solution_shows_the_rate_that_it_was_asked_for(search, system, draw):
-    program = Program(draw(Family.of(system)))
+    program = FormsProgram(draw(Family.of(system)))
     assert program.own_rate(program.solve(0.99, Allowance())) < 0.99

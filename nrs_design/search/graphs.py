@@ -27,8 +27,9 @@ from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import WITH_ERRORS
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import SAMPLES, FormCoordinates, Drawing, FormsProgram
+from nrs_design.search.forms import SAMPLES, Drawing, FormCoordinates, FormsProgram
 from nrs_design.search.lifted import monomial_weights
+from nrs_design.search.polynomial import conewise_cost, family_cost
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
 from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost, NotAffordableError
@@ -65,6 +66,16 @@ class Rates:
     pieces: Sequence[int] = (1,)  # How finely stays of any length are enclosed
     always: bool = False  # Look for the largest rate, whatever was asked for
     words: str = "found with the largest decay rate"
+
+
+# Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
+POLYNOMIAL = Rates(
+    resolution=2.0**-8,
+    smallest=2.0**-10,
+    nearest=0.99,
+    bits=digits(10),
+    words="found with a decay rate near the largest",
+)
 
 
 def propose(
@@ -338,8 +349,9 @@ def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
     """
     if not np.isfinite(family.limit):
         return OUT_OF_RANGE
+    lost = family.system.contact is not None
     ways = [(COUPLING, ROUNDING), (COUPLING,)] if family.system.roundings else [(COUPLING,)]
-    drawings = [draw_together(family, 1, solved=solved) for solved in ways]
+    drawings = [draw_together(family, 1, lost=lost, solved=solved) for solved in ways]
     if not drawings[-1].is_finite:
         return OUT_OF_RANGE
     rates = Rates(resolution=2.0**-9, smallest=2.0**-12, bits=(16, 24, 32, 40, 50, 60))
@@ -348,22 +360,29 @@ def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
 
 
 def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
-    """Search for a polynomial of degree 2d, also for free motion where contact may be lost there.
+    """Search for a polynomial of degree 2d that all modes share.
 
     Raises
     ------
     NotAffordableError
         If work or memory do not suffice.
     """
-    rates = Rates(
-        resolution=2.0**-8,
-        smallest=2.0**-10,
-        nearest=0.99,
-        bits=digits(10),
-        words="found with a decay rate near the largest",
-    )
+    family.allowance.require(*family_cost(family.system, degree))
     program = FormsProgram(draw_together(family, degree))
-    return (yield from propose([program], family, family.limit, rates))
+    return (yield from propose([program], family, family.limit, POLYNOMIAL))
+
+
+def search_conewise_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
+    """Search for a polynomial of degree 2d for contact and free motion.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    family.allowance.require(*conewise_cost(family.system, degree))
+    program = FormsProgram(draw_together(family, degree, lost=True))
+    return (yield from propose([program], family, family.limit, POLYNOMIAL))
 
 
 def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
@@ -374,7 +393,9 @@ def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
     return FormCoordinates(d, np.eye(len(d)))
 
 
-def draw_together(family: Family, degree: int, *, solved: tuple[str, ...] = ()) -> Drawing:
+def draw_together(
+    family: Family, degree: int, *, lost: bool = False, solved: tuple[str, ...] = ()
+) -> Drawing:
     """Draw a node for all modes, and in free motion the same form without the deflection.
 
     Parameters
@@ -383,11 +404,13 @@ def draw_together(family: Family, degree: int, *, solved: tuple[str, ...] = ()) 
         The modes.
     degree : int
         Of the monomials.
+    lost : bool
+        Whether contact is lost and made.
     solved : tuple of str
         Errors that are solved for.
     """
     system = family.system
-    places = [CONTACT] if system.contact is None else [CONTACT, FREE]
+    places = [CONTACT, FREE] if lost else [CONTACT]
     facts = [*(f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1))]
     if ROUNDING not in solved:
         facts = []

@@ -1,21 +1,36 @@
 """One program for forms on any graph."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
+from nrs_design.proof.mode import Time
 from nrs_design.search import forms
 from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
     draw_conewise_modes,
+    draw_each_mode,
+    draw_together,
     draw_turns,
     search_conewise_modes,
+    search_conewise_polynomial,
+    search_coupled_axes,
+    search_modes,
     search_periodic_quadratic,
+    search_polynomial,
 )
 from nrs_design.work import Allowance, NotAffordableError
-from tests.proof.systems import bouncing_in_steps, bouncing_in_turns
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    bouncing_in_turns,
+    dayawansa_martin,
+    geromel_colaneri,
+    leaning,
+)
 from tests.search.support import found
 
 DRAWN = [
@@ -25,7 +40,23 @@ DRAWN = [
         bouncing_in_turns(1, rounded=True),
         lambda f: draw_turns(f, f.system.clock),
     ),
+    (search_modes, geromel_colaneri("2.76"), lambda f: draw_each_mode(f, 1)),
+    (partial(search_polynomial, degree=2), dayawansa_martin(6), lambda f: draw_together(f, 2)),
+    (
+        partial(search_conewise_polynomial, degree=2),
+        bouncing(),
+        lambda f: draw_together(f, 2, lost=True),
+    ),
+    (
+        search_coupled_axes,
+        leaning(bouncing(), "1/8"),
+        lambda f: draw_together(f, 1, lost=True, solved=("coupling",)),
+    ),
 ]
+
+
+def at_rest(system):
+    return 0.0 if system.time is Time.CONTINUOUS else 1.0
 
 
 @pytest.mark.parametrize(
@@ -34,7 +65,7 @@ DRAWN = [
 @pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
 def test_solutions_that_lie_give_no_false_evidence(monkeypatch, search, system, draw, spoil):
     with floats_in_silence():
-        solution = FormsProgram(draw(Family.of(system))).solve(1.0, Allowance())
+        solution = FormsProgram(draw(Family.of(system))).solve(at_rest(system), Allowance())
         lie = replace(solution, forms=[spoil(Q) for Q in solution.forms])
     monkeypatch.setattr(FormsProgram, "solve", lambda *_: lie)
     try:
@@ -49,10 +80,10 @@ def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, d
     program = FormsProgram(draw(Family.of(system)))
     monkeypatch.setattr(forms, "symmetric_basis", lambda n: pytest.fail("built"))
     with pytest.raises(NotAffordableError, match=r"blocks.*--budget"):
-        program.solve(1.0, Allowance(1e-4))
+        program.solve(at_rest(system), Allowance(1e-4))
 
 
-@pytest.mark.parametrize(("search", "system", "draw"), DRAWN)
+@pytest.mark.parametrize(("search", "system", "draw"), DRAWN[:2])
 def test_a_solution_shows_the_rate_that_it_was_asked_for(search, system, draw):
     program = FormsProgram(draw(Family.of(system)))
     assert program.own_rate(program.solve(0.99, Allowance())) < 0.99

@@ -65,6 +65,15 @@ class Acting:
 
 
 @dataclass(frozen=True, slots=True)
+class Stays:
+    """How stays in a mode are followed."""
+
+    # Modes of which every stay is one step, as they have a longest dwell time.
+    leaving: tuple[str, ...] = ()
+    pieces: int = 1  # In continuous time, the lengths of such a stay are cut in so many pieces
+
+
+@dataclass(frozen=True, slots=True)
 class Step:
     """One thing that a system may do at a place, in integers."""
 

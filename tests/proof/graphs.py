@@ -6,8 +6,7 @@ from fractions import Fraction
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
-from nrs_design.proof.stays import Stays
-from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING
+from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING, Stays
 from nrs_design.search.draw import in_turns, one_form
 
 __all__ = [
@@ -24,7 +23,7 @@ __all__ = [
 def common_quadratic(
     Q: Matrix, log2: int, rate: Fraction, roundings: Sequence[int] = ()
 ) -> FormsOnGraph:
-    found = (Multiplier(f"{ROUNDING} {k}", None, m) for k, m in enumerate(roundings, 1))
+    found = (Multiplier(f"{ROUNDING} {k}", m) for k, m in enumerate(roundings, 1))
     return FormsOnGraph((Node(CONTACT, Q),), log2, rate, multipliers=tuple(found))
 
 
@@ -55,7 +54,7 @@ def conewise_modes(
     """The function of a state is that of the mode that takes the next step."""
     nodes = [Node(CONTACT, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
     edges = (Arc(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
-    lost = (Multiplier(LOST, k, m) for k, m in enumerate(multipliers, len(touching)))
+    lost = (Multiplier(LOST, m, k) for k, m in enumerate(multipliers, len(touching)))
     return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(lost), edges=tuple(edges))
 
 

@@ -1,7 +1,7 @@
 """Numbers in certificate files: integers and ratios of integers, never floats.
 
-A dataclass is written field by field, and read by the types of its fields. A field that holds its
-default is left out; one that the class does not have is refused.
+A dataclass, or a named tuple, is written field by field, and read by the types of its fields. A
+field that holds its default is left out; one that the class does not have is refused.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ MAX_ENTRIES = 100_000
 
 
 def written(value: Any) -> Any:
-    """Return a value of a dataclass as JSON holds it.
+    """Return a value as JSON holds it.
 
     A matrix that is the only one of an object stands among its other fields.
 
@@ -41,24 +41,27 @@ def written(value: Any) -> Any:
     """
     if isinstance(value, RationalMatrix):
         return _matrix_fields(value)
-    if isinstance(value, tuple):
-        return [written(item) for item in value]
     if isinstance(value, Fraction):
         return str(value)
-    if not is_dataclass(value):
-        return value
+    if not _has_fields(value):
+        return [written(item) for item in value] if isinstance(value, tuple) else value
     result: dict[str, Any] = {}
-    for field in fields(value):
-        item = getattr(value, field.name)
+    for name, (_, default, _) in _hints(type(value)).items():
+        item = getattr(value, name)
         if isinstance(item, RationalMatrix):
             result |= _matrix_fields(item)
-        elif item != field.default:
-            result[field.name] = written(item)
+        elif item != default:
+            result[name] = written(item)
     return result
 
 
+def _has_fields(value: object) -> bool:
+    """Tell whether a value or a class is a dataclass or a named tuple."""
+    return is_dataclass(value) or hasattr(value, "_fields")
+
+
 def read_object(kind: type[T], value: object) -> T:
-    """Read a dataclass that `written` has written.
+    """Read a dataclass or a named tuple that `written` has written.
 
     Raises
     ------
@@ -86,7 +89,9 @@ def read_object(kind: type[T], value: object) -> T:
 def _hints(kind: Hashable) -> dict[str, tuple[Any, Any, bool]]:
     """Return the type of every field, its default, and whether its number has a sign."""
     hints = get_type_hints(kind)
-    assert is_dataclass(kind)
+    if not is_dataclass(kind):
+        defaults = cast(Any, kind)._field_defaults
+        return {name: (hint, defaults.get(name, MISSING), False) for name, hint in hints.items()}
     return {
         field.name: (hints[field.name], field.default, bool(field.metadata))
         for field in fields(kind)
@@ -126,35 +131,12 @@ def _read_matrix(value: Any) -> RationalMatrix:
     return RationalMatrix(rows, denominator)
 
 
-def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
-    """Return the fields of a dyadic matrix."""
-    return {"numerators": [list(row) for row in Q], "denominator_log2": denominator_log2}
-
-
-def read_dyadic(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
-    """Read a dyadic matrix: its integer numerators, and the logarithm of its denominator."""
-    denominator_log2 = read_integer(fields["denominator_log2"])
-    if denominator_log2 < 0:
-        raise ValueError("a denominator is not a power of two")
-    return read_integers(fields["numerators"]), denominator_log2
-
-
 def read_integers(value: Any) -> Matrix:
     """Read a matrix of integers."""
     matrix = tuple(tuple(read_integer(entry) for entry in read_list(row)) for row in value)
     if is_too_large(matrix):
         raise ValueError("a matrix is too large to check")
     return matrix
-
-
-def rounding_fields(roundings: tuple[int, ...]) -> dict[str, Any]:
-    """Return the field of the multipliers for what the arithmetic rounds, if there are any."""
-    return {"roundings": list(roundings)} if roundings else {}
-
-
-def read_roundings(fields: Mapping[str, Any]) -> tuple[int, ...]:
-    """Read the multipliers for what the arithmetic rounds; none where there is no such field."""
-    return tuple(read_integer(entry) for entry in fields.get("roundings", []))
 
 
 def read_integer(value: object) -> int:

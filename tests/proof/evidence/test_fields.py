@@ -12,31 +12,17 @@ from hypothesis import strategies as st
 from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.fields import (
     find_unreadable,
-    matrix_fields,
     rate_text,
     rate_words,
-    read_dyadic,
     read_integer,
     read_integers,
     read_ratio,
-    read_roundings,
     read_text,
-    rounding_fields,
 )
 from nrs_design.proof.exact import MAX_WORK
 from nrs_design.proof.mode import Time
 from tests.proof.graphs import common_quadratic
 from tests.support import number_in
-
-WHOLE = st.integers(-(2**70), 2**70)
-
-
-@given(
-    st.lists(st.lists(WHOLE, min_size=3, max_size=3), min_size=3, max_size=3), st.integers(0, 99)
-)
-def test_matrix_survives_the_file(rows, power):
-    Q = tuple(map(tuple, rows))
-    assert read_dyadic(matrix_fields(Q, power)) == (Q, power)
 
 
 @pytest.mark.parametrize("value", [True, 1.0, "1", None, [1], Decimal(1), Fraction(1)])
@@ -50,12 +36,6 @@ def test_only_an_integer_is_an_integer(value):
 def test_a_matrix_beyond_all_bounds_is_refused():
     with pytest.raises(ValueError, match="too large to check"):
         read_integers([[1 << MAX_WORK]])
-
-
-@pytest.mark.parametrize("power", [-1, -(10**9)])
-def test_a_denominator_is_a_power_of_two(power):
-    with pytest.raises(ValueError, match="power of two"):
-        read_dyadic({"numerators": [[1]], "denominator_log2": power})
 
 
 def test_only_a_text_is_a_text():
@@ -132,10 +112,6 @@ def test_what_is_just_readable(value, is_readable):
     assert (find_unreadable(value) is None) is is_readable
 
 
-def test_a_denominator_of_one():
-    assert read_dyadic({"numerators": [[3]], "denominator_log2": 0}) == (((3,),), 0)
-
-
 @pytest.mark.parametrize(
     ("value", "said"),
     [
@@ -165,16 +141,3 @@ def test_numbers_that_a_file_can_hold(number, ratio):
     assert find_unreadable((number, ("m0", ratio), None)) is None
     assert read_integer(json.loads(json.dumps(number))) == number
     assert read_ratio(str(ratio)) == ratio
-
-
-@pytest.mark.parametrize(
-    ("roundings", "fields"), [((), {}), ((0,), {"roundings": [0]}), ((3, 4), {"roundings": [3, 4]})]
-)
-def test_multipliers_of_roundings_stand_in_a_file_if_there_are_any(roundings, fields):
-    assert rounding_fields(roundings) == fields
-    assert read_roundings(fields) == roundings
-
-
-def test_only_integers_multiply_roundings():
-    with pytest.raises(TypeError, match="expected an integer"):
-        read_roundings({"roundings": [1.0]})

@@ -46,7 +46,7 @@ def written(value: Any) -> Any:
     if not _has_fields(value):
         return [written(item) for item in value] if isinstance(value, tuple) else value
     result: dict[str, Any] = {}
-    for name, (_, default, _) in _hints(type(value)).items():
+    for name, (_, default, _) in _hints(cast(Hashable, type(value))).items():
         item = getattr(value, name)
         if isinstance(item, RationalMatrix):
             result |= _matrix_fields(item)

@@ -33,14 +33,7 @@ from fractions import Fraction
 from math import gcd, isqrt, lcm
 
 from nrs_design.proof.channels import Coupling, Rounding
-from nrs_design.proof.exact import (
-    IntegerMatrix,
-    Product,
-    add,
-    congruence,
-    multiply,
-    transpose,
-)
+from nrs_design.proof.exact import IntegerMatrix, Product, add, congruence, multiply, transpose
 from nrs_design.proof.matrix import RationalMatrix, with_crossing
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem

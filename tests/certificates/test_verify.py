@@ -38,8 +38,8 @@ from nrs_design.certificates.verify import (
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline import run_certification
+from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.evidence.growing_sequence import staying
-from nrs_design.proof.system_fields import system_fields
 from nrs_design.search.certify import Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
@@ -632,7 +632,7 @@ class TestFiles:
             verify(Path("/dev/zero"), given[1])
 
     def test_too_large(self, tmp_path, given, monkeypatch):
-        monkeypatch.setattr("nrs_design.certificates.verify.MAX_BYTES", 100)
+        monkeypatch.setattr("nrs_design.certificates.prove.MAX_BYTES", 100)
         path = tmp_path / "c.json"
         path.write_text(json.dumps(given[0]))
         with pytest.raises(CertificateError, match="larger"):

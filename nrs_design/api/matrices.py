@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from nrs_design.api.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.api.study import Study
 from nrs_design.arrays.exact import (
     exact_matrix,
@@ -17,7 +18,6 @@ from nrs_design.arrays.exact import (
 from nrs_design.arrays.system import name_modes, spec_of_matrices
 from nrs_design.errors import NrsDesignError
 from nrs_design.proof.exact import TooLargeError
-from nrs_design.proof.lyapunov import LyapunovCheck, check_quadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 

@@ -15,7 +15,7 @@ from nrs_design.cli.printing import say
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from nrs_design.proof.lyapunov import Counterexample, LyapunovCheck
+    from nrs_design.api.lyapunov import Counterexample, LyapunovCheck
 
 # What must be negative, by time and whether a rate is asked for.
 _CHANGE = {

@@ -13,7 +13,7 @@ from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
 from nrs_design.identification.spec_document import SpecDocument
-from nrs_design.identification.statistics import Estimate
+from nrs_design.identification.statistics import Estimate, span
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.identification.tool import ToolIdentification
@@ -215,7 +215,7 @@ _PUT_BY_TANGENT = {HuntCrossley.name: _put_power_law}
 def _preload(found: TissueIdentification) -> str:
     assert found.tangent is not None
     about, unit = found.tangent, "rad" if found.rotational else "m"
-    return f"deflections from {about.low:.6g} {unit} to {about.high:.6g} {unit}"
+    return f"deflections of {span(about.low, about.high, unit, 6)}"
 
 
 def _put_doubts(document: SpecDocument, node: Any, doubts: Sequence[str]) -> None:

@@ -18,7 +18,9 @@ from nrs_design.identification.reporting.identification import (
     identification_page,
     in_interval,
     label_of,
+    marked,
 )
+from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue import OFFSET_UNITS, OFFSET_WORDS
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.formatting import number, plural, shortened
@@ -62,19 +64,18 @@ def tissue_report(
         for name, estimate, unit in zip(names, chosen.ranges, units, strict=True)
     )
     return identification_page(
+        found,
         name=f"tissue-{chosen.law.name}",
         title=f"Tissue law from {plural(len(found.records), 'record')}",
         claim=f"{chosen.law.formula} with {values}. {found.reason}",
-        remarks=found.caveats,
-        sources=[record.source for record in found.records],
         sections=(
             Section("What of the records is used", tuple(_used(found))),
             Section("Comparison of laws", tuple(_comparison(found))),
             Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
             *several,
             Section("Measured against fitted", tuple(_tissue_figures(found))),
-            Section("How to read this", (Bullets("", _MEANING),), boxed=True),
         ),
+        meaning=_MEANING,
     )
 
 
@@ -114,7 +115,7 @@ def _comparison(found: TissueIdentification) -> Iterator[Block]:
     least_bic = min(model.bic for model in found.models)
     rows = tuple(
         (
-            model.law.name + (" (chosen)" if model is found.chosen else ""),
+            marked(model.law.name, chosen=model is found.chosen),
             *(number(value, 3) for value in model.rmse),
             number(model.aic - least_aic),
             number(model.bic - least_bic),
@@ -156,7 +157,7 @@ def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Bloc
         about = found.tangent
         values = ", ".join(map(in_interval, about.ranges))
         notes.append(
-            f"Small motions about deflections from {about.low:.5g} to {about.high:.5g}: "
+            f"Small motions about deflections of {span(about.low, about.high, digits=5)}: "
             f"stiffness and damping {values}."
         )
     if notes:
@@ -188,7 +189,7 @@ def _tissue_figures(found: TissueIdentification) -> Iterator[Illustration]:
     force, deflection = (
         ("Torque [N m]", "Angle [rad]") if found.rotational else ("Force [N]", "Deflection [m]")
     )
-    note = label_of(found.synthetic)
+    note = label_of(found.sources)
     drawn = found.chosen.fits[:DRAWN]
     for fit, name in zip(drawn, figure_names([fit.record.name for fit in drawn]), strict=True):
         trial, used = fit.trial, fit.trial.used

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -12,14 +12,14 @@ from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
-    SYNTHETIC,
     ColumnMap,
     CoversOption,
     DataFiles,
+    Facts,
     WriteTo,
+    deliver,
     estimate_numbers,
     read_all,
-    sources,
 )
 from nrs_design.identification.cli.identify.tissue_options import (
     Contact,
@@ -125,12 +125,13 @@ def tissue(
             declared=asked is None,
         )
         series = _series(found) if prony else None
-    return outputs.deliver(
-        Answer(lambda: _summary(found, arm, series), lambda: _print(found, arm, series or [])),
-        page=lambda: _page(found, arm, series or []),
-        merge=lambda spec: merge_tissue(spec, found, environment, lever_arm),
-        caveats=found.caveats,
-        slips=found.chosen.slips,
+    return deliver(
+        outputs,
+        found,
+        lambda: _facts(found, arm, series),
+        lambda: _print(found, arm, series or []),
+        lambda: _page(found, arm, series or []),
+        lambda spec: merge_tissue(spec, found, environment, lever_arm),
     )
 
 
@@ -143,8 +144,6 @@ def _page(found: TissueIdentification, arm: float | None, series: list[Series]) 
 def _print(found: TissueIdentification, arm: float | None, series: list[Series]) -> None:
     from nrs_design.identification.lever import parameter_units
 
-    if found.synthetic:
-        say(SYNTHETIC)
     least = min(model.bic for model in found.models)
     unit = "N m" if found.rotational else "N"
     rows = [
@@ -192,7 +191,7 @@ def _series(found: TissueIdentification) -> list[Series]:
     return [fit_series(trial) for trial in found.trials]
 
 
-def _series_summary(series: Series) -> dict[str, Any]:
+def _series_summary(series: Series) -> Facts:
     law = series.reduced
     return {
         "record": series.record,
@@ -209,13 +208,14 @@ def _series_summary(series: Series) -> dict[str, Any]:
 
 def _print_tangent(about: Tangent, rotational: bool) -> None:
     from nrs_design.identification.lever import parameter_units
+    from nrs_design.identification.statistics import span
 
     parts = zip(
         about.law.parameters(), about.ranges, parameter_units(about.law, rotational), strict=True
     )
     values = ", ".join(f"{name} = {estimate} {unit}" for name, estimate, unit in parts)
     length = "rad" if rotational else "m"
-    say(f"small motions about {about.low:.5g} to {about.high:.5g} {length}: {values}")
+    say(f"small motions about {span(about.low, about.high, length, 5)}: {values}")
     names = (*about.law.parameters(), "phi")
     units = (*parameter_units(about.law, rotational), "")
     power = ", ".join(
@@ -242,20 +242,14 @@ def _parameters(model: ModelFit, units: tuple[str, ...]) -> list[str]:
     return [f"{name} {estimate} {unit}" for name, estimate, unit in parts]
 
 
-def _summary(
-    found: TissueIdentification, arm: float | None, series: list[Series] | None
-) -> dict[str, Any]:
+def _facts(found: TissueIdentification, arm: float | None, series: list[Series] | None) -> Facts:
     from nrs_design.identification.lever import parameter_units
 
     law = found.chosen.law
     listed = {} if series is None else {"prony": [_series_summary(item) for item in series]}
     return {
-        "synthetic": found.synthetic,
-        "records": sources(record.source for record in found.records),
         "chosen": law.name,
         "reason": found.reason,
-        "caveats": list(found.caveats),
-        "slips": list(found.chosen.slips),
         "ranges": {
             name: estimate_numbers(estimate) | {"unit": unit}
             for name, estimate, unit in zip(
@@ -294,7 +288,7 @@ def _summary(
     }
 
 
-def _model(model: ModelFit, rotational: bool) -> dict[str, Any]:
+def _model(model: ModelFit, rotational: bool) -> Facts:
     from nrs_design.identification.lever import parameter_units
 
     names = model.law.parameters()

@@ -1,8 +1,9 @@
-"""TRUSTED: the exact verdict on a quadratic function that anybody proposes.
+"""The exact verdict on a quadratic function that anybody proposes.
 
 ``V(x) = x' P x`` decreases in every mode iff P and the decreases ``-(A'P + PA)`` (discrete time:
 ``P - A'PA``) are positive definite. Where one is not, elimination itself yields a vector that shows
-it: the test is a proof in either direction, and no eigenvalue is computed.
+it: the test is a proof in either direction, and no eigenvalue is computed. Definiteness is decided
+by `nrs_design.proof.exact`, as for certificates.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.api.lyapunov import check_quadratic, indefinite_vector
 from nrs_design.proof.exact import TooLargeError
-from nrs_design.proof.lyapunov import check_quadratic, indefinite_vector
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from tests.support import is_definite_by_ldl, matrix

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 from nrs_design.proof.evidence.abstract import AbstractFunction, is_square
 from nrs_design.proof.evidence.fields import (
-    MAX_INTEGER_BITS,
     Matrix,
     matrix_fields,
     read_dyadic,
@@ -220,8 +219,6 @@ class FormsOnGraph(AbstractFunction):
         for place, form in self.nodes:
             if not is_square(form, sizes[place]):
                 return f"a form at {place} is not a {sizes[place]} x {sizes[place]} matrix"
-        if not 0 <= self.denominator_log2 <= MAX_INTEGER_BITS:
-            return f"the denominator of the forms is not two to a power up to {MAX_INTEGER_BITS}"
         if d > 1:
             matrices = [mode.A.numerators for mode in system.modes]
             matrices += [reset.map.numerators for reset in system.switching.resets]
@@ -453,7 +450,8 @@ class FormsOnGraph(AbstractFunction):
             count,
             lost=lost,
             once=once,
-            alike=not lost or self.degree > 1 or count > 1 or self._is_alike(),
+            # In continuous time, others rise at the surface.
+            alike=system.time is Time.CONTINUOUS or count > 1 or self._is_alike(),
         )
 
     def _is_alike(self) -> bool:

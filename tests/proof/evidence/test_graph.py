@@ -1026,11 +1026,6 @@ class TestGraph:
         chosen = (Arc(0, None, 0), Arc(1, None, 1), *EACH.edges)
         assert replace(EACH, edges=chosen).find_misfit(bouncing_in_steps()) == refused
 
-    @pytest.mark.parametrize("log2", [-1, 14_001])
-    def test_the_denominator_is_a_power_that_can_be_formed(self, log2):
-        graph = replace(IN_STEPS, denominator_log2=log2)
-        assert "not two to a power up to 14000" in graph.find_fault(bouncing_in_steps())
-
     @pytest.mark.parametrize("case", HOSTILE)
     def test_what_nobody_can_check_is_refused_at_once(self, case):
         system, graph, fault = HOSTILE[case]

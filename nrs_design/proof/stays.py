@@ -17,7 +17,7 @@ from nrs_design.proof.exact import MAX_WORK, IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.matrix import multiply as rational_product
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import Step, flow_step, map_step
+from nrs_design.proof.steps import Stays, Step, flow_step, map_step
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
 
@@ -26,15 +26,6 @@ MAX_PIECES = 4096
 MAX_ENCLOSED = 2**18
 MAX_SWITCHES = 2**20
 MAX_POWER_BITS = 10**6
-
-
-@dataclass(frozen=True, slots=True)
-class Stays:
-    """How stays in a mode are followed."""
-
-    # Modes of which every stay is one step, as they have a longest dwell time.
-    leaving: tuple[str, ...] = ()
-    pieces: int = 1  # In continuous time, the lengths of such a stay are cut in so many pieces
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +144,8 @@ def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int) -> str | Non
         return "the modes that must be left are not those of the system"
     if any(every[name].longest is None for name in leaving):
         return "a mode in which the function need not decrease has no longest dwell time"
+    if not set(leaving) <= {edge.source.name for edge in system.edges()}:
+        return "no switch leads from a mode that must be left"
     times = [stay.shortest for stay in every.values()]
     times += [longest for stay in every.values() if (longest := stay.longest) is not None]
     if max(times) > MAX_DWELL_STEPS:
@@ -173,7 +166,9 @@ def _find_odd_switch(system: SwitchedSystem) -> str | None:
     count, transitions = len(system.modes), system.switching.transitions
     switches = count * (count - 1) if transitions is None else len(transitions)
     switches += len(system.switching.resets)
-    if switches > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
+    # To find those that are allowed, all pairs are looked at.
+    looked = count**2 // 16
+    if max(switches, looked) > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
         return "there are too many switches to check"
     for edge in system.edges():
         given = edge.source.A.shape if edge.map is None else edge.map.shape

@@ -68,7 +68,7 @@ def one_form(
     if lost:
         nodes.append(Node(FREE, undeflected(Q, system.order, degree)))
     multipliers = _multipliers(system, crossings, roundings, couplings)
-    found = tuple(Multiplier(fact, None, value) for fact, value in multipliers)
+    found = tuple(Multiplier(fact, value) for fact, value in multipliers)
     return FormsOnGraph(tuple(nodes), log2, rate, degree, found, vanishing)
 
 

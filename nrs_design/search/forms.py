@@ -348,7 +348,7 @@ class FormsProgram:
                     Node(node.place, tuple(tuple(whole[k][i][j] for j in kept) for i in kept))
                 )
             facts = tuple(
-                Multiplier(name, target, _numerator(float(value), log2 - exponent))
+                Multiplier(name, _numerator(float(value), log2 - exponent), target)
                 for (name, b), value in found.items()
                 for target in ([None] if b is None else drawing.like(b))
             )

@@ -17,8 +17,7 @@ from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.proof.stays import Stays
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING
+from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
@@ -225,7 +224,7 @@ def draw_turns(family: Family, clock: Clock) -> Drawing:
         nodes,
         0,
         ANY_RATE,
-        multipliers=tuple(Multiplier(f"{ROUNDING} {k}", None, 0) for k in roundings),
+        multipliers=tuple(Multiplier(f"{ROUNDING} {k}", 0) for k in roundings),
     )
     forms = tuple(k for k in range(clock.length) for _ in places)
     coordinates = (FormCoordinates(family.exponents, T) for T in _coordinates(family, clock))
@@ -420,7 +419,7 @@ def draw_together(
         0,
         ANY_RATE,
         degree,
-        multipliers=tuple(Multiplier(fact, None, 0) for fact in facts),
+        multipliers=tuple(Multiplier(fact, 0) for fact in facts),
     )
     own = lifted_coordinates(family.exponents, degree)
     if degree == 1:

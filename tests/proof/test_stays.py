@@ -13,12 +13,12 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.stays import (
     EnclosedStep,
-    Stays,
     find_odd_stays,
     power,
     shifted,
     steps_of_stays,
 )
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay, Switching
 from tests.proof.graphs import mode_quadratic
 from tests.proof.systems import family, resets_between
@@ -177,6 +177,14 @@ def test_dwell_times_within_the_limits(dwell, time, fault):
 )
 def test_only_what_must_be_left_need_not_decrease(leaving, fault):
     assert odd(family([[-1]], [[-1]], switching=left_within((0, 1))), leaving) == fault
+
+
+@pytest.mark.parametrize("transitions", [(), (("m1", "m0"),)])
+def test_what_must_be_left_can_be_left(transitions):
+    """What the rules let no signal do says nothing about a robot that stays."""
+    system = family([[-1]], [[-1]], switching=left_within((0, 1), transitions=transitions))
+    assert odd(system, ("m0",)) == "no switch leads from a mode that must be left"
+    assert odd(system) is None
 
 
 def test_pieces_are_limited(monkeypatch):

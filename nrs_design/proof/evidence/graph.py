@@ -7,19 +7,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from itertools import product
 from math import comb, lcm
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self, TypeAlias
 
-from nrs_design.proof.evidence.abstract import AbstractFunction, is_square
-from nrs_design.proof.evidence.fields import (
-    Matrix,
-    matrix_fields,
-    read_dyadic,
-    read_integer,
-    read_integers,
-    read_ratio,
-    read_text,
-)
+from nrs_design.proof.evidence.abstract import AbstractFunction, find_odd_form, is_square
+from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.exact import (
     MAX_WORK,
@@ -32,6 +25,7 @@ from nrs_design.proof.exact import (
     is_too_large,
     multiply,
 )
+from nrs_design.proof.matrix import leading
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
     CONTACT,
@@ -39,6 +33,7 @@ from nrs_design.proof.steps import (
     FREE,
     ROUNDING,
     Acting,
+    Stays,
     Step,
     grain_of,
     steps_of,
@@ -47,11 +42,14 @@ from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
-    from nrs_design.proof.stays import EnclosedStep, Stays
+    from nrs_design.proof.stays import EnclosedStep
 
 MAX_DEGREE = 64
 MAX_MONOMIALS = 120
 MAX_SETS = 1024
+MAX_STEPS = 2**21
+# What an edge takes at least, beside products of matrices, in the units of `MAX_WORK`.
+LEAST_WORK = 64
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 AnyStep: TypeAlias = "Step | EnclosedStep"
@@ -67,21 +65,21 @@ class Node(NamedTuple):
 class Arc(NamedTuple):
     """Steps from node to node, by their numbers; None stands for every node, or every mode."""
 
-    source: int | None
-    mode: str | None
-    target: int | None
+    source: int | None = None
+    mode: str | None = None
+    target: int | None = None
 
 
 class Multiplier(NamedTuple):
     """The multiplier of a fact, for steps to one node, or to every node."""
 
     fact: str
-    target: int | None
     value: int
+    target: int | None = None
 
 
 # From every node to every node that a step may lead to.
-ALL = (Arc(None, None, None),)
+ALL = (Arc(),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,10 +153,16 @@ class FormsOnGraph(AbstractFunction):
     def fits(self, switching: Switching) -> bool:
         """Tell whether the steps of these signals are those of its places.
 
-        With modes as places every mode in force must be one of them: a constant parameter is
-        anywhere between its ends.
+        A constant parameter is anywhere between its ends, where places that are modes, or edges to
+        some nodes only, say nothing.
         """
-        return not (switching.resets if self.stays is None else switching.fixed_ends)
+        if self.stays is not None:
+            return not switching.fixed_ends
+        return not (switching.resets or (switching.fixed_ends and not self.covers_mixtures))
+
+    def find_unsayable(self, system: SwitchedSystem) -> str | None:
+        """Say that nothing follows from no form."""
+        return None if self.nodes else "it has no form"
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check places, sizes, rate and multipliers, and that no run is left without an edge."""
@@ -168,6 +172,7 @@ class FormsOnGraph(AbstractFunction):
             or self._find_odd_size(system)
             or self._find_odd_stays(system)
             or self._find_odd_shape(system)
+            or self._find_too_many(system)
             or self._find_odd_multiplier(system)
             or self._find_gap(system)
             or self._find_odd_vanishing(system)
@@ -209,11 +214,8 @@ class FormsOnGraph(AbstractFunction):
         if d > 1 and max(sizes.values()) > MAX_MONOMIALS:
             return f"there are more than {MAX_MONOMIALS} monomials of degree {d}"
         for place, form in self.nodes:
-            if not is_square(form, sizes[place]):
-                return f"a form at {place} is not a {sizes[place]} x {sizes[place]} matrix"
-        count = sum(len([n for n in self.nodes if n.place == place]) ** 2 for place in places)
-        if self.stays is None and count * len(system.modes) * max(sizes.values()) ** 3 > MAX_WORK:
-            return "there are too many edges to check"
+            if (odd := find_odd_form(form, self.denominator_log2, sizes[place])) is not None:
+                return f"a form at {place}: {odd}"
         if d > 1:
             matrices = [mode.A.numerators for mode in system.modes]
             matrices += [reset.map.numerators for reset in system.switching.resets]
@@ -231,6 +233,9 @@ class FormsOnGraph(AbstractFunction):
         lost = self.covers_lost_contact
         if flows and not alone:
             return "in continuous time there is one form at each place"
+        chosen = any(edge.target is not None for edge in self.edges)
+        if chosen and not alone and (lost or self.covers_rounding):
+            return "edges lead to all nodes of a place where contact is lost or arithmetic rounds"
         if system.couplings and self.covers_coupling and not (alone and system.clock is None):
             return "axes that act on each other have one form at each place, and no turns"
         if self.stays is not None:
@@ -246,6 +251,23 @@ class FormsOnGraph(AbstractFunction):
             return "a polynomial has no multipliers, and covers no environment that could pull"
         return None
 
+    def _find_too_many(self, system: SwitchedSystem) -> str | None:
+        """Refuse more edges than can be checked in some seconds, before any is looked at."""
+        contact, too_many = system.contact, "there are too many edges to check"
+        if self.stays is None:
+            free, pulls = (0, 0) if contact is None else (len(contact.free), len(contact.pulls))
+            length = 1 if system.clock is None else system.clock.length
+            if (2 * len(system.modes) + free * (3 + 2 * pulls)) * length > MAX_STEPS:
+                return too_many
+        at = Counter(node.place for node in self.nodes)
+        size = max(len(node.form) for node in self.nodes)
+        whole = LEAST_WORK if len(self.nodes) == len(at) else max(LEAST_WORK, size**3)
+        work = 0
+        for step in self._steps(system):
+            known = len(self.multipliers) // 2 if step.facts else 0
+            work += at[step.source] * at[step.target] * (whole + known)
+        return too_many if work > MAX_WORK else None
+
     def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
         if any(item.value < 0 for item in self.multipliers):
             return "a multiplier is negative"
@@ -255,8 +277,8 @@ class FormsOnGraph(AbstractFunction):
             return "the multiplier of what axes do to each other is one for all"
         facts = {fact for step in self._steps(system) for fact in step.facts}
         keys = [(item.fact, item.target) for item in self.multipliers]
-        nodes = (None, *range(len(self.nodes)))
-        fit = all(fact in facts and target in nodes for fact, target in keys)
+        nodes = range(len(self.nodes))
+        fit = all(fact in facts and (to is None or to in nodes) for fact, to in keys)
         if len(set(keys)) < len(keys) or not fit:
             return "a multiplier belongs to no fact of the system, or a fact has two"
         return None
@@ -276,54 +298,50 @@ class FormsOnGraph(AbstractFunction):
 
     def _edges(self, system: SwitchedSystem) -> Iterator[tuple[int, AnyStep, int]]:
         """Yield the edges of the graph: nodes before and after, and the step between them."""
-        at: dict[str, list[int]] = {}
-        for k, node in enumerate(self.nodes):
-            at.setdefault(node.place, []).append(k)
+        at, drawn = self._nodes_at(), frozenset(self.edges)
         for step in self._steps(system):
             for a in at[step.source]:
                 for b in at[step.target]:
-                    if (a == b or not step.is_flow) and self._has(a, step.mode, b):
+                    ways = product((None, a), (None, step.mode), (None, b))
+                    if (a == b or not step.is_flow) and not drawn.isdisjoint(ways):
                         yield a, step, b
+
+    def _nodes_at(self) -> dict[str, list[int]]:
+        """Return the numbers of the nodes at every place."""
+        at: dict[str, list[int]] = {}
+        for k, node in enumerate(self.nodes):
+            at.setdefault(node.place, []).append(k)
+        return at
 
     def edges_in_time(self, system: SwitchedSystem) -> list[tuple[int, AnyStep, int]]:
         """Return the edges that take some time, in order."""
         return [edge for edge in self._edges(system) if edge[1].time]
 
-    def _has(self, source: int, mode: str, target: int) -> bool:
-        return any(
-            edge.source in (None, source)
-            and edge.mode in (None, mode)
-            and edge.target in (None, target)
-            for edge in self.edges
-        )
-
     def _find_gap(self, system: SwitchedSystem) -> str | None:
         """Say that a run can reach nodes from which some step has no edge, or None."""
         if self.edges == ALL:
             return None  # From every node to every node: a node at every place is enough.
-        after: dict[tuple[int, int], set[int]] = {}
-        steps = self._steps(system)
-        number = {id(step): k for k, step in enumerate(steps)}
+        after: dict[int, dict[int, list[int]]] = {}
+        leaving: dict[str, list[AnyStep]] = {}
+        for step in self._steps(system):
+            after[id(step)] = {}
+            leaving.setdefault(step.source, []).append(step)
         for a, step, b in self._edges(system):
-            after.setdefault((a, number[id(step)]), set()).add(b)
-        every = {
-            frozenset(k for k, node in enumerate(self.nodes) if node.place == place)
-            for place in self._places(system)
-        }
-        todo = list(every)
+            after[id(step)].setdefault(a, []).append(b)
+        every = {frozenset(nodes) for nodes in self._nodes_at().values()}
+        todo, work = list(every), 0
         while todo:
             nodes = todo.pop()
-            place = self.nodes[min(nodes)].place
-            for k, step in enumerate(steps):
-                if step.source != place:
-                    continue
-                reached = frozenset(b for a in nodes for b in after.get((a, k), ()))
-                if not reached:
+            for step in leaving.get(self.nodes[min(nodes)].place, ()):
+                ends = [b for a in nodes for b in after[id(step)].get(a, ())]
+                if not ends:
                     return f"the graph has no edge {step.where}"
+                reached = frozenset(ends)
                 if reached not in every:
                     every.add(reached)
                     todo.append(reached)
-                if len(every) > MAX_SETS:
+                work += LEAST_WORK // 8 * (len(nodes) + len(ends))
+                if len(every) > MAX_SETS or work > MAX_WORK:
                     return "the graph has too many sets of nodes"
         return None
 
@@ -394,7 +412,7 @@ class FormsOnGraph(AbstractFunction):
         if not isinstance(step, Step):
             return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
         before, after = self._restricted(a, step.states, system), self._after(step, b, system)
-        facts, d = self._multipliers_to(b), self.degree
+        facts, d = self._multipliers_to(b) if step.facts else {}, self.degree
         keeps = 2 * d * self.rate if step.is_flow else self.rate ** (2 * d * step.time)
         moved = step if d == 1 else lifted(step, d, self.rate)
         return moved.form(before, after, keeps, lambda fact: facts.get(fact, 0), multiply=multiply)
@@ -405,14 +423,13 @@ class FormsOnGraph(AbstractFunction):
     def _restricted(self, node: int, states: int, system: SwitchedSystem) -> Matrix:
         """Return the form of a node where all but the first states are zero."""
         place, form = self.nodes[node]
-        n = self._places(system)[place]
-        if n == states:
+        if len(form) == comb(states + self.degree - 1, self.degree):
             return form
         kept = list(range(states))
         if self.degree > 1:
             from nrs_design.proof.lift import monomials
 
-            terms = enumerate(monomials(n, self.degree))
+            terms = enumerate(monomials(self._places(system)[place], self.degree))
             kept = [k for k, term in terms if not any(term[states:])]
         return tuple(tuple(form[i][j] for j in kept) for i in kept)
 
@@ -423,7 +440,25 @@ class FormsOnGraph(AbstractFunction):
         each = Counter(node.place for node in self.nodes)
         count, once = max(each.values()), self.bounds_at_once
         lost = self.covers_lost_contact
-        return free_sentence(system, self.rate, self.degree, count, lost=lost, once=once)
+        return free_sentence(
+            system,
+            self.rate,
+            self.degree,
+            count,
+            lost=lost,
+            once=once,
+            # In continuous time, others rise at the surface.
+            alike=system.time is Time.CONTINUOUS or count > 1 or self._is_alike(),
+        )
+
+    def _is_alike(self) -> bool:
+        """Tell whether every quadratic form in free motion is that in contact, undeflected."""
+        forms = dict(self.nodes)
+        return all(
+            list(form) == leading(forms.get(place.replace(FREE, CONTACT, 1), ()))
+            for place, form in self.nodes
+            if place.startswith(FREE)
+        )
 
     def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
         """Repeat what belongs to a mode for its equals."""
@@ -452,80 +487,6 @@ class FormsOnGraph(AbstractFunction):
             source, target = (like.get(nodes[k].place, nodes[k].place) for k in (a, b))
             found.append(key[source, like.get(step.mode, step.mode), target, step.time])
         return replace(carried, vanishing=tuple(found))
-
-    def to_fields(self) -> dict[str, Any]:
-        """Return forms, rate and multipliers, and of all else what is not as usual."""
-        fields: dict[str, Any] = {
-            "nodes": [
-                {"place": place, "Q": matrix_fields(form, self.denominator_log2)}
-                for place, form in self.nodes
-            ],
-            "rate": str(self.rate),
-        }
-        if self.degree > 1:
-            fields["degree"] = 2 * self.degree
-            fields["vanishing"] = [[list(row) for row in N] for N in self.vanishing]
-        if self.multipliers:
-            fields["multipliers"] = [_named(item) for item in self.multipliers]
-        if self.edges != ALL:
-            fields["edges"] = [_named(edge) for edge in self.edges]
-        if self.stays is not None:
-            fields["stays"] = {"leaving": list(self.stays.leaving), "pieces": self.stays.pieces}
-        return fields
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read forms, rate and multipliers, and how places and edges are drawn."""
-        nodes, exponents = [], set()
-        for item in fields["nodes"]:
-            form, exponent = read_dyadic(item["Q"])
-            nodes.append(Node(read_text(item["place"]), form))
-            exponents.add(exponent)
-        if len(exponents) != 1:
-            raise ValueError("the forms do not share one denominator")
-        half, odd = divmod(read_integer(fields.get("degree", 2)), 2)
-        if odd:
-            raise ValueError("the degree is odd")
-        multipliers = tuple(
-            Multiplier(
-                read_text(item["fact"]), _optional(item.get("target")), read_integer(item["value"])
-            )
-            for item in fields.get("multipliers", [])
-        )
-        edges = tuple(
-            Arc(
-                _optional(item.get("source")),
-                read_text(item["mode"]) if "mode" in item else None,
-                _optional(item.get("target")),
-            )
-            for item in fields.get("edges", [{}])
-        )
-        vanishing = tuple(read_integers(N) for N in fields.get("vanishing", []))
-        stays = None
-        if "stays" in fields:
-            from nrs_design.proof.stays import Stays
-
-            leaving = tuple(read_text(name) for name in fields["stays"]["leaving"])
-            stays = Stays(leaving, read_integer(fields["stays"]["pieces"]))
-        return cls(
-            tuple(nodes),
-            exponents.pop(),
-            read_ratio(fields["rate"]),
-            half,
-            multipliers,
-            vanishing,
-            edges,
-            stays,
-        )
-
-
-def _named(item: Multiplier | Arc) -> dict[str, Any]:
-    """Return what is said of a multiplier or an edge; nothing stands for any."""
-    return {key: value for key, value in item._asdict().items() if value is not None}
-
-
-def _optional(value: object) -> int | None:
-    return None if value is None else read_integer(value)
 
 
 def _at(place: str, turn: int) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from itertools import product
 from math import comb, lcm
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
@@ -167,6 +168,7 @@ class FormsOnGraph(AbstractFunction):
             or self._find_odd_places(system)
             or self._find_odd_size(system)
             or self._find_odd_stays(system)
+            or self._find_too_many_edges(system)
             or self._find_odd_shape(system)
             or self._find_odd_multiplier(system)
             or self._find_gap(system)
@@ -180,7 +182,7 @@ class FormsOnGraph(AbstractFunction):
         from nrs_design.proof.stays import find_odd_stays
 
         bits = (self.rate**self.degree).denominator.bit_length()
-        return find_odd_stays(system, self.stays, bits)
+        return find_odd_stays(system, self.stays, bits, self.degree)
 
     def _places(self, system: SwitchedSystem) -> dict[str, int]:
         """Return every place with the number of its states."""
@@ -211,18 +213,24 @@ class FormsOnGraph(AbstractFunction):
         for place, form in self.nodes:
             if not is_square(form, sizes[place]):
                 return f"a form at {place} is not a {sizes[place]} x {sizes[place]} matrix"
-        count = sum(len([n for n in self.nodes if n.place == place]) ** 2 for place in places)
-        if self.stays is None and count * len(system.modes) * max(sizes.values()) ** 3 > MAX_WORK:
-            return "there are too many edges to check"
         if d > 1:
-            matrices = [mode.A.numerators for mode in system.modes]
-            matrices += [reset.map.numerators for reset in system.switching.resets]
-            matrices += [((mode.A.denominator,),) for mode in system.modes]
+            maps = [mode.A for mode in system.modes]
+            maps += [reset.map for reset in system.switching.resets]
+            matrices = [A.numerators for A in maps] + [((A.denominator,),) for A in maps]
             factors = 1 if system.time is Time.CONTINUOUS else 2 * d
             bits = max(bit_length(node.form) for node in self.nodes)
             bits += factors * max(map(bit_length, matrices))
             if max(sizes.values()) ** 3 * bits > MAX_WORK:
                 return "its numbers are too large to check"
+        return None
+
+    def _find_too_many_edges(self, system: SwitchedSystem) -> str | None:
+        at = Counter(node.place for node in self.nodes)
+        if self.stays is not None and len(at) == len(self.nodes):
+            return None  # There are as many as switches, which are counted.
+        count = sum(at[step.source] * at[step.target] for step in self._steps(system))
+        if count * max(len(node.form) for node in self.nodes) ** 3 > MAX_WORK:
+            return "there are too many edges to check"
         return None
 
     def _find_odd_shape(self, system: SwitchedSystem) -> str | None:
@@ -279,23 +287,17 @@ class FormsOnGraph(AbstractFunction):
         at: dict[str, list[int]] = {}
         for k, node in enumerate(self.nodes):
             at.setdefault(node.place, []).append(k)
+        drawn = set(self.edges)
         for step in self._steps(system):
-            for a in at[step.source]:
-                for b in at[step.target]:
-                    if (a == b or not step.is_flow) and self._has(a, step.mode, b):
-                        yield a, step, b
+            for a, b in product(at[step.source], at[step.target]):
+                # None stands for any.
+                names = product((None, a), (None, step.mode), (None, b))
+                if (a == b or not step.is_flow) and any(name in drawn for name in names):
+                    yield a, step, b
 
     def edges_in_time(self, system: SwitchedSystem) -> list[tuple[int, AnyStep, int]]:
         """Return the edges that take some time, in order."""
         return [edge for edge in self._edges(system) if edge[1].time]
-
-    def _has(self, source: int, mode: str, target: int) -> bool:
-        return any(
-            edge.source in (None, source)
-            and edge.mode in (None, mode)
-            and edge.target in (None, target)
-            for edge in self.edges
-        )
 
     def _find_gap(self, system: SwitchedSystem) -> str | None:
         """Say that a run can reach nodes from which some step has no edge, or None."""

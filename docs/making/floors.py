@@ -13,27 +13,38 @@ from collections.abc import Iterator
 from html import escape
 from pathlib import Path
 
-CELL, LEFT, TOP = 22, 130, 130
+CELL, LEFT, TOP = 26, 190, 190
 
 
-def floors_of(text: str) -> list[str]:
+# The folders and modules that stand on a floor.
+Floor = tuple[str, ...]
+
+
+def floors_of(text: str) -> list[Floor]:
     """Return the floors that a page lists in its table, the top one first."""
     rows = re.findall(r"^\| ((?:`\w+`,? ?)+) \|", text, re.MULTILINE)
-    return [name for row in rows for name in re.findall(r"`(\w+)`", row)]
+    return [tuple(re.findall(r"`(\w+)`", row)) for row in rows]
 
 
-def imports_between(package: Path, floors: list[str]) -> Counter[tuple[str, str]]:
-    """Count the modules of one floor that import another floor, by both names."""
+def imports_between(package: Path, floors: list[Floor]) -> Counter[tuple[Floor, Floor]]:
+    """Count the modules of one floor that import another floor."""
+    on = {name: floor for floor in floors for name in floor}
     return Counter(
-        (source, target)
+        (on[source], target)
         for path in sorted(package.rglob("*.py"))
-        if (source := path.relative_to(package).with_suffix("").parts[0]) in floors
-        for target in {*_targets(path, package.name)} & {*floors} - {source}
+        if (source := path.relative_to(package).with_suffix("").parts[0]) in on
+        for target in {on[name] for name in _targets(path, package.name) if name in on}
+        if target != on[source]
     )
 
 
+def label(floor: Floor) -> str:
+    """Name a floor by its first folders."""
+    return ", ".join(floor[:2]) + (", ..." if len(floor) > 2 else "")
+
+
 def _targets(path: Path, package: str) -> Iterator[str]:
-    """Yield the floors that a file imports from."""
+    """Yield the folders that a file imports from."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == package:
             inner = (node.module or "").split(".")[1:]
@@ -71,9 +82,9 @@ def drawing(package: Path, text: str) -> str:
     )
 
 
-def _labels(floors: list[str]) -> Iterator[str]:
-    for place, name in enumerate(floors):
-        middle = CELL * place + CELL / 2
+def _labels(floors: list[Floor]) -> Iterator[str]:
+    for place, floor in enumerate(floors):
+        name, middle = label(floor), CELL * place + CELL / 2
         yield (
             f'<text x="{LEFT - 6}" y="{TOP + middle + 4}" text-anchor="end">{escape(name)}</text>'
             f'<text transform="translate({LEFT + middle + 4} {TOP - 6}) rotate(-90)">'
@@ -87,12 +98,12 @@ def _labels(floors: list[str]) -> Iterator[str]:
         )
 
 
-def _marks(floors: list[str], counted: Counter[tuple[str, str]]) -> Iterator[str]:
+def _marks(floors: list[Floor], counted: Counter[tuple[Floor, Floor]]) -> Iterator[str]:
     for (source, target), count in sorted(counted.items()):
         x = LEFT + CELL * floors.index(target) + CELL / 2
         y = TOP + CELL * floors.index(source) + CELL / 2
         radius = min(2.5 + 1.3 * count**0.5, CELL / 2 - 1)
         yield (
             f'<circle cx="{x}" cy="{y}" r="{radius:.1f}">'
-            f"<title>{source} imports {target}: {count}</title></circle>"
+            f"<title>{label(source)} import {label(target)}: {count}</title></circle>"
         )

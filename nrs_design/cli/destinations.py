@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
@@ -62,8 +62,8 @@ class Destinations:
         answer: Answer,
         page: Callable[[], Report],
         merge: Callable[[LoadedSpec], str] | None = None,
+        doubts: Iterable[str] = (),
         caveats: Iterable[str] = (),
-        slips: Sequence[str] = (),
     ) -> Answer:
         """Write a result to where it is wanted; return the answer, with what a spec has refused.
 
@@ -75,11 +75,10 @@ class Destinations:
             Returns the page.
         merge : callable, optional
             Returns the spec with the result in it.
+        doubts : iterable of str
+            What speaks against the result.
         caveats : iterable of str
-            What is doubtful about values that are merged.
-        slips : sequence of str
-            Why the data are likely read in another unit or sign: the result is then no success,
-            and the exit code says so.
+            What to say instead where the result is merged: a proof will rest on it.
         """
         refused, merged = None, None
         if merge is not None and self.spec is not None:
@@ -94,21 +93,18 @@ class Destinations:
                 _write_page(self.report, page(), self.date)
             note(f"page written to {self.report}")
         if self.spec is not None and merged is not None:
-            # A proof will rest on these values: no option silences this.
-            for caveat in caveats:
-                insist(f"warning: {caveat}")
+            doubts = caveats
+        if refused is None:
+            # No option silences this.
+            for doubt in doubts:
+                insist(f"warning: {doubt}")
+        if self.spec is not None and merged is not None:
             _write_spec(self.spec, merged)
-        elif refused is None:
-            for slip in slips:
-                insist(f"warning: {slip}")
         if self.spec is not None:
             not_written = None if refused is None else error_summary(refused)
             facts = answer.facts
             answer = replace(answer, facts=lambda: facts() | {"not_written": not_written})
-        if refused is not None or slips:
-            code = exit_codes.INCONCLUSIVE if refused is None else exit_codes.USAGE
-            return replace(answer, code=code)
-        return answer
+        return answer if refused is None else replace(answer, code=exit_codes.USAGE)
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:

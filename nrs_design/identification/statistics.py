@@ -55,14 +55,13 @@ class Estimate:
 
     def __str__(self) -> str:
         """Return value and interval in words, its ends rounded outwards."""
-        wide = self.widened
+        wide = self.outward()
         return f"{self.value:.{_DIGITS}g} [{wide.low:.{_DIGITS}g}, {wide.high:.{_DIGITS}g}]"
 
-    @property
-    def widened(self) -> Estimate:
-        """The estimate with ends rounded outwards to the digits that are shown."""
-        low, high = _rounded(self.low, ROUND_FLOOR), _rounded(self.high, ROUND_CEILING)
-        return Estimate(self.value, low, high)
+    def outward(self, digits: int = _DIGITS) -> Estimate:
+        """Return the estimate with ends rounded outwards to so many digits."""
+        low = _rounded(self.low, digits, ROUND_FLOOR)
+        return Estimate(self.value, low, _rounded(self.high, digits, ROUND_CEILING))
 
     def covers(self, value: float) -> bool:
         """Tell whether a value lies in the interval."""
@@ -243,8 +242,24 @@ def tolerance_factor(count: int, share: float, confidence: float) -> float:
     return float(nctdtrit(count - 1, noncentrality, 0.5 + confidence / 2)) / math.sqrt(count)
 
 
-def _rounded(value: float, rounding: str) -> float:
-    return float(Context(prec=_DIGITS, rounding=rounding).create_decimal(Decimal(value)))
+def span(low: float, high: float, unit: str = "", digits: int = 4) -> str:
+    """Write a range, or one number where both ends are written alike.
+
+    Parameters
+    ----------
+    low, high : float
+        The ends, rounded to the nearest number.
+    unit : str
+        Behind them.
+    digits : int
+        Significant ones.
+    """
+    ends = dict.fromkeys(f"{end:.{digits}g}" for end in (low, high))
+    return f"{' to '.join(ends)} {unit}".rstrip()
+
+
+def _rounded(value: float, digits: int, rounding: str) -> float:
+    return float(Context(prec=digits, rounding=rounding).create_decimal(Decimal(value)))
 
 
 def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import PoseRecord
+from nrs_design.identification.datasets import PoseRecord, Source
 from nrs_design.identification.statistics import Estimate, student_quantile
 from nrs_design.identification.tool_causes import likely_cause
 from nrs_design.spec.plausible import doubt_size
@@ -54,14 +54,19 @@ class ToolIdentification:
         return float(force), float(torque)
 
     @property
-    def slips(self) -> tuple[str, ...]:
-        """Doubts that say that the data are likely read in another unit."""
-        return _slips(self.mass.value, self.center)
+    def sources(self) -> tuple[Source, ...]:
+        """The files."""
+        return tuple(record.source for record in self.records)
 
     @property
-    def synthetic(self) -> bool:
-        """Whether some of the data are."""
-        return any(record.source.synthetic for record in self.records)
+    def remarks(self) -> tuple[str, ...]:
+        """None."""
+        return ()
+
+    @property
+    def caveats(self) -> tuple[str, ...]:
+        """The doubts."""
+        return self.doubts
 
 
 def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentification:
@@ -113,13 +118,13 @@ def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentifi
         torques.estimates()[3:],
         *errors,
         (
-            *_slips(mass.value, center),
+            *_sizes(mass.value, center),
             *_doubts(records, spread, errors, mass.value * gravity, center),
         ),
     )
 
 
-def _slips(mass: float, center: Sequence[Estimate]) -> tuple[str, ...]:
+def _sizes(mass: float, center: Sequence[Estimate]) -> tuple[str, ...]:
     """Return what is asked about the sizes of what was found."""
     away = math.hypot(*(estimate.value for estimate in center))
     sizes = ("mass", "mass", mass, "kg"), ("distance of its center", "center_of_mass", away, "m")

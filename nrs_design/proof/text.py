@@ -12,7 +12,8 @@ def quoted(text: str) -> str:
 
 def counted(number: int, noun: str) -> str:
     """Write a number with a noun in its singular or plural."""
-    return f"{number} {noun}{'s' * (number != 1)}"
+    ending = "es" if noun.endswith("ch") else "s"
+    return f"{number} {noun}{ending * (number != 1)}"
 
 
 def exact_text(number: Fraction) -> str:

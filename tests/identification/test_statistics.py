@@ -11,6 +11,7 @@ from nrs_design.identification.statistics import (
     independent,
     ljung_box,
     quotients,
+    span,
     student_quantile,
     uncertainty,
 )
@@ -28,6 +29,17 @@ def test_an_interval_is_shown_rounded_outwards():
     assert str(Estimate(399.948, 399.776, 400.1211)) == "399.95 [399.77, 400.13]"
     assert str(Estimate(2.0, 0.0, math.inf)) == "2 [0, inf]"
     assert str(Estimate(0.25, -1.000001, 1.0)) == "0.25 [-1.0001, 1]"
+
+
+def test_fewer_digits_are_rounded_outwards_too():
+    wide = Estimate(0.0123, 0.012345, 0.012341).outward(3)
+    assert (wide.low, wide.high) == (0.0123, 0.0124)
+
+
+def test_a_range_of_one_number_is_written_once():
+    assert span(0.005, 0.005 + 1e-12, "s") == "0.005 s"
+    assert span(0.005, 0.006, "s") == "0.005 to 0.006 s"
+    assert span(2, 3) == "2 to 3"
 
 
 def test_interval_is_symmetric_in_the_logarithm():

@@ -1,4 +1,4 @@
-"""Run the tests of `nrs_design/proof/` once for every mutant: nox -s mutation -- exact evidence/graph."""
+"""Run the tests of `nrs_design/proof/` once for every mutant."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from nrs_design.proof.text import counted, exact_text, quoted
 
 def test_one_is_singular():
     assert [counted(number, "reset") for number in (0, 1, 2)] == ["0 resets", "1 reset", "2 resets"]
+    assert [counted(number, "switch") for number in (1, 2)] == ["1 switch", "2 switches"]
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
 from nrs_design.identification.datasets.checks import doubt_step
-from nrs_design.identification.statistics import WHITE, Estimate
+from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.progress import Progress, silent
@@ -66,29 +66,18 @@ class ActuatorIdentification:
         return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
-    def slips(self) -> tuple[str, ...]:
-        """Doubts that say that the data are likely read in another unit."""
-        return tuple(
-            doubt for doubt in self.doubts if doubt in _slips(self.chosen, self.unit, self.step)
-        )
-
-    @property
     def caveats(self) -> tuple[str, ...]:
         """What whoever uses the motor in a proof must know: doubts, and a dead time."""
         late = self.chosen.dead_time
         if late is None or late.low == 0.0:
             return self.doubts
+        wide = late.outward(3)
         return (
             *self.doubts,
-            f"the motor has a dead time of {late.low:.3g} s to {late.high:.3g} s ({FROM_THE_ROW}), "
+            f"the motor has a dead time of {span(wide.low, wide.high, 's')} ({FROM_THE_ROW}), "
             "which the proof leaves out: it acts on the motion loop, so that it is no part of "
             "sampling.delay (the age of the force sample)",
         )
-
-    @property
-    def synthetic(self) -> bool:
-        """Whether any of the data are synthetic."""
-        return any(source.synthetic for source in self.sources)
 
 
 def identify_actuator(

@@ -8,7 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.identification.statistics import span
 from nrs_design.identification.tables.table import Array, MeasurementTable
+from nrs_design.proof.text import counted
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.quantity import SMALLEST
 
@@ -61,9 +63,9 @@ def pauses_text(time: Array) -> str | None:
     if (count := len(stretches_in(time)) - 1) == 0:
         return None
     kept = long_stretches(time)
-    spans = ", ".join(f"{time[r.start]:.4g} s to {time[r.stop - 1]:.4g} s" for r in kept)
+    spans = ", ".join(span(time[r.start], time[r.stop - 1], "s") for r in kept)
     left = len(time) - sum(rows.stop - rows.start for rows in kept)
-    short = f"; {left} samples in shorter stretches are left out" if left else ""
+    short = f"; {counted(left, 'sample')} in shorter stretches: left out" if left else ""
     many = f"{count} pauses part the record" if count > 1 else "a pause parts the record"
     joined = "its stretches are fitted together" if len(kept) > 1 else "this stretch is fitted"
     return f"{many}: {joined} ({spans}){short}"

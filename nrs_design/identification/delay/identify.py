@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import SignalRecord
+from nrs_design.identification.datasets import SignalRecord, Source
 from nrs_design.identification.datasets.checks import (
     FEWEST_ROWS,
     doubt_step,
@@ -29,10 +29,10 @@ from nrs_design.identification.delay.models import (
     SmoothCopy,
 )
 from nrs_design.identification.statistics import (
-    CONFIDENCE,
     WHITE,
     Estimate,
     independent,
+    joint_level,
     student_quantile,
 )
 from nrs_design.spec.plausible import doubt_size
@@ -121,11 +121,9 @@ class DelayIdentification:
         return isinstance(self.chosen.follower, SmoothCopy | HeldCopy)
 
     @property
-    def slips(self) -> tuple[str, ...]:
-        """What is asked about the size of the delay, the steps of time and the signs."""
-        asked = doubt_size("delay", self.delay.value, "s")
-        said = () if asked is None else (f"the delay is {self.delay.value:.4g} s: {asked}",)
-        return (*doubt_step(self.record.step), *said, *_opposed(self.record, self.chosen))
+    def sources(self) -> tuple[Source, ...]:
+        """The file."""
+        return (self.record.source,)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -143,14 +141,12 @@ class DelayIdentification:
     @property
     def caveats(self) -> tuple[str, ...]:
         """What whoever takes it for the age of a sample must know: doubts, and dynamics."""
-        sized = [said for said in self.slips if said not in self.doubts]
         if self._is_copy:
-            return (*self.doubts, *sized)
+            return self.doubts
         sent, seen = self.record.names
         name = self.chosen.follower.name
         return (
             *self.doubts,
-            *sized,
             f"{name} fits better between {sent} and {seen} than a mere delay",
         )
 
@@ -287,7 +283,7 @@ def _interval(record: SignalRecord, fit: DelayFit) -> Estimate:
     """Return the delay in samples with its 95 % interval; it may be below zero."""
     value = fit.delay / record.step
     if isinstance(fit.follower, HeldCopy):
-        return _held_interval(record, fit, fit.rows, round(value), CONFIDENCE)
+        return _held_interval(record, fit, fit.rows, round(value), joint_level(1))
     half = student_quantile(fit.uncertainty.degrees) * float(fit.uncertainty.errors[0])
     if unknown := _unknown(fit):
         # A search ends a little off, also where no noise shows it.
@@ -420,7 +416,7 @@ def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[
     edges = np.arange(_PARTS + 1) * len(fit.rows) // _PARTS
     noise = float(fit.errors @ fit.errors) / max(len(fit.errors) - len(fit.follower.shape) - 3, 1)
     total = float(fit.sensitivity @ fit.sensitivity)
-    quantile = student_quantile(len(fit.errors), 1 - (1 - CONFIDENCE) / _PARTS)
+    quantile = student_quantile(len(fit.errors), joint_level(_PARTS))
     for first, last in pairwise(edges.tolist()):
         # A part without motion tells nothing about a delay.
         if float(np.sum(fit.sensitivity[first:last] ** 2)) <= total / _PARTS**2:
@@ -428,7 +424,7 @@ def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[
         rows = fit.rows[first:last]
         middle = float(record.time[rows].mean())
         if isinstance(fit.follower, HeldCopy):
-            level = 1 - (1 - CONFIDENCE) / _PARTS
+            level = joint_level(_PARTS)
             yield middle, _held_interval(record, fit, rows, round(value), level)
             continue
         own, power = _own_delay(record, fit, rows, value)
@@ -504,11 +500,6 @@ def _other_than_one_frequency(record: SignalRecord) -> float:
     return float(found.fun) / max(float(sent @ sent), np.finfo(float).tiny)
 
 
-def _opposed(record: SignalRecord, fit: DelayFit) -> Iterator[str]:
-    if fit.gain < 0:
-        yield f"{record.names[1]} moves against {record.names[0]}: their signs are opposite"
-
-
 def _untold(record: SignalRecord, samples: Estimate) -> str | None:
     """Say that an interval is longer than its record: it is no number to show without a doubt."""
     length = float(np.ptp(record.time))
@@ -527,6 +518,9 @@ def _doubts(
     untold: str | None,
 ) -> Iterator[str]:
     yield from doubt_step(record.step)
+    late = max(value, 0.0) * record.step
+    if asked := doubt_size("delay", late, "s"):
+        yield f"the delay is {late:.4g} s: {asked}"
     if untold is not None:
         yield f"the delay is {untold}"
     # Where the fit tells nothing, the correlation still tells which column comes first.
@@ -536,7 +530,8 @@ def _doubts(
             f"{record.names[1]} comes {early:.3g} samples before {record.names[0]}: the columns "
             "are swapped, or their clocks differ"
         )
-    yield from _opposed(record, fit)
+    if fit.gain < 0:
+        yield f"{record.names[1]} moves against {record.names[0]}: their signs are opposite"
     missed = _missed_part(record, fit)
     if missed > _MISSED and fit.uncertainty.whiteness < WHITE:
         yield f"the model misses {100 * missed:.2g} % of the motion, in errors that are not noise"
@@ -548,6 +543,6 @@ def _doubts(
     latest = max((part for _, part in parts), key=lambda part: part.low, default=None)
     if earliest and latest and earliest.high + _NOTABLE < latest.low:
         yield (
-            f"the delay varies: at most {earliest.high:.3g} samples in one part of the record, at "
-            f"least {latest.low:.3g} in another"
+            f"the delay varies: at most {earliest.outward(3).high:g} samples in one part of the "
+            f"record, at least {latest.outward(3).low:g} in another"
         )

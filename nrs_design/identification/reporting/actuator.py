@@ -15,6 +15,7 @@ from nrs_design.identification.reporting.identification import (
     identification_page,
     in_interval,
     label_of,
+    marked,
 )
 from nrs_design.reporting.document import Block, Bullets, Illustration, Report, Section, Table
 from nrs_design.reporting.formatting import number
@@ -36,26 +37,23 @@ def actuator_report(found: ActuatorIdentification) -> Report:
     if fit.dead_time:
         values.append(f"dead time {in_interval(fit.dead_time)} s")
     return identification_page(
+        found,
         name="actuator",
         title=f"Velocity model of order {fit.order} with Coulomb friction and dead time",
         claim=f"{', '.join(values)}. {found.reason}",
-        remarks=(
-            *(f"Remark: {remark}." for remark in found.remarks),
-            *(f"Doubt: {doubt}." for doubt in found.doubts),
-        ),
-        sources=found.sources,
         sections=(
-            Section("Fits", (_fits(found), *_ranges(found), *_derived(found))),
+            Section("Fits", (fits(found), *_ranges(found), *_derived(found))),
             *_bode(found),
             *_actuator_records(found),
         ),
     )
 
 
-def _fits(found: ActuatorIdentification) -> Table:
+def fits(found: ActuatorIdentification) -> Table:
+    """Return the estimates of every method."""
     rows = tuple(
         (
-            fit.method + (" (chosen)" if fit is found.chosen else ""),
+            marked(fit.method, chosen=fit is found.chosen),
             in_interval(fit.gain),
             in_interval(fit.time_constant),
             in_interval(fit.friction) if fit.friction else "not determined",
@@ -102,7 +100,7 @@ def _bode(found: ActuatorIdentification) -> Iterator[Section]:
     figure = Illustration(
         "bode",
         "Velocity over command",
-        f"{label_of(found.synthetic)}Magnitude relative to 1 (rad/s)/{found.unit}. The first "
+        f"{label_of(found.sources)}Magnitude relative to 1 (rad/s)/{found.unit}. The first "
         "harmonic of the friction is taken off the command.",
         draw_bode(found),
     )
@@ -133,7 +131,7 @@ def _output_figure(found: ActuatorIdentification, index: int, name: str) -> Illu
     return Illustration(
         f"{'angle' if record.is_angle else 'velocity'}-{name}",
         f"{record.name}{hertz}",
-        f"{label_of(found.synthetic)}The chosen fit; only the initial state is adapted to this "
+        f"{label_of(found.sources)}The chosen fit; only the initial state is adapted to this "
         "record.",
         draw_fit(record.time, record.output, fitted, label),
     )

@@ -5,8 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.identification.reporting.figures.delay import draw_delay, draw_following
-from nrs_design.identification.reporting.identification import identification_page, label_of
-from nrs_design.reporting.document import Bullets, Illustration, Report, Section, Table
+from nrs_design.identification.reporting.identification import (
+    identification_page,
+    in_interval,
+    label_of,
+    marked,
+)
+from nrs_design.identification.statistics import span
+from nrs_design.reporting.document import Illustration, Report, Section, Table
 from nrs_design.reporting.formatting import number
 
 if TYPE_CHECKING:
@@ -23,38 +29,23 @@ _MEANING = (
 def delay_report(found: DelayIdentification) -> Report:
     """Say and draw everything about the delay of a record."""
     record, samples = found.record, found.samples
-    low, high = found.whole_samples
     sent, seen = record.names
-    rows = tuple(
-        (
-            fit.follower.name + (" (chosen)" if fit is found.chosen else ""),
-            number(fit.delay / record.step, 4),
-            number(fit.bic - found.chosen.bic, 4),
-        )
-        for fit in found.fits
-    )
-    table = Table("Delay beside each model", ("Beside", "Samples", "BIC - least"), rows)
     return identification_page(
+        found,
         name="delay",
         title=f"Delay from {sent} to {seen}",
-        claim=f"{number(samples.value, 4)} "
-        f"[{number(samples.low, 4)}, {number(samples.high, 4)}] samples of "
-        f"{number(record.step, 4)} s, beside {found.chosen.follower.name}. Whole samples that hold "
-        f"it and every part of the record: {low} to {high}.",
-        remarks=(
-            *(f"Remark: {remark}." for remark in found.remarks),
-            *(f"Doubt: {doubt}." for doubt in found.doubts),
-        ),
-        sources=[record.source],
+        claim=f"{in_interval(samples)} samples of {number(record.step, 4)} s, beside "
+        f"{found.chosen.follower.name}. Whole samples that hold it and every part of the record: "
+        f"{span(*found.whole_samples)}.",
         sections=(
-            Section("Models", (table,)),
+            Section("Models", (delays(found),)),
             Section(
                 "Figures",
                 (
                     Illustration(
                         "following",
                         "Measured against fitted",
-                        f"{label_of(record.source.synthetic)}Where the command changes most.",
+                        f"{label_of(found.sources)}Where the command changes most.",
                         draw_following(found),
                     ),
                     Illustration(
@@ -65,6 +56,20 @@ def delay_report(found: DelayIdentification) -> Report:
                     ),
                 ),
             ),
-            Section("How to read this", (Bullets("", _MEANING),), boxed=True),
         ),
+        meaning=_MEANING,
     )
+
+
+def delays(found: DelayIdentification) -> Table:
+    """Return the delay beside each model."""
+    least = min(fit.bic for fit in found.fits)
+    rows = tuple(
+        (
+            marked(fit.follower.name, chosen=fit is found.chosen),
+            number(fit.delay / found.record.step),
+            number(fit.bic - least),
+        )
+        for fit in found.fits
+    )
+    return Table("Delay beside each model", ("Beside", "Samples", "BIC - least"), rows)

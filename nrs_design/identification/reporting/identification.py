@@ -7,11 +7,13 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from nrs_design import __version__
-from nrs_design.reporting.document import Light, Report, Section, State, Table
+from nrs_design.identification.finding import is_synthetic
+from nrs_design.reporting.document import Bullets, Light, Report, Section, State, Table
 from nrs_design.reporting.formatting import number, plural
 
 if TYPE_CHECKING:
     from nrs_design.identification.datasets import Source
+    from nrs_design.identification.finding import Finding
     from nrs_design.identification.statistics import Estimate
 
 IDENTIFIED = "identified"
@@ -34,46 +36,49 @@ def facts_of(sources: Iterable[Source]) -> tuple[tuple[str, str], ...]:
 
 
 def identification_page(
+    found: Finding,
     name: str,
     title: str,
     claim: str,
-    remarks: Sequence[str],
-    sources: Sequence[Source],
     sections: Iterable[Section],
+    meaning: Sequence[str] = (),
 ) -> Report:
     """Return the page about what was found from data; the claim begins with what they are.
 
     Parameters
     ----------
+    found : Finding
+        With the files, which the last section names, and the doubts, which a light counts.
     name, title, claim : str
         Of the page.
-    remarks : sequence of str
-        Doubts, in full sentences; the lights count them.
-    sources : sequence of Source
-        The files, which the last section names.
     sections : iterable of Section
-        What stands before that.
+        What stands between.
+    meaning : sequence of str
+        How to read it.
     """
+    read = Section("How to read this", (Bullets("", tuple(meaning)),), boxed=True)
     return Report(
         name=name,
         title=title,
         verdict=IDENTIFIED,
-        claim=f"{label_of(any(source.synthetic for source in sources))}{claim}",
-        remarks=tuple(remarks),
-        lights=_lights(sources, len(remarks)),
-        facts=facts_of(sources),
-        sections=(*sections, source_section(sources)),
+        claim=f"{label_of(found.sources)}{claim}",
+        remarks=(
+            *(f"Remark: {remark}." for remark in found.remarks),
+            *(f"Doubt: {caveat}." for caveat in found.caveats),
+        ),
+        lights=_lights(found),
+        facts=facts_of(found.sources),
+        sections=(*sections, *([read] if meaning else ()), source_section(found.sources)),
         footer=FOOTER,
     )
 
 
-def _lights(sources: Iterable[Source], doubts: int) -> tuple[Light, Light]:
-    synthetic = any(source.synthetic for source in sources)
+def _lights(found: Finding) -> tuple[Light, Light]:
     data = Light("Data", State.GOOD, "measured", FILES)
-    if synthetic:
+    if is_synthetic(found.sources):
         data = Light("Data", State.DOUBTFUL, "SYNTHETIC, made by a simulation", FILES)
-    if doubts:
-        return data, Light("Doubts", State.DOUBTFUL, plural(doubts, "doubt"))
+    if found.caveats:
+        return data, Light("Doubts", State.DOUBTFUL, plural(len(found.caveats), "doubt"))
     return data, Light("Doubts", State.GOOD, "none")
 
 
@@ -86,19 +91,24 @@ def source_section(sources: Iterable[Source]) -> Section:
     return Section(FILES, (Table("Files", ("File", "Data", "SHA-256"), rows),))
 
 
-def label_of(synthetic: bool) -> str:
+def label_of(sources: Sequence[Source]) -> str:
     """Return what must stand before anything that comes of synthetic data."""
-    return _SYNTHETIC if synthetic else ""
+    return _SYNTHETIC if is_synthetic(sources) else ""
+
+
+def marked(name: str, *, chosen: bool) -> str:
+    """Return the name of a fit in a table of several."""
+    return f"{name} (chosen)" if chosen else name
 
 
 def in_interval(estimate: Estimate) -> str:
     """Return an estimate with its interval, as wide as it is claimed."""
-    wide = estimate.widened
+    wide = estimate.outward()
     return f"{_short(estimate.value)} [{_short(wide.low)}, {_short(wide.high)}]"
 
 
 def _short(value: float) -> str:
-    return number(value, 5) if value >= 1e-3 or value == 0 else f"{value:.4e}"
+    return number(value, 5) if abs(value) >= 1e-3 or value == 0 else f"{value:.4e}"
 
 
 def figure_names(names: Sequence[str]) -> list[str]:

@@ -46,7 +46,7 @@ def run_report(found: RunJudgement, name: str, reason: str) -> Report:
         name=f"run-{name}",
         title=f"A run of {name}",
         verdict=found.verdict,
-        claim=f"{label_of(log.source.synthetic)}{_claim(found)}",
+        claim=f"{label_of([log.source])}{_claim(found)}",
         remarks=loud,
         facts=facts_of([log.source]),
         sections=(

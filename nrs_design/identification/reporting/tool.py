@@ -5,8 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nrs_design.identification.reporting.figures.tool import draw_errors
-from nrs_design.identification.reporting.identification import identification_page, label_of
-from nrs_design.reporting.document import Bullets, Illustration, Report, Section, Table
+from nrs_design.identification.reporting.identification import (
+    identification_page,
+    in_interval,
+    label_of,
+)
+from nrs_design.reporting.document import Illustration, Report, Section, Table
 from nrs_design.reporting.formatting import number, plural
 
 if TYPE_CHECKING:
@@ -23,25 +27,16 @@ _MEANING = (
 
 def tool_report(found: ToolIdentification) -> Report:
     """Say and draw everything about the identification of a tool."""
-    sources = [record.source for record in found.records]
-    note = label_of(found.synthetic)
-    rows = tuple(
-        (axis, *map(str, estimates))
-        for axis, *estimates in zip(
-            "xyz", found.center, found.force_bias, found.torque_bias, strict=True
-        )
-    )
-    columns = ("Along", "Center of mass [m]", "Bias of the force [N]", "Bias of the torque [N·m]")
+    note = label_of(found.sources)
     force, torque = found.rmse
     return identification_page(
+        found,
         name="tool",
         title=f"Tool on the force sensor, from {plural(len(found.force_errors), 'pose')}",
         claim=f"Mass {found.mass} kg; center of mass "
         f"{', '.join(number(e.value, 4) for e in found.center)} m from the origin of the sensor.",
-        remarks=tuple(f"Doubt: {doubt}." for doubt in found.doubts),
-        sources=sources,
         sections=(
-            Section("Tool and bias", (Table("Estimates [95 % interval]", columns, rows),)),
+            Section("Tool and bias", (estimates(found),)),
             Section(
                 "Measured less fitted",
                 (
@@ -54,6 +49,14 @@ def tool_report(found: ToolIdentification) -> Report:
                     ),
                 ),
             ),
-            Section("How to read this", (Bullets("", _MEANING),), boxed=True),
         ),
+        meaning=_MEANING,
     )
+
+
+def estimates(found: ToolIdentification) -> Table:
+    """Return center of mass and bias along each axis."""
+    along = zip("xyz", found.center, found.force_bias, found.torque_bias, strict=True)
+    rows = tuple((axis, *map(in_interval, values)) for axis, *values in along)
+    columns = ("Along", "Center of mass [m]", "Bias of the force [N]", "Bias of the torque [N·m]")
+    return Table("Estimates [95 % interval]", columns, rows)

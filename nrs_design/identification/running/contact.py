@@ -18,6 +18,8 @@ from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import Window, cut_windows, stiffness_of
+from nrs_design.identification.statistics import span
+from nrs_design.proof.text import counted
 
 Array = NDArray[np.float64]
 
@@ -165,12 +167,13 @@ def _stiffness(log: RunLog, bounds: RunBounds, touching: list[Window]) -> Check:
     named = log.labels or tuple(bounds.stiffness)
     met = [s for name in named if (s := bounds.stiffness[name]) is not None]
     ranges = dict.fromkeys(pair for item in met for pair in item.ranges)
-    allowed = " or ".join(f"{low:.5g} to {high:.5g} N m/rad" for low, high in ranges)
+    allowed = " or ".join(span(*ends, "N m/rad", 5) for ends in ranges)
     if not touching:
         words = "no window in contact in which something moves"
         return Check("stiffness", BoundStatus.NOT_JUDGED, words, allowed, basis)
     values = [w.value for w in touching]
-    words = f"slopes of {min(values):.4g} to {max(values):.4g} N m/rad in {len(values)} windows"
+    count = counted(len(values), "window")
+    words = f"slopes of {span(min(values), max(values), 'N m/rad')} in {count}"
     return Check("stiffness", BoundStatus.ESTIMATED, words, allowed, basis)
 
 

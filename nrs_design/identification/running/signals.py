@@ -13,7 +13,7 @@ from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import noise_variance
-from nrs_design.identification.statistics import CONFIDENCE, student_quantile
+from nrs_design.identification.statistics import joint_level, span, student_quantile
 from nrs_design.proof.bounds import lower, upper
 
 # Clocks of loop and log differ by less than this part of a period.
@@ -73,7 +73,7 @@ def judge_jitter(log: RunLog, bounds: RunBounds) -> Check:
         What the spec promises.
     """
     steps = np.diff(log.time)
-    words = f"steps from {steps.min():.4g} to {steps.max():.4g} s, usually {log.step:.4g} s"
+    words = f"steps of {span(steps.min(), steps.max(), 's')}, usually {log.step:.4g} s"
     if bounds.period is not None and not _holds_whole(log.step, bounds.period):
         words += f": no whole number of periods of {bounds.period:g} s"
     return Check("jitter", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
@@ -147,7 +147,7 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
     # So far may noise reach in any row, at 95 % for all of them together.
-    reach = student_quantile(len(size), 1 - (1 - CONFIDENCE) / len(size))
+    reach = student_quantile(len(size), joint_level(len(size)))
     reach *= float(np.sqrt(noise_variance(torque)))
     over = np.flatnonzero(size - reach > bounds.torque)
     if not len(over):

@@ -12,6 +12,7 @@ import numpy as np
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.statistics import span
 from nrs_design.proof.text import counted
 
 _NAME = "dwell times"
@@ -56,7 +57,7 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
         return Check(_NAME, BoundStatus.NOT_JUDGED, reason, allowed, basis)
-    measured = "1 switch" if len(stays) == 2 else f"{len(stays) - 1} switches"
+    measured = counted(len(stays) - 1, "switch")
     if not allowed:
         return Check(_NAME, BoundStatus.INSIDE, measured, "arbitrary", basis)
     step = float(np.diff(log.time).max())
@@ -130,8 +131,10 @@ def _doubts(stays: list[_Stay], bounds: RunBounds) -> Iterator[str]:
         if stay.gap:
             yield f"rows are missing about {stay.begin:.6g} s, where switches may have been"
         if stay.ended and stay.shortest < shortest:
-            end = f" to {stay.longest:.4g} s" if place else " s at least: the log begins with it"
-            yield f"from {stay.begin:.6g} s on {stay.mode} lasted {stay.shortest:.4g}{end}"
+            lasted = span(stay.shortest, stay.longest, "s")
+            if not place:
+                lasted = f"{stay.shortest:.4g} s at least: the log begins with it"
+            yield f"from {stay.begin:.6g} s on {stay.mode} lasted {lasted}"
         if stay.logged > longest:
-            lasted = f"{stay.shortest:.4g} to {stay.logged:.4g} s"
+            lasted = span(stay.shortest, stay.logged, "s")
             yield f"from {stay.begin:.6g} s on {stay.mode} lasted {lasted}"

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.checks import gaps_in
 from nrs_design.identification.rounding import resolution
-from nrs_design.identification.statistics import CONFIDENCE, student_quantile
+from nrs_design.identification.statistics import joint_level, student_quantile
 
 Array = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def stiffness_of(
     spans : list of (int, int)
         First row and end of every window.
     """
-    confidence = 1 - (1 - CONFIDENCE) / max(len(spans), 1)
+    confidence = joint_level(max(len(spans), 1))
     # Backward: a later angle has been moved by the force that is regressed.
     change = np.diff(deflection) / np.diff(time)
     velocity = np.concatenate([change[:1], change])

@@ -53,7 +53,9 @@ def doubts(
     sensitivities : ndarray, shape (n, p + m)
         Derivatives of the force by p parameters and m offsets.
     """
-    read = slips(law, trial, residuals, sensitivities[:, len(law.values) :])
+    wrong = (*_units(trial), *doubt_signs(trial, residuals, sensitivities[:, len(law.values) :]))
+    # What comes of a record that was read wrongly has no size of its own.
+    read = wrong or tuple(_sizes(law, rotational=trial.record.rotational))
     left = doubt_residuals(trial, residuals, sensitivities, len(law.values))
     return (
         *read,
@@ -63,23 +65,6 @@ def doubts(
         *_times(law, trial),
         *_motion(law, trial, found),
     )
-
-
-def slips(
-    law: AbstractContactLaw, trial: Trial, residuals: Array, offsets: Array
-) -> tuple[str, ...]:
-    """Return those doubts that say that a record is likely read in another unit or sign.
-
-    Parameters
-    ----------
-    law, trial, residuals
-        As for `doubts`.
-    offsets : ndarray, shape (n, m)
-        Derivatives of the force by m offsets.
-    """
-    read = (*_units(trial), *doubt_signs(trial, residuals, offsets))
-    # What comes of a record that was read wrongly has no size of its own.
-    return read or tuple(_sizes(law, rotational=trial.record.rotational))
 
 
 def _sizes(law: AbstractContactLaw, *, rotational: bool) -> Iterator[str]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from nrs_design.errors import DataError
-from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.datasets import Source, TissueRecord
 from nrs_design.identification.statistics import Estimate
 from nrs_design.identification.tissue.pool import ModelFit, fit_model
 from nrs_design.identification.tissue.ranges import check_spread
@@ -40,9 +40,19 @@ class TissueIdentification:
         return self.chosen.law, self.chosen.ranges
 
     @property
-    def synthetic(self) -> bool:
-        """Whether any record is synthetic."""
-        return any(record.source.synthetic for record in self.records)
+    def sources(self) -> tuple[Source, ...]:
+        """The files."""
+        return tuple(record.source for record in self.records)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """None about all records: each trial has its own."""
+        return ()
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What speaks against the chosen law."""
+        return self.chosen.doubts
 
     @property
     def caveats(self) -> tuple[str, ...]:

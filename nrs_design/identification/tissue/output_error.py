@@ -19,7 +19,7 @@ from nrs_design.identification.statistics import (
     student_quantile,
     uncertainty,
 )
-from nrs_design.identification.tissue.doubts import doubts, reaches_zero, slips
+from nrs_design.identification.tissue.doubts import doubts, reaches_zero
 from nrs_design.identification.tissue.offsets import (
     Offset,
     estimate_offsets,
@@ -58,8 +58,6 @@ class RecordFit:
     agreeing: int
     starts: int
     doubts: tuple[str, ...]  # Why the record may not determine the parameters
-    # Those of them that say that it is likely read in another unit or sign than it has.
-    slips: tuple[str, ...]
 
     @property
     def record(self) -> TissueRecord:
@@ -176,7 +174,6 @@ def _judge(point: Point, bounds: tuple[Array, Array], agreeing: int, starts: int
         agreeing=agreeing,
         starts=starts,
         doubts=tuple(said),
-        slips=slips(law, trial, residuals, J[:, p:]),
     )
 
 

@@ -82,11 +82,6 @@ class ModelFit:
         """Doubts with the record that they are about; those of many records only once."""
         return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.doubts)
 
-    @property
-    def slips(self) -> tuple[str, ...]:
-        """Those of them that say that a record is likely read in another unit or sign."""
-        return tuple(f"{fit.record.name}: {text}" for fit in self.fits for text in fit.slips)
-
 
 def fit_model(
     kind: type[AbstractContactLaw],

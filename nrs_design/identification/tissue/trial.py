@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.datasets.checks import long_stretches, pauses_text, stretches_in
+from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
 from nrs_design.identification.tissue.drift import shows_drift
 from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.surface import surface
 from nrs_design.models.contact import Motion
+from nrs_design.proof.text import counted
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -61,8 +63,8 @@ class Cut:
 
     def __str__(self) -> str:
         """Return it in words."""
-        when = f"{self.first:.4g} s to {self.last:.4g} s"
-        return f"{self.samples} samples from {when}: {self.reason}"
+        when = span(self.first, self.last, "s")
+        return f"{counted(self.samples, 'sample')} at {when}: {self.reason}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +132,7 @@ class Trial:
         if self.found is not None:
             part = 100 * float(np.mean(~self.touching))
             count = len(self.found.touches)
-            yield f"{count} {'touch' if count == 1 else 'touches'}; {part:.0f} % of it is air"
+            yield f"{counted(count, 'touch')}; {part:.0f} % of it is air"
         elif self.preparation.contact == "auto":
             yield (
                 "no air shows: all of it is taken as in contact, and a tare that moves with time "

@@ -198,16 +198,18 @@ def ruled_run(
     system : SwitchedSystem
         Modes and rules.
     forms : sequence of Form
-        Of each mode; the run is drawn in their norms if they are quadratic, else in the Euclidean.
+        The run is drawn in their norms if there is a quadratic one for each mode, else in the
+        Euclidean.
     rate : float
         The proved one.
     leaving : bool
         Some modes must be left, in which a form may grow.
     """
-    quadratic = forms[0].degree == 1
+    names = {form.name for form in forms}
+    of_modes = forms[0].degree == 1 and names >= {mode.name for mode in system.modes}
     hardest = hardest_modes(system, None, _RULED_MODES)
     functions = euclidean(system)
-    if quadratic:
+    if of_modes:
         matrices = scaled_matrices(*(form.Q for form in forms))
         functions = {form.name: Q for form, Q in zip(forms, matrices, strict=True)}
     step, steps = horizon(hardest, rate)
@@ -215,21 +217,21 @@ def ruled_run(
     response = until_small(response, active_norms(hardest, response, functions))
     values = active_norms(hardest, response, functions)
     said, label = (_ACTIVE + _RISES * leaving, "proved bound, ")
-    if not quadratic:
+    if not of_modes:
         said, label = _SLOPE, "slope of the proved bound, "
     run = Illustration(
         "run",
-        AGAINST if quadratic else BESIDE,
+        AGAINST if of_modes else BESIDE,
         f"{RULED} {said}{some_modes(system, hardest)}",
         draw_run(
             response,
             values,
             bound_line(response, rate, system.time, label),
             hardest,
-            "Root of V of the active mode [1]" if quadratic else EUCLIDEAN,
+            "Root of V of the active mode [1]" if of_modes else EUCLIDEAN,
         ),
     )
-    if not quadratic:
+    if not of_modes:
         return simulated(run, *phase_plane(hardest, response, None))
     return simulated(run, *_mode_levels(hardest, response, functions, leaving=leaving))
 

@@ -78,7 +78,7 @@ def test_an_exponent_that_may_be_below_one_leaves_a_spring_and_a_damper():
     about = replace(found.tangent, power=(stiffness, damping, doubtful))
     _, soft = written(replace(found, tangent=about))
     assert soft.model == "kelvin-voigt"
-    assert soft.linearized_about == "deflections from 0.002 m to 0.004 m"
+    assert soft.linearized_about == "deflections of 0.002 to 0.004 m"
     k, b = LAW.tangent(0.003)
     low, high = soft.stiffness.range
     assert low.si < k < high.si

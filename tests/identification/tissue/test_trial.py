@@ -86,6 +86,6 @@ def test_pauses_part_a_record_whose_stretches_are_fitted_together(law, noise):
     assert all(e.covers(v) for e, v in zip(found.chosen.ranges, law.values, strict=True))
     (fit,) = found.chosen.fits
     (said,) = (text for text in fit.trial.remarks if "pauses" in text)
-    assert said.startswith("3 pauses part the record: its stretches are fitted together (0 s to ")
-    assert said.endswith("; 20 samples in shorter stretches are left out")
+    assert said.startswith("3 pauses part the record: its stretches are fitted together (0 to ")
+    assert said.endswith("; 20 samples in shorter stretches: left out")
     assert fit.trial.used.sum() == len(kept) - 20 - 4

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,21 +10,20 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
-from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
-    SYNTHETIC,
     ColumnMap,
     CoversOption,
     DataFiles,
+    Facts,
     WriteTo,
+    deliver,
     estimate_numbers,
+    print_fits,
     read_all,
-    sources,
 )
 
 if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorFit, ActuatorIdentification
-    from nrs_design.reporting import Report
 
 
 @command("identify-actuator")
@@ -56,6 +55,7 @@ def actuator(
     """
     from nrs_design.identification.actuator import MotorConstants, identify_actuator
     from nrs_design.identification.datasets import FrequencyResponse, read_actuator
+    from nrs_design.identification.reporting.actuator import actuator_report
     from nrs_design.identification.write_spec import check_actuator, merge_actuator
 
     outputs = Destinations.checked(write, report, date)
@@ -68,37 +68,20 @@ def actuator(
             check_actuator(outputs.spec, item.unit)
     with progress("fitting") as step:
         found = identify_actuator(items_of_all, motor, covers.value, step)
-    return outputs.deliver(
-        Answer(lambda: _summary(found), lambda: _print(found)),
-        page=lambda: _page(found),
-        merge=lambda spec: merge_actuator(spec, found),
-        caveats=found.caveats,
-        slips=found.slips,
+    return deliver(
+        outputs,
+        found,
+        lambda: _facts(found),
+        lambda: _print(found),
+        lambda: actuator_report(found),
+        lambda spec: merge_actuator(spec, found),
     )
 
 
-def _page(found: ActuatorIdentification) -> Report:
-    from nrs_design.identification.reporting.actuator import actuator_report
-
-    return actuator_report(found)
-
-
 def _print(found: ActuatorIdentification) -> None:
-    if found.synthetic:
-        say(SYNTHETIC)
-    unit = found.unit
-    rows = [
-        [
-            fit.method,
-            str(fit.gain),
-            str(fit.time_constant),
-            str(fit.friction) if fit.friction else "",
-            str(fit.dead_time) if fit.dead_time else "",
-        ]
-        for fit in found.fits
-    ]
-    columns = ["fit [95 %]", f"gain (rad/s)/{unit}", "time constant s", f"friction {unit}"]
-    print_table("", [*columns, "dead time s"], rows)
+    from nrs_design.identification.reporting.actuator import fits
+
+    print_fits(fits(found))
     say(f"chosen: {found.chosen.method}. {found.reason}")
     if found.chosen.dead_time and found.step:
         from nrs_design.identification.actuator.model import FROM_THE_ROW
@@ -110,30 +93,21 @@ def _print(found: ActuatorIdentification) -> None:
         say(f"second order: damping ratio {motor.damping:.4g}; time constants add up")
     if found.chosen.order == 1:
         gain, time_constant = found.ranges
-        say(f"range: gain {gain} (rad/s)/{unit}, time constant {time_constant} s")
+        say(f"range: gain {gain} (rad/s)/{found.unit}, time constant {time_constant} s")
         say(f"the range holds {found.covers}")
     if found.figures is not None:
         say(f"R = {found.figures.resistance} ohm")
         say(f"speed over torque = {found.figures.gradient} rpm/(N m)")
         say(f"both for a motor with {found.figures.sheet}; options give another data sheet")
-    for remark in found.remarks:
-        say(remark)
-    for doubt in found.doubts:
-        say(f"doubt: {doubt}")
 
 
-def _summary(found: ActuatorIdentification) -> dict[str, Any]:
+def _facts(found: ActuatorIdentification) -> Facts:
     figures = found.figures
     return {
-        "synthetic": found.synthetic,
-        "records": sources(found.sources),
         "command_unit": found.unit,
         "sampling_step_s": found.step,
         "chosen": found.chosen.method,
         "reason": found.reason,
-        "remarks": list(found.remarks),
-        "doubts": list(found.doubts),
-        "slips": list(found.slips),
         "fits": [_fit(fit, found) for fit in found.fits],
         "range": {
             f"gain_rad_s_{found.unit}": estimate_numbers(found.ranges[0]),
@@ -150,7 +124,7 @@ def _summary(found: ActuatorIdentification) -> dict[str, Any]:
     }
 
 
-def _fit(fit: ActuatorFit, found: ActuatorIdentification) -> dict[str, Any]:
+def _fit(fit: ActuatorFit, found: ActuatorIdentification) -> Facts:
     late = fit.dead_time
     return {
         "method": fit.method,

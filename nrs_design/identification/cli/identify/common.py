@@ -12,12 +12,20 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from nrs_design.cli.printing import is_quiet
+from nrs_design.cli import exit_codes
+from nrs_design.cli.command import Answer
+from nrs_design.cli.destinations import Destinations
+from nrs_design.cli.printing import is_quiet, say
+from nrs_design.cli.tables import print_table
+from nrs_design.identification.finding import Finding, is_synthetic
 from nrs_design.printable import printable
 
 if TYPE_CHECKING:
     from nrs_design.identification.datasets import Source
     from nrs_design.identification.statistics import Estimate
+    from nrs_design.reporting import Report
+    from nrs_design.reporting.document import Table
+    from nrs_design.spec import LoadedSpec
 
 DataFiles = Annotated[list[Path], typer.Argument(metavar="DATA...", help="Files of data.")]
 ColumnMap = Annotated[
@@ -37,6 +45,9 @@ class CoversOption(StrEnum):
     TOLERANCE = "tolerance"
     PREDICTION = "prediction"
 
+
+# Of JSON.
+Facts = dict[str, Any]
 
 SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 
@@ -84,10 +95,63 @@ def _bar() -> Iterator[Callable[[str], Callable[[float], None]]]:
         yield begin
 
 
+def print_fits(table: Table) -> None:
+    """Print a table of the page, which its headings explain."""
+    print_table("", table.columns, table.rows)
+
+
 def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
     """Return an estimate for JSON, which has no infinity; None says unlimited."""
     low, high = (end if math.isfinite(end) else None for end in (estimate.low, estimate.high))
     return {"value": estimate.value, "low": low, "high": high}
+
+
+def deliver(
+    outputs: Destinations,
+    found: Finding,
+    facts: Callable[[], Facts],
+    show: Callable[[], None],
+    page: Callable[[], Report],
+    merge: Callable[[LoadedSpec], str],
+) -> Answer:
+    """Print and write what was found; where it is in doubt, the answer is inconclusive.
+
+    Parameters
+    ----------
+    outputs : Destinations
+        Where it goes.
+    found : Finding
+        The result.
+    facts, show : callable
+        What is in its JSON document, and prints the same, beside what all findings have.
+    page : callable
+        Returns its page.
+    merge : callable
+        Returns a spec with the result in it.
+    """
+
+    def all_facts() -> Facts:
+        return {
+            "synthetic": is_synthetic(found.sources),
+            "records": sources(found.sources),
+            **facts(),
+            "remarks": list(found.remarks),
+            "doubts": list(found.doubts),
+            "caveats": list(found.caveats),
+        }
+
+    def show_all() -> None:
+        if is_synthetic(found.sources):
+            say(SYNTHETIC)
+        show()
+        for remark in found.remarks:
+            say(remark)
+        for doubt in found.doubts:
+            say(f"doubt: {doubt}")
+
+    code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
+    answer = Answer(all_facts, show_all, code)
+    return outputs.deliver(answer, page, merge, found.doubts, found.caveats)
 
 
 def sources(files: Iterable[Source]) -> list[dict[str, Any]]:

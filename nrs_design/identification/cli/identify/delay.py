@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,19 +11,18 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
-from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
-    SYNTHETIC,
     ColumnMap,
+    Facts,
     WriteTo,
+    deliver,
     estimate_numbers,
+    print_fits,
     read_all,
-    sources,
 )
 
 if TYPE_CHECKING:
     from nrs_design.identification.delay import DelayIdentification
-    from nrs_design.reporting import Report
 
 INPUT, OUTPUT = "input_any", "output_any"
 
@@ -55,6 +54,7 @@ def delay(
     """
     from nrs_design.identification.datasets import read_signals
     from nrs_design.identification.delay import identify_delay
+    from nrs_design.identification.reporting.delay import delay_report
     from nrs_design.identification.write_spec import check_delay_place, merge_delay
 
     if (command is None) != (measured is None):
@@ -75,49 +75,33 @@ def delay(
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         found = identify_delay(record)
-    return outputs.deliver(
-        Answer(lambda: _summary(found), lambda: _print(found)),
-        page=lambda: _page(found),
-        merge=lambda spec: merge_delay(spec, found),
-        caveats=found.caveats,
-        slips=found.slips,
+    return deliver(
+        outputs,
+        found,
+        lambda: _facts(found),
+        lambda: _print(found),
+        lambda: delay_report(found),
+        lambda spec: merge_delay(spec, found),
     )
 
 
-def _page(found: DelayIdentification) -> Report:
-    from nrs_design.identification.reporting.delay import delay_report
-
-    return delay_report(found)
-
-
 def _print(found: DelayIdentification) -> None:
-    record = found.record
-    if record.source.synthetic:
-        say(SYNTHETIC)
-    lag, correlation = found.peak
-    sent, seen = record.names
-    say(f"{seen} is most like {sent} {lag:.4g} s later (correlation {correlation:.3f})")
-    least = min(fit.bic for fit in found.fits)
-    rows = [
-        [fit.follower.name, f"{fit.delay / record.step:.4g}", f"{fit.bic - least:.4g}"]
-        for fit in found.fits
-    ]
-    print_table("", ["beside", "delay in samples", "BIC - least"], rows)
-    say(f"delay = {found.samples} samples of {record.step:.4g} s [95 %]")
+    from nrs_design.identification.reporting.delay import delays
+    from nrs_design.identification.statistics import span
+
+    (lag, correlation), (sent, seen) = found.peak, found.record.names
+    when = f"{abs(lag):.4g} s {'later' if lag >= 0 else 'earlier'}"
+    say(f"{seen} is most like {sent} {when} (correlation {correlation:.3f})")
+    print_fits(delays(found))
+    say(f"delay = {found.samples} samples of {found.record.step:.4g} s [95 %]")
     say(f"delay = {found.delay} s, beside {found.chosen.follower.name}")
-    low, high = found.whole_samples
-    say(f"whole samples that hold it, and every part of the record: {low} to {high}")
-    for remark in found.remarks:
-        say(remark)
-    for doubt in found.doubts:
-        say(f"doubt: {doubt}")
+    whole = span(*found.whole_samples)
+    say(f"whole samples that hold it, and every part of the record: {whole}")
 
 
-def _summary(found: DelayIdentification) -> dict[str, Any]:
+def _facts(found: DelayIdentification) -> Facts:
     record = found.record
     return {
-        "synthetic": record.source.synthetic,
-        "records": sources([record.source]),
         "columns": {"command": record.names[0], "measured": record.names[1]},
         "sampling_step_s": record.step,
         "correlation_peak": {"lag_s": found.peak[0], "correlation": found.peak[1]},
@@ -138,7 +122,4 @@ def _summary(found: DelayIdentification) -> dict[str, Any]:
             for fit in found.fits
         ],
         "smooth_between_samples": found.smooth,
-        "remarks": list(found.remarks),
-        "doubts": list(found.doubts),
-        "slips": list(found.slips),
     }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -10,20 +11,21 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
-from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
-    SYNTHETIC,
     ColumnMap,
     DataFiles,
+    Facts,
     WriteTo,
+    deliver,
     estimate_numbers,
+    print_fits,
     read_all,
-    sources,
 )
+from nrs_design.proof.text import counted
 
 if TYPE_CHECKING:
+    from nrs_design.identification.statistics import Estimate
     from nrs_design.identification.tool import ToolIdentification
-    from nrs_design.reporting import Report
 
 
 @command("identify-tool")
@@ -45,6 +47,7 @@ def tool(
     Example: nrs-design identify tool specs/data/tool-poses.csv --report reports/tool.html
     """
     from nrs_design.identification.datasets import read_poses
+    from nrs_design.identification.reporting.tool import tool_report
     from nrs_design.identification.tool import identify_tool
     from nrs_design.identification.write_spec import check_tool, merge_tool
 
@@ -54,43 +57,28 @@ def tool(
     records = read_all(data, read_poses, columns or [])
     with progress("fitting"):
         found = identify_tool(records, gravity)
-    return outputs.deliver(
-        Answer(lambda: _summary(found), lambda: _print(found)),
-        page=lambda: _page(found),
-        merge=lambda spec: merge_tool(spec, found),
-        caveats=found.doubts,
-        slips=found.slips,
+    return deliver(
+        outputs,
+        found,
+        lambda: _facts(found),
+        lambda: _print(found),
+        lambda: tool_report(found),
+        lambda spec: merge_tool(spec, found),
     )
 
 
-def _page(found: ToolIdentification) -> Report:
-    from nrs_design.identification.reporting.tool import tool_report
-
-    return tool_report(found)
-
-
 def _print(found: ToolIdentification) -> None:
-    if found.synthetic:
-        say(SYNTHETIC)
-    say(f"mass = {found.mass} kg [95 %], from {len(found.force_errors)} poses")
-    rows = [
-        [axis, *map(str, estimates)]
-        for axis, *estimates in zip(
-            "xyz", found.center, found.force_bias, found.torque_bias, strict=True
-        )
-    ]
-    print_table("", ["along", "center of mass m", "bias N", "bias N m"], rows)
-    for doubt in found.doubts:
-        say(f"doubt: {doubt}")
+    from nrs_design.identification.reporting.tool import estimates
+
+    say(f"mass = {found.mass} kg [95 %], from {counted(len(found.force_errors), 'pose')}")
+    print_fits(estimates(found))
 
 
-def _summary(found: ToolIdentification) -> dict[str, Any]:
-    def along(estimates: Any) -> dict[str, Any]:
-        return {axis: estimate_numbers(e) for axis, e in zip("xyz", estimates, strict=True)}
+def _facts(found: ToolIdentification) -> Facts:
+    def along(values: Sequence[Estimate]) -> Facts:
+        return {axis: estimate_numbers(e) for axis, e in zip("xyz", values, strict=True)}
 
     return {
-        "synthetic": found.synthetic,
-        "records": sources(record.source for record in found.records),
         "poses": len(found.force_errors),
         "gravity_m_s2": found.gravity,
         "mass_kg": estimate_numbers(found.mass),
@@ -98,6 +86,4 @@ def _summary(found: ToolIdentification) -> dict[str, Any]:
         "force_bias_N": along(found.force_bias),
         "torque_bias_Nm": along(found.torque_bias),
         "rmse": {"force_N": found.rmse[0], "torque_Nm": found.rmse[1]},
-        "doubts": list(found.doubts),
-        "slips": list(found.slips),
     }

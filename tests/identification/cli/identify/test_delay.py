@@ -26,6 +26,17 @@ def test_delay(tmp_path):
     assert "samples of 0.002 s [95 %]" in text
 
 
+def test_a_doubt_is_no_success(tmp_path):
+    """Of columns that are swapped, the exit code was 0, and the text said "-0.01 s later"."""
+    record = signals.copy(4)
+    rows = np.column_stack([record.time, record.seen, record.sent])
+    np.savetxt(tmp_path / "loop.csv", rows, "%.6f", ",", header="time_s,raw,used", comments="")
+    arguments = ("identify", "delay", "loop.csv", "--command", "raw", "--measured", "used")
+    done = run(*arguments, cwd=tmp_path, code=3)
+    assert "s earlier (correlation" in done.stdout
+    assert "warning: used comes 6.23 samples before raw" in done.stderr
+
+
 @pytest.mark.slow
 def test_delay_into_a_spec(tmp_path):
     spec = tmp_path / "mine.nrs.yaml"

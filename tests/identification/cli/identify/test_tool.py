@@ -24,7 +24,7 @@ def test_tool_into_a_spec_that_the_gate_proves(tmp_path):
     assert "data: synthetic" in spec.read_text()
     assert "Errors in each pose" in page.read_text(encoding="utf-8")
     again = run("identify", "tool", POSES, "--write", spec, cwd=tmp_path)
-    assert "center of mass m" in again.stdout
+    assert "Center of mass [m]" in again.stdout
     optimized = document_of("optimize", spec, cwd=tmp_path)
     assert set(optimized["sensor"]["parts"]) == {"bias", "mass and center of mass of the tool"}
     assert optimized["controllers"][0]["creep"]["velocity_rad_s"] > 0

@@ -33,16 +33,10 @@ def _find_odd_stay(system: SwitchedSystem, names: set[str]) -> str | None:
     own = system.switching.stays
     if len(dict(own)) < len(own) or not dict(own).keys() <= names:
         return "the dwell times are not those of modes"
-    stays, allowed = system.stays(), system.switching.transitions
-    # Where no motion keeps the rules, anything could be said of all that do.
-    left = {source for source, _ in allowed} if allowed is not None else names
-    if len(names) == 1:
-        left = set()
+    stays = system.stays()
     for name in dict(own):
         if (longest := stays[name].longest) is not None and longest < stays[name].shortest:
             return f"mode {name} must be left before it may be"
-        if longest is not None and name not in left:
-            return f"mode {name} must be left, and no switch leaves it"
     if min((system.switching.dwell_time, *(stay.shortest for _, stay in own))) < 0:
         return "a dwell time is negative"
     return None

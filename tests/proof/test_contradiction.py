@@ -42,10 +42,6 @@ PUSHED = pushed(bouncing(1))
         ({"stays": (("m9", Stay()),)}, "not those of modes"),
         ({"stays": (("m0", Stay()), ("m0", Stay()))}, "not those of modes"),
         ({"stays": (("m1", Stay(Fraction(1), HALF)),)}, "mode m1 must be left before it may be"),
-        (
-            {"stays": (("m1", Stay(longest=HALF)),), "transitions": (("m0", "m1"),)},
-            "mode m1 must be left, and no switch leaves it",
-        ),
         ({"transitions": (("m0", "m0"),)}, "a transition does not lead"),
         ({"transitions": (("m0", "m9"),)}, "a transition does not lead"),
         ({"transitions": (("m9", "m0"),)}, "a transition does not lead"),
@@ -73,7 +69,6 @@ def test_rules_that_make_no_sense(rules, reason):
         Switching(Fraction(1), (("m0", "m1"),), fixed_ends=(("m0", "m1"),)),
         Switching(transitions=()),
         Switching(HALF, stays=(("m0", Stay()), ("m1", Stay(HALF, HALF)))),
-        Switching(stays=(("m0", Stay(longest=HALF)),), transitions=(("m0", "m1"),)),
         Switching(resets=(Reset("m1", "m0", ONE), Reset("m1", "m0", ONE))),
     ],
 )

@@ -1061,7 +1061,11 @@ class TestGraph:
 
     def test_sets_of_nodes_are_followed_only_so_far(self, monkeypatch):
         """A chain of sets, each with a node less."""
-        edges = (Arc(0, "m0", 0), *(Arc(k, "m0", k + 1) for k in range(59)), Arc(None, "m1", None))
+        edges = (
+            Arc(59, "m0", 59),
+            *(Arc(k, "m0", k + 1) for k in range(59)),
+            Arc(None, "m1", None),
+        )
         graph = FormsOnGraph(at("modes", 60), 0, SLOW, edges=edges)
         assert graph.find_fault(DRAWN) is None
         # Its edges are few enough.

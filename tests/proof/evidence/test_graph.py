@@ -1013,7 +1013,7 @@ class TestGraph:
         system = family([[0]], [[0]], time=STEPS)
         rounded = replace(system, roundings=(Rounding("r", columns, rows),))
         nodes, edges = (Node("modes", ((1024,),)),) * 2, (Arc(None, "m0", 0), Arc(None, "m1", 1))
-        own = (Multiplier("rounding 1", 0, 110 * 1024), Multiplier("rounding 1", 1, 5))
+        own = (Multiplier("rounding 1", 110 * 1024, 0), Multiplier("rounding 1", 5, 1))
         graph = FormsOnGraph(nodes, 10, SLOW, multipliers=own, edges=edges)
         refused = "edges lead to all nodes of a place where contact is lost or arithmetic rounds"
         assert broken(rounded, graph) == set()

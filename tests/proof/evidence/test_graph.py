@@ -966,7 +966,7 @@ HOSTILE = {
             ((Node("modes", Q2_STEPS),) * 999 + at("free", 999)),
             0,
             SLOW,
-            multipliers=tuple(Multiplier("lost", k, 1) for k in range(1998)),
+            multipliers=tuple(Multiplier("lost", 1, k) for k in range(1998)),
         ),
         EDGES,
     ),

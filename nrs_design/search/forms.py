@@ -25,8 +25,9 @@ from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import COUPLING, ROUNDING, Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY
-from nrs_design.search.lifted import make_vanish, products, vanishing_basis
+from nrs_design.search.lifted import products, vanishing_basis
 from nrs_design.search.lmi import time_unit
+from nrs_design.search.polynomial import make_vanish
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
     begin,

@@ -136,7 +136,7 @@ def test_an_easy_proof_loads_one_search_and_few_kinds_of_evidence(easy):
     kinds = {kind.replace("-", "_") for kind in KINDS}
     loaded = {name.removeprefix("nrs_design.proof.evidence.") for name in easy["modules"]}
     assert kinds & loaded == {"graph", "growing_sequence"}
-    for needless in ("period", "graphs", "forms", "invariant_ellipsoid", "gradient"):
+    for needless in ("period", "polynomial", "mode_quadratic", "invariant_ellipsoid", "gradient"):
         assert f"nrs_design.search.{needless}" not in easy["modules"]
 
 

@@ -18,11 +18,12 @@ from nrs_design.search.common_quadratic import (
     search_raw,
 )
 from nrs_design.search.family import Family, floats_in_silence
-from nrs_design.search.graphs import search_modes, search_polynomial
 from nrs_design.search.mixture import search_mixture
+from nrs_design.search.mode_quadratic import search_mode_functions
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.parameter_quadratic import search_parameter_quadratic
 from nrs_design.search.period import search_period
+from nrs_design.search.polynomial import search_polynomial
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
 from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.graphs import shape_of
@@ -109,7 +110,7 @@ SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
             "parameter-quadratic",
         ),
         (
-            search_modes,
+            search_mode_functions,
             replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10))),
             "mode-quadratic",
         ),

@@ -1,7 +1,6 @@
 """One program for forms on any graph."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -12,23 +11,17 @@ from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
     draw_conewise_modes,
-    draw_each_mode,
     draw_together,
     draw_turns,
     search_conewise_modes,
-    search_conewise_polynomial,
     search_coupled_axes,
-    search_modes,
     search_periodic_quadratic,
-    search_polynomial,
 )
 from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     bouncing_in_turns,
-    dayawansa_martin,
-    geromel_colaneri,
     leaning,
 )
 from tests.search.support import found
@@ -39,13 +32,6 @@ DRAWN = [
         search_periodic_quadratic,
         bouncing_in_turns(1, rounded=True),
         lambda f: draw_turns(f, f.system.clock),
-    ),
-    (search_modes, geromel_colaneri("2.76"), lambda f: draw_each_mode(f, 1)),
-    (partial(search_polynomial, degree=2), dayawansa_martin(6), lambda f: draw_together(f, 2)),
-    (
-        partial(search_conewise_polynomial, degree=2),
-        bouncing(),
-        lambda f: draw_together(f, 2, lost=True),
     ),
     (
         search_coupled_axes,

@@ -7,42 +7,28 @@ import pytest
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.errors import DesignError
-from nrs_design.proof.contact import Contact
-from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.switching import Switching
 from nrs_design.reporting.evidence.norms import largest_norm
 from nrs_design.reporting.evidence.offers import offer_of
-from nrs_design.search import forms, graphs
+from nrs_design.search import graphs
 from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.conewise_quadratic import search_conewise
-from nrs_design.search.family import Family
 from nrs_design.search.graphs import (
     search_conewise_modes,
-    search_conewise_polynomial,
     search_coupled_axes,
-    search_modes,
     search_periodic_quadratic,
-    search_polynomial,
 )
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
-from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.graphs import shape_of
 from tests.proof.systems import (
-    ando_shih,
     bouncing,
     bouncing_in_steps,
     bouncing_in_turns,
     dayawansa_martin,
     doubled_in_turns,
     family,
-    geromel_colaneri,
     leaning,
-    matrix,
-    rectangular,
-    shears,
-    slow_switching_in_steps,
 )
 from tests.search.support import found, outcome, thesis_robot
 
@@ -163,71 +149,6 @@ def test_runs_through_contact_and_flight_never_leave_the_bound():
     assert np.median(bounced) >= 1
 
 
-@pytest.mark.parametrize(
-    "system",
-    [geromel_colaneri("2.752"), ando_shih("0.99"), rectangular(), slow_switching_in_steps()],
-)
-def test_what_is_found_passes_the_exact_check(system):
-    assert found(search_modes, system).find_fault(system) is None
-
-
-@pytest.mark.parametrize("system", [geromel_colaneri("2.74"), shears(), ando_shih("1.001")])
-def test_nothing_is_found_where_there_is_nothing(system):
-    assert found(search_modes, system) is None
-
-
-def test_no_ends_of_constant_parameters():
-    system = shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
-    assert found(search_modes, system) is None
-
-
-@pytest.mark.parametrize("lie", [np.nan, np.inf, -1.0, 0.0, 1.0, 1e300])
-def test_a_solver_that_lies_gives_no_false_verdict(monkeypatch, lie):
-    monkeypatch.setattr(
-        forms, "maximize_margin", lambda rows, *_, **__: np.full(rows.shape[1], lie)
-    )
-    try:
-        assert found(search_modes, geromel_colaneri("2.74")) is None
-    except (OverflowError, np.linalg.LinAlgError):
-        return
-
-
-def test_a_solver_that_is_content_with_every_rate_raises_none(monkeypatch):
-    """It gives the functions for no decay at every rate: what is proved is what these show."""
-    true, kept = forms.maximize_margin, []
-
-    def content(*arguments, **options):
-        kept.append(kept[0] if kept else true(*arguments, **options))
-        return kept[0]
-
-    system = geromel_colaneri("2.76")
-    honest = found(search_modes, system)
-    monkeypatch.setattr(forms, "maximize_margin", content)
-    claimed = [c.evidence.rate for c in search_modes(Family.of(system))]
-    assert max(claimed) > 100 * honest.rate
-    evidence = found(search_modes, system)
-    assert 0 < evidence.rate <= honest.rate
-
-
-def test_fast_ones_are_proposed_first():
-    rates = [c.evidence.rate for c in search_modes(Family.of(ando_shih("0.99")))]
-    assert len(set(rates)) > 1
-    assert rates == sorted(rates)
-
-
-def test_exact_checks_are_part_of_the_work_that_is_predicted():
-    """12 modes that may follow each other in any order: 156 forms, each checked twice."""
-    modes = [[[f"{k}/100", "1/2"], [0, "1/3"]] for k in range(12)]
-    system = family(*modes, time=Time.DISCRETE)
-    solution, _ = graphs.functions_cost(system, 1)
-    allowance = Allowance(solution.work + 0.01)
-    with pytest.raises(NotAffordableError, match="with the exact check of what it finds"):
-        next(search_modes(Family.of(system, allowance)))
-    checks = 2 * 156 * 4 * graphs.PER_CHECK
-    enough = Allowance(2 * solution.work + checks + 60.0)
-    assert next(search_modes(Family.of(system, enough))).evidence
-
-
 def coupled_rate(system):
     evidence = found(search_coupled_axes, system)
     assert shape_of(evidence) == "coupled-axes"
@@ -299,49 +220,3 @@ def test_equal_modes_and_blocks_are_left_as_they_are():
     assert shape_of(result.evidence) == "coupled-axes"
     assert len(result.system.modes) == 2
     assert np.isfinite(float(result.evidence.rate))
-
-
-STIFF = thesis_robot(("43", "62"), BOTH, "0.01")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("k", "Mt", "degree", "rate"),
-    [(("43", "62"), "0.01", 4, 0.84), (("25", "90.432"), "0", 6, 0.81)],
-)
-def test_rates_while_contact_is_lost(k, Mt, degree, rate):
-    """Where no quadratic function is found; neither is one of a lower degree."""
-    system = thesis_robot(k, BOTH, Mt)
-    evidence = found(search_conewise_polynomial, system, degree=degree // 2)
-    assert shape_of(evidence) == "conewise-polynomial"
-    assert float(evidence.rate) > 0.98 * rate
-    if degree > 4:
-        lower = found(search_conewise_polynomial, system, degree=2, optimize_rate=False)
-        assert lower is None
-
-
-@pytest.mark.slow
-def test_it_is_tried_before_contact_is_taken_for_granted():
-    result = certify(STIFF)
-    assert result.verdict is Verdict.PROVED
-    assert result.method == "conewise polynomial of degree 4"
-    assert "contact lost and made again" in result.statements[0].claim(STIFF)
-
-
-def test_free_motion_that_does_not_slow_down_is_not_found():
-    system, free = bouncing(), Mode("free", matrix([[0, 0], [1, 0]]))
-    sliding = type(system)(
-        system.name, system.time, system.states, system.modes, (), contact=Contact((free,))
-    )
-    evidence, why = outcome(search_conewise_polynomial, sliding, degree=2)
-    assert evidence is None
-    assert why
-
-
-@pytest.mark.parametrize("system", [dayawansa_martin(6), ando_shih("0.7")])
-def test_a_solution_becomes_evidence(system):
-    assert found(search_polynomial, system, degree=2).find_fault(system) is None
-
-
-def test_no_polynomial_is_found_where_there_is_none():
-    assert found(search_polynomial, dayawansa_martin(12), degree=2) is None

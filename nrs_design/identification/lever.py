@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TypeVar
+
 from nrs_design.errors import DataError, SpecError
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.kinds import ANGLE, FORCE, LENGTH, LEVER_ARM, TORQUE
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
+
+T = TypeVar("T")
 
 # In m: what is longer was meant in mm.
 _LONGEST_ARM = 10.0
@@ -80,6 +85,29 @@ def _parse(option: str, text: str, kind: QuantityKind) -> float:
         return parse_quantity(text, kind).si
     except SpecError as error:
         raise DataError(f"{option}: {error.message}", remedy=error.remedy) from None
+
+
+def named(
+    law: AbstractContactLaw, values: Iterable[T], rotational: bool
+) -> list[tuple[str, T, str]]:
+    """Return name, value and unit of each parameter of a law.
+
+    Parameters
+    ----------
+    law : AbstractContactLaw
+        Its kind decides.
+    values : iterable
+        One for each parameter: numbers, or estimates.
+    rotational : bool
+        Whether they are those of a rotation.
+    """
+    units = parameter_units(law, rotational)
+    return list(zip(law.parameters(), values, units, strict=True))
+
+
+def in_words(parameters: Iterable[tuple[str, object, str]]) -> str:
+    """Write parameters with their values and units."""
+    return ", ".join(f"{name} = {value} {unit}".rstrip() for name, value, unit in parameters)
 
 
 def parameter_units(law: AbstractContactLaw, rotational: bool) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 _ENOUGH = 6
 # A cause is named where it leaves less than this part of the errors.
 _LEAVES = 0.5
-# An angle below which nobody would call a sensor askew, in rad.
+# A smaller angle, in rad, is within the tolerance of mounting.
 _STRAIGHT = 0.02
 
 

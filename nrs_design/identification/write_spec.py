@@ -12,6 +12,7 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
+from nrs_design.identification.finding import Finding
 from nrs_design.identification.spec_document import SpecDocument
 from nrs_design.identification.statistics import Estimate, span
 from nrs_design.identification.tissue import TissueIdentification
@@ -93,8 +94,7 @@ def merge_tissue(
         document.drop(node, "linearized_about")
     else:
         document.put(node, "linearized_about", _preload(found))
-    document.put(node, "provenance", [_provenance(record.source) for record in found.records])
-    _put_doubts(document, node, found.caveats)
+    _put_origin(document, node, found)
     document.drop(node, "range_id")
     written = parse_spec(document.text())
     assert isinstance(written, InteractionDesignSpec)
@@ -218,9 +218,10 @@ def _preload(found: TissueIdentification) -> str:
     return f"deflections of {span(about.low, about.high, unit, 6)}"
 
 
-def _put_doubts(document: SpecDocument, node: Any, doubts: Sequence[str]) -> None:
-    """Note doubts; a reason that was given for others does not hold for them."""
-    texts = [_one_line(doubt) for doubt in doubts]
+def _put_origin(document: SpecDocument, node: Any, found: Finding) -> None:
+    """Note files and doubts; a reason that was given for other doubts does not hold for them."""
+    document.put(node, "provenance", [_provenance(source) for source in found.sources])
+    texts = [_one_line(caveat) for caveat in found.caveats]
     if len(texts) > MAX_DOUBTS:
         more = len(texts) - MAX_DOUBTS + 1
         texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
@@ -277,8 +278,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     else:
         document.drop(node, "range_covers")
         document.put(node, "intervals", intervals)
-    document.put(node, "provenance", [_provenance(source) for source in found.sources])
-    _put_doubts(document, node, found.caveats)
+    _put_origin(document, node, found)
     document.drop(node, "range_id")
     if covered:
         again = parse_spec(document.text())
@@ -341,8 +341,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     document = SpecDocument(loaded)
     node = document.root["sampling"]
     document.put(node, "delay", low if low == high else [low, high])
-    document.put(node, "provenance", [_provenance(found.record.source)])
-    _put_doubts(document, node, found.caveats)
+    _put_origin(document, node, found)
     return document.text()
 
 
@@ -389,8 +388,7 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
     for axis, estimate in zip("xyz", found.center, strict=True):
         _put_range(document, center, axis, _signed(estimate, "m"))
     document.put(tool, "gravity", f"{found.gravity!r} m/s^2")
-    document.put(tool, "provenance", [_provenance(record.source) for record in found.records])
-    _put_doubts(document, tool, found.doubts)
+    _put_origin(document, tool, found)
     return document.text()
 
 

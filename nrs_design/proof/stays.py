@@ -153,6 +153,8 @@ def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int) -> str | Non
         return "the modes that must be left are not those of the system"
     if any(every[name].longest is None for name in leaving):
         return "a mode in which the function need not decrease has no longest dwell time"
+    if not set(leaving) <= {edge.source.name for edge in system.edges()}:
+        return "no switch leads from a mode that must be left"
     times = [stay.shortest for stay in every.values()]
     times += [longest for stay in every.values() if (longest := stay.longest) is not None]
     if max(times) > MAX_DWELL_STEPS:
@@ -173,7 +175,9 @@ def _find_odd_switch(system: SwitchedSystem) -> str | None:
     count, transitions = len(system.modes), system.switching.transitions
     switches = count * (count - 1) if transitions is None else len(transitions)
     switches += len(system.switching.resets)
-    if switches > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
+    # To find those that are allowed, all pairs are looked at.
+    looked = count**2 // 16
+    if max(switches, looked) > MAX_SWITCHES or switches * system.order**3 > MAX_WORK:
         return "there are too many switches to check"
     for edge in system.edges():
         given = edge.source.A.shape if edge.map is None else edge.map.shape

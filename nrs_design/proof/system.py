@@ -47,6 +47,10 @@ class SwitchedSystem:
     # Which modes are free motion, where it is among them and its loss must be covered.
     flights: Flights | None = None
 
+    def __post_init__(self) -> None:
+        """Take the word for a time as that time, so that no check takes it for another."""
+        object.__setattr__(self, "time", Time(self.time))
+
     def with_modes(
         self, modes: tuple[Mode, ...], states: tuple[str, ...], switching: Switching
     ) -> SwitchedSystem:

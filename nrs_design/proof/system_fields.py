@@ -54,7 +54,7 @@ def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
     system = read_object(SwitchedSystem, own)
     _check_modes(system.modes, len(system.states))
     if system.contact is not None:
-        _check_work(system.contact.free * (1 + len(system.contact.pulls)))
+        _check_work(system.contact.free, 1 + len(system.contact.pulls))
     if system.clock is not None and not 2 <= system.clock.length <= MAX_ROUND:
         raise ValueError(f"a round has from 2 to {MAX_ROUND} steps")
     return system
@@ -71,7 +71,7 @@ def _check_modes(modes: Sequence[Mode], states: int) -> None:
     _check_work(modes)
 
 
-def _check_work(modes: Iterable[Mode]) -> None:
+def _check_work(modes: Iterable[Mode], times: int = 1) -> None:
     matrices = (mode.A.numerators for mode in modes)
-    if sum(len(N) ** 3 * bit_length(N) for N in matrices) > MAX_FAMILY_WORK:
+    if times * sum(len(N) ** 3 * bit_length(N) for N in matrices) > MAX_FAMILY_WORK:
         raise ValueError("the modes are too large to check")

@@ -29,13 +29,8 @@ def test_committed_sample_is_what_the_generator_makes(name):
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_samples_are_read_as_synthetic(name):
-    if name.startswith("tool"):
-        assert read_poses(DATA / name).source.synthetic
-        return
-    if not name.startswith("actuator"):
-        assert read_tissue(DATA / name).source.synthetic
-        return
-    found = read_actuator(DATA / name)
+    readers = {"tool": read_poses, "actuator": read_actuator}
+    found = readers.get(name.partition("-")[0], read_tissue)(DATA / name)
     assert (found[0] if isinstance(found, tuple) else found).source.synthetic
 
 

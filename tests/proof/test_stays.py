@@ -179,6 +179,14 @@ def test_only_what_must_be_left_need_not_decrease(leaving, fault):
     assert odd(family([[-1]], [[-1]], switching=left_within((0, 1))), leaving) == fault
 
 
+@pytest.mark.parametrize("transitions", [(), (("m1", "m0"),)])
+def test_what_must_be_left_can_be_left(transitions):
+    """What the rules let no signal do says nothing about a robot that stays."""
+    system = family([[-1]], [[-1]], switching=left_within((0, 1), transitions=transitions))
+    assert odd(system, ("m0",)) == "no switch leads from a mode that must be left"
+    assert odd(system) is None
+
+
 def test_pieces_are_limited(monkeypatch):
     """Of three modes two are left, each in two ways."""
     system = family([[-1]], [[-1]], [[-1]], switching=left_within((1, 2), (1, 2)))

@@ -83,3 +83,11 @@ def test_uniform_is_of_the_order():
     assert family([[1, 0], [0, 1]], [[2, 0], [0, 2]]).is_uniform
     assert not family([[1, 0], [0, 1]], [[2]]).is_uniform
     assert not family([[1]], [[2, 0], [0, 2]]).is_uniform
+
+
+def test_the_word_for_a_time_is_that_time():
+    """A check that took it for neither would let a contraction be larger than one."""
+    system = replace(family([[1]], time=Time.DISCRETE), time="discrete")
+    assert system.time is Time.DISCRETE
+    with pytest.raises(ValueError, match="never"):
+        replace(system, time="never")

@@ -67,7 +67,7 @@ class ActuatorIdentification:
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """What whoever uses the motor in a proof must know: doubts, and a dead time."""
+        """Doubts, and a dead time, which a proof leaves out."""
         late = self.chosen.dead_time
         if late is None or late.low == 0.0:
             return self.doubts

@@ -1,4 +1,4 @@
-"""``nrs-design audit``: hold a log of the running robot against its spec, proved or not."""
+"""``nrs-design audit``: compare a log of the running robot with its spec."""
 
 from __future__ import annotations
 

@@ -133,14 +133,14 @@ class DelayIdentification:
             rests = f"{self.record.names[0]} is smooth between samples: parts of a sample are told"
         else:
             rests = (
-                f"within a sample nobody knows when {self.record.names[0]} changed: no interval is "
-                "below a sample"
+                f"the record does not tell when within a sample {self.record.names[0]} changed: no "
+                "interval is below a sample"
             )
         return (rests,) if said is None else (said, rests)
 
     @property
     def caveats(self) -> tuple[str, ...]:
-        """What whoever takes it for the age of a sample must know: doubts, and dynamics."""
+        """Doubts, and dynamics that make the delay more than the age of a sample."""
         if self._is_copy:
             return self.doubts
         sent, seen = self.record.names

@@ -1,4 +1,4 @@
-"""The page of a run held against its bounds."""
+"""The page of a run and its bounds."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _tables(found: RunJudgement) -> Iterator[Block]:
     judged = tuple((c.name, str(c.status), c.measured) for c in found.checks)
     yield Table("What the log shows", ("Check", "Outcome", "Measured"), judged)
     bounds = tuple((c.name, c.allowed, c.basis) for c in found.checks if c.allowed)
-    yield Table("What it is held against", ("Check", "Allowed", "Which is"), bounds)
+    yield Table("Bounds", ("Check", "Allowed", "Which is"), bounds)
     left = tuple(
         f"{c.name}: at {c.first.time:.6g} s, {c.first.words}." for c in found.checks if c.first
     )

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from nrs_design.identification.lever import parameter_units
+from nrs_design.identification.lever import in_words, named, parameter_units
 from nrs_design.identification.reporting.figures.identification import (
     draw_fit,
     draw_intervals,
@@ -57,12 +57,7 @@ def tissue_report(
     """
     chosen = found.chosen
     several = (Section("Several relaxations", (Bullets("", tuple(series)),)),) if series else ()
-    units = parameter_units(chosen.law, found.rotational)
-    names = chosen.law.parameters()
-    values = ", ".join(
-        f"{name} = {in_interval(estimate)} {unit}".rstrip()
-        for name, estimate, unit in zip(names, chosen.ranges, units, strict=True)
-    )
+    values = in_words(named(chosen.law, map(in_interval, chosen.ranges), found.rotational))
     return identification_page(
         found,
         name=f"tissue-{chosen.law.name}",
@@ -70,7 +65,7 @@ def tissue_report(
         claim=f"{chosen.law.formula} with {values}. {found.reason}",
         sections=(
             Section("What of the records is used", tuple(_used(found))),
-            Section("Comparison of laws", tuple(_comparison(found))),
+            Section("Comparison of laws", (comparison(found), *_doubts(found))),
             Section("Parameters of the chosen law", tuple(_parameters(found, arm))),
             *several,
             Section("Measured against fitted", tuple(_tissue_figures(found))),
@@ -108,7 +103,8 @@ def _offset(fit: RecordFit, name: str, rotational: bool) -> str:
     return f"{value}, {offset.provided}" if offset.provided else value
 
 
-def _comparison(found: TissueIdentification) -> Iterator[Block]:
+def comparison(found: TissueIdentification) -> Table:
+    """Return how well each law describes the records."""
     unit = "N m" if found.rotational else "N"
     records = [record.name for record in found.records]
     least_aic = min(model.aic for model in found.models)
@@ -125,7 +121,10 @@ def _comparison(found: TissueIdentification) -> Iterator[Block]:
         for model in found.models
     )
     columns = ("Law", *records, "AIC - least", "BIC - least", "White p", "Doubts")
-    yield Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
+    return Table(f"RMSE [{unit}] in each record, and criteria", columns, rows)
+
+
+def _doubts(found: TissueIdentification) -> Iterator[Block]:
     doubts = tuple(
         f"{model.law.name}: {shortened(model.doubts, 4)}." for model in found.models if model.doubts
     )
@@ -148,17 +147,17 @@ def _parameters(found: TissueIdentification, arm: float | None) -> Iterator[Bloc
     rows.append(("pooled", *map(in_interval, model.estimates)))
     rows.append((f"range: {found.covers}", *map(in_interval, model.ranges)))
     if arm is not None:
-        named = zip(law.at_pivot(arm).values, parameter_units(law, True), strict=True)
-        turned = [f"{number(value, 6)} {unit}" for value, unit in named]
+        values = named(law, law.at_pivot(arm).values, True)
+        turned = [f"{number(value, 6)} {unit}" for _, value, unit in values]
         rows.append((f"pooled, at the pivot ({number(arm)} m)", *turned))
     yield Table("Estimates [95 % interval]", columns, tuple(rows))
     notes = [model.box] if model.box else []
     if found.tangent is not None:
         about = found.tangent
-        values = ", ".join(map(in_interval, about.ranges))
+        shown = ", ".join(map(in_interval, about.ranges))
         notes.append(
             f"Small motions about deflections of {span(about.low, about.high, digits=5)}: "
-            f"stiffness and damping {values}."
+            f"stiffness and damping {shown}."
         )
     if notes:
         yield Bullets("", tuple(notes))

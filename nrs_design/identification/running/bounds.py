@@ -56,7 +56,7 @@ class RunBounds:
 
     @property
     def source(self) -> str:
-        """Who says so, in words: nobody who has no certificate reads of a proof."""
+        """Return the source of the bounds; without a certificate it does not mention a proof."""
         return "the proof" if self.proved else "the spec, which is not proved"
 
     def stiffness_in(self, mode: str | None) -> Stiffness | None:
@@ -82,7 +82,7 @@ def read_run_bounds(loaded: LoadedSpec) -> RunBounds:
     spec = loaded.spec
     if not isinstance(spec, InteractionDesignSpec):
         raise DesignError(
-            f"a spec of kind {spec.kind} says nothing that a log could be held against",
+            f"a spec of kind {spec.kind} has no bounds to compare a log with",
             path=loaded.path,
             remedy="name a spec of kind interaction-design",
         )

@@ -16,7 +16,7 @@ class BoundStatus(StrEnum):
     # What a log shows of it is another quantity than the bound is about.
     ESTIMATED = "estimated"
     NOT_JUDGED = "not judged"
-    # The proof has no bound for it: it takes for granted that there is none of it.
+    # The proof assumes that there is none of it, and has no bound.
     NOT_MODELLED = "not modelled"
 
 

@@ -83,7 +83,7 @@ def judge_run(
     window: float = WINDOW,
     command_limit: float | None = None,
 ) -> RunJudgement:
-    """Hold a log against the bounds of a spec.
+    """Compare a log with the bounds of a spec.
 
     Parameters
     ----------

@@ -120,7 +120,7 @@ def _check_mapped(
 
 
 def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
-    """Refuse to map a column to another unit than it says it has.
+    """Refuse a mapping whose unit contradicts the name of the column.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ def _grouped(
     for index, text in enumerate(header):
         ours = mapping.get(text)
         name = read_name(text if ours is None else ours)
-        # Who maps a quantity means this column, and no other that may be called like it.
+        # A mapped column takes precedence over others with a name of the same quantity.
         if name is None or name.quantity not in wanted or (ours is None and name.quantity in named):
             continue
         if name.loose and (name.group, name.quantity) in full:

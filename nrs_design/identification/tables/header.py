@@ -244,7 +244,7 @@ def _with_unit(name: str, unit: str, mapped: Collection[str]) -> str:
 def _check_mapped_units(
     pairs: Sequence[tuple[str, str]], mapped: Mapping[str, str], path: Path
 ) -> None:
-    """Hold what is mapped against the line of units below the names."""
+    """Check mapped columns against the line of units below the names."""
     for theirs, unit in pairs:
         ours = read_name(mapped.get(theirs, ""))
         if ours is not None:

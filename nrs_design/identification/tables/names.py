@@ -175,11 +175,11 @@ def read_name(text: str) -> Name | None:
         quantity = what if what in UNITS else _SYNONYMS.get(what)
         return Name(quantity, read_unit(unit, quantity)) if quantity else _symbol(what, unit)
     word, underscore, rest = text.partition("_")
-    # Who writes Fz means an axis of his own.
+    # A name such as Fz stands for one axis of several, not for the force.
     if word in UNITS or (word.lower() in UNITS and len(word) > 2):
         return Name(word.lower(), *(_unit_and_group(rest, word.lower()) if underscore else ("",)))
     quantity = _SYNONYMS.get(word.lower())
-    # A foreign word without its unit is none of ours.
+    # A synonym counts only with its unit.
     if not rest:
         return None
     if quantity is None:
@@ -219,7 +219,7 @@ def read_unit(text: str, quantity: str) -> str:
 
 
 def stated_unit(text: str, quantity: str) -> str | None:
-    """Return the unit that a foreign name says it has: ``Weg [mm]``, ``load_kN``.
+    """Return the unit in a foreign name such as ``Weg [mm]`` or ``load_kN``.
 
     Parameters
     ----------

@@ -113,7 +113,7 @@ class Parser:
             column.index: self._label for column in self.columns if column.unit == ""
         }
         with warnings.catch_warnings():
-            # That there are no rows is said by whoever needs some.
+            # Callers that need rows report that there are none.
             warnings.simplefilter("ignore")
             values = np.loadtxt(
                 lines,

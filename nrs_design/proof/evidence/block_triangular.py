@@ -30,7 +30,6 @@ class BlockTriangular(AbstractEvidence):
     kind: ClassVar[str] = "block-triangular"
     # Where blocks are coupled, a solution may decay like that rate times a polynomial in time.
     attains_rate: ClassVar[bool] = False
-    covers_mixtures: ClassVar[bool] = True
 
     blocks: Blocks  # Indices of the states of each block
     # Index of a block, and evidence for its family of diagonal blocks.
@@ -45,6 +44,11 @@ class BlockTriangular(AbstractEvidence):
     def is_common_quadratic(self) -> bool:
         """Whether every part is one: then the family has one too."""
         return all(part.is_common_quadratic for _, part in self.parts)
+
+    @property
+    def covers_mixtures(self) -> bool:
+        """Whether every part does."""
+        return all(part.covers_mixtures for _, part in self.parts)
 
     @property
     def keeps_bound_in_mixtures(self) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from itertools import product
 from math import comb, lcm
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
@@ -32,6 +33,7 @@ from nrs_design.proof.exact import (
     is_too_large,
     multiply,
 )
+from nrs_design.proof.matrix import leading
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
     CONTACT,
@@ -52,6 +54,9 @@ if TYPE_CHECKING:
 MAX_DEGREE = 64
 MAX_MONOMIALS = 120
 MAX_SETS = 1024
+MAX_STEPS = 2**21
+# What an edge takes at least, beside products of matrices, in the units of `MAX_WORK`.
+LEAST_WORK = 64
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
 AnyStep: TypeAlias = "Step | EnclosedStep"
@@ -155,10 +160,12 @@ class FormsOnGraph(AbstractFunction):
     def fits(self, switching: Switching) -> bool:
         """Tell whether the steps of these signals are those of its places.
 
-        With modes as places every mode in force must be one of them: a constant parameter is
-        anywhere between its ends.
+        A constant parameter is anywhere between its ends, where places that are modes, or edges to
+        some nodes only, say nothing.
         """
-        return not (switching.resets if self.stays is None else switching.fixed_ends)
+        if self.stays is not None:
+            return not switching.fixed_ends
+        return not (switching.resets or (switching.fixed_ends and not self.covers_mixtures))
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check places, sizes, rate and multipliers, and that no run is left without an edge."""
@@ -168,6 +175,7 @@ class FormsOnGraph(AbstractFunction):
             or self._find_odd_size(system)
             or self._find_odd_stays(system)
             or self._find_odd_shape(system)
+            or self._find_too_many(system)
             or self._find_odd_multiplier(system)
             or self._find_gap(system)
             or self._find_odd_vanishing(system)
@@ -211,9 +219,6 @@ class FormsOnGraph(AbstractFunction):
         for place, form in self.nodes:
             if not is_square(form, sizes[place]):
                 return f"a form at {place} is not a {sizes[place]} x {sizes[place]} matrix"
-        count = sum(len([n for n in self.nodes if n.place == place]) ** 2 for place in places)
-        if self.stays is None and count * len(system.modes) * max(sizes.values()) ** 3 > MAX_WORK:
-            return "there are too many edges to check"
         if d > 1:
             matrices = [mode.A.numerators for mode in system.modes]
             matrices += [reset.map.numerators for reset in system.switching.resets]
@@ -231,6 +236,9 @@ class FormsOnGraph(AbstractFunction):
         lost = self.covers_lost_contact
         if flows and not alone:
             return "in continuous time there is one form at each place"
+        chosen = any(edge.target is not None for edge in self.edges)
+        if chosen and not alone and (lost or self.covers_rounding):
+            return "edges lead to all nodes of a place where contact is lost or arithmetic rounds"
         if system.couplings and self.covers_coupling and not (alone and system.clock is None):
             return "axes that act on each other have one form at each place, and no turns"
         if self.stays is not None:
@@ -246,6 +254,23 @@ class FormsOnGraph(AbstractFunction):
             return "a polynomial has no multipliers, and covers no environment that could pull"
         return None
 
+    def _find_too_many(self, system: SwitchedSystem) -> str | None:
+        """Refuse more edges than can be checked in some seconds, before any is looked at."""
+        contact, too_many = system.contact, "there are too many edges to check"
+        if self.stays is None:
+            free, pulls = (0, 0) if contact is None else (len(contact.free), len(contact.pulls))
+            length = 1 if system.clock is None else system.clock.length
+            if (2 * len(system.modes) + free * (3 + 2 * pulls)) * length > MAX_STEPS:
+                return too_many
+        at = Counter(node.place for node in self.nodes)
+        size = max(len(node.form) for node in self.nodes)
+        whole = LEAST_WORK if len(self.nodes) == len(at) else max(LEAST_WORK, size**3)
+        work = 0
+        for step in self._steps(system):
+            known = len(self.multipliers) // 2 if step.facts else 0
+            work += at[step.source] * at[step.target] * (whole + known)
+        return too_many if work > MAX_WORK else None
+
     def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
         if any(item.value < 0 for item in self.multipliers):
             return "a multiplier is negative"
@@ -255,8 +280,8 @@ class FormsOnGraph(AbstractFunction):
             return "the multiplier of what axes do to each other is one for all"
         facts = {fact for step in self._steps(system) for fact in step.facts}
         keys = [(item.fact, item.target) for item in self.multipliers]
-        nodes = (None, *range(len(self.nodes)))
-        fit = all(fact in facts and target in nodes for fact, target in keys)
+        nodes = range(len(self.nodes))
+        fit = all(fact in facts and (to is None or to in nodes) for fact, to in keys)
         if len(set(keys)) < len(keys) or not fit:
             return "a multiplier belongs to no fact of the system, or a fact has two"
         return None
@@ -276,54 +301,50 @@ class FormsOnGraph(AbstractFunction):
 
     def _edges(self, system: SwitchedSystem) -> Iterator[tuple[int, AnyStep, int]]:
         """Yield the edges of the graph: nodes before and after, and the step between them."""
-        at: dict[str, list[int]] = {}
-        for k, node in enumerate(self.nodes):
-            at.setdefault(node.place, []).append(k)
+        at, drawn = self._nodes_at(), frozenset(self.edges)
         for step in self._steps(system):
             for a in at[step.source]:
                 for b in at[step.target]:
-                    if (a == b or not step.is_flow) and self._has(a, step.mode, b):
+                    ways = product((None, a), (None, step.mode), (None, b))
+                    if (a == b or not step.is_flow) and not drawn.isdisjoint(ways):
                         yield a, step, b
+
+    def _nodes_at(self) -> dict[str, list[int]]:
+        """Return the numbers of the nodes at every place."""
+        at: dict[str, list[int]] = {}
+        for k, node in enumerate(self.nodes):
+            at.setdefault(node.place, []).append(k)
+        return at
 
     def edges_in_time(self, system: SwitchedSystem) -> list[tuple[int, AnyStep, int]]:
         """Return the edges that take some time, in order."""
         return [edge for edge in self._edges(system) if edge[1].time]
 
-    def _has(self, source: int, mode: str, target: int) -> bool:
-        return any(
-            edge.source in (None, source)
-            and edge.mode in (None, mode)
-            and edge.target in (None, target)
-            for edge in self.edges
-        )
-
     def _find_gap(self, system: SwitchedSystem) -> str | None:
         """Say that a run can reach nodes from which some step has no edge, or None."""
         if self.edges == ALL:
             return None  # From every node to every node: a node at every place is enough.
-        after: dict[tuple[int, int], set[int]] = {}
-        steps = self._steps(system)
-        number = {id(step): k for k, step in enumerate(steps)}
+        after: dict[int, dict[int, list[int]]] = {}
+        leaving: dict[str, list[AnyStep]] = {}
+        for step in self._steps(system):
+            after[id(step)] = {}
+            leaving.setdefault(step.source, []).append(step)
         for a, step, b in self._edges(system):
-            after.setdefault((a, number[id(step)]), set()).add(b)
-        every = {
-            frozenset(k for k, node in enumerate(self.nodes) if node.place == place)
-            for place in self._places(system)
-        }
-        todo = list(every)
+            after[id(step)].setdefault(a, []).append(b)
+        every = {frozenset(nodes) for nodes in self._nodes_at().values()}
+        todo, work = list(every), 0
         while todo:
             nodes = todo.pop()
-            place = self.nodes[min(nodes)].place
-            for k, step in enumerate(steps):
-                if step.source != place:
-                    continue
-                reached = frozenset(b for a in nodes for b in after.get((a, k), ()))
-                if not reached:
+            for step in leaving.get(self.nodes[min(nodes)].place, ()):
+                ends = [b for a in nodes for b in after[id(step)].get(a, ())]
+                if not ends:
                     return f"the graph has no edge {step.where}"
+                reached = frozenset(ends)
                 if reached not in every:
                     every.add(reached)
                     todo.append(reached)
-                if len(every) > MAX_SETS:
+                work += LEAST_WORK // 8 * (len(nodes) + len(ends))
+                if len(every) > MAX_SETS or work > MAX_WORK:
                     return "the graph has too many sets of nodes"
         return None
 
@@ -394,7 +415,7 @@ class FormsOnGraph(AbstractFunction):
         if not isinstance(step, Step):
             return step.form(self.nodes[a].form, self.nodes[b].form, self.rate)
         before, after = self._restricted(a, step.states, system), self._after(step, b, system)
-        facts, d = self._multipliers_to(b), self.degree
+        facts, d = self._multipliers_to(b) if step.facts else {}, self.degree
         keeps = 2 * d * self.rate if step.is_flow else self.rate ** (2 * d * step.time)
         moved = step if d == 1 else lifted(step, d, self.rate)
         return moved.form(before, after, keeps, lambda fact: facts.get(fact, 0), multiply=multiply)
@@ -405,14 +426,13 @@ class FormsOnGraph(AbstractFunction):
     def _restricted(self, node: int, states: int, system: SwitchedSystem) -> Matrix:
         """Return the form of a node where all but the first states are zero."""
         place, form = self.nodes[node]
-        n = self._places(system)[place]
-        if n == states:
+        if len(form) == comb(states + self.degree - 1, self.degree):
             return form
         kept = list(range(states))
         if self.degree > 1:
             from nrs_design.proof.lift import monomials
 
-            terms = enumerate(monomials(n, self.degree))
+            terms = enumerate(monomials(self._places(system)[place], self.degree))
             kept = [k for k, term in terms if not any(term[states:])]
         return tuple(tuple(form[i][j] for j in kept) for i in kept)
 
@@ -423,7 +443,25 @@ class FormsOnGraph(AbstractFunction):
         each = Counter(node.place for node in self.nodes)
         count, once = max(each.values()), self.bounds_at_once
         lost = self.covers_lost_contact
-        return free_sentence(system, self.rate, self.degree, count, lost=lost, once=once)
+        return free_sentence(
+            system,
+            self.rate,
+            self.degree,
+            count,
+            lost=lost,
+            once=once,
+            # In continuous time, others rise at the surface.
+            alike=system.time is Time.CONTINUOUS or count > 1 or self._is_alike(),
+        )
+
+    def _is_alike(self) -> bool:
+        """Tell whether every quadratic form in free motion is that in contact, undeflected."""
+        forms = dict(self.nodes)
+        return all(
+            list(form) == leading(forms.get(place.replace(FREE, CONTACT, 1), ()))
+            for place, form in self.nodes
+            if place.startswith(FREE)
+        )
 
     def spread(self, merged: SwitchedSystem, system: SwitchedSystem) -> Self:
         """Repeat what belongs to a mode for its equals."""

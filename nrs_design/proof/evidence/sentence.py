@@ -26,7 +26,14 @@ def ruled_sentence(system: SwitchedSystem, rate: Fraction) -> str:
 
 
 def free_sentence(
-    system: SwitchedSystem, rate: Fraction, degree: int, count: int, *, lost: bool, once: bool
+    system: SwitchedSystem,
+    rate: Fraction,
+    degree: int,
+    count: int,
+    *,
+    lost: bool,
+    once: bool,
+    alike: bool = True,
 ) -> str:
     """State a bound on every solution under arbitrary switching.
 
@@ -44,6 +51,8 @@ def free_sentence(
         Whether contact is lost and made.
     once : bool
         Whether the largest of the forms at a place bounds the state, without a factor in front.
+    alike : bool
+        Whether that in free motion is that in contact without the deflection.
     """
     continuous = system.time is Time.CONTINUOUS
     x = "w" if lost or system.couplings else "x"
@@ -76,14 +85,19 @@ def free_sentence(
         f"{rate_words(rate, system.time)}"
     )
     text = " ".join(parts)
-    text = f"{text[0].upper()}{text[1:]}, {_norm(system, x, degree, count, lost=lost)}"
+    text = f"{text[0].upper()}{text[1:]}, {_norm(system, x, degree, count, lost=lost, alike=alike)}"
     text += "" if once else ", and with some constant c that is the same for all signals"
     return f"{text}. Where free motion ends is not claimed." if lost else f"{text}."
 
 
-def _norm(system: SwitchedSystem, x: str, degree: int, count: int, *, lost: bool) -> str:
+def _norm(
+    system: SwitchedSystem, x: str, degree: int, count: int, *, lost: bool, alike: bool
+) -> str:
     """Say in which norm the bound is."""
     own = "w_i" if system.couplings else x
+    of = ["of the step of its round"] if system.clock is not None else []
+    of += [] if alike else ["of contact or of free motion"]
+    which = f" with the Q {' and '.join(of)}" if of else ""
     parts = []
     if lost:
         whose = " of an axis" if system.couplings else ""
@@ -94,17 +108,16 @@ def _norm(system: SwitchedSystem, x: str, degree: int, count: int, *, lost: bool
     elif system.couplings:
         parts.append("w_i is the state of an axis")
     if system.couplings:
-        parts.append("|w|^2 = sum of w_i' Q w_i over the axes")
+        parts.append(f"|w|^2 = sum of w_i' Q w_i over the axes{which}")
     elif degree > 1:
-        parts.append(
-            f"|{x}|^{2 * degree} is a positive definite form of degree {2 * degree} in {x}"
-        )
+        form = f"positive definite form{'s' * (count > 1)} of degree {2 * degree} in {x}"
+        which = ", that of the step of its round" if system.clock is not None else ""
+        said = f"the largest of some {form}" if count > 1 else f"a {form}"
+        parts.append(f"|{x}|^{2 * degree} is {said}{which}")
     elif count > 1:
         parts.append(f"|{x}| is the largest of all sqrt({x}' Q {x}) there")
-    elif system.clock is not None:
-        parts.append(f"|{x}| = sqrt({x}' Q {x}) with the Q of the step of its round")
-    elif lost:
-        parts.append(f"|{x}| = sqrt({x}' Q {x})")
+    elif lost or which:
+        parts.append(f"|{x}| = sqrt({x}' Q {x}){which}")
     else:
         return f"in the norm |{x}| = sqrt({x}' Q {x})"
     return f"where {', and '.join(parts)}"

@@ -11,7 +11,7 @@ from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.phasors import phasors_of
 from nrs_design.identification.datasets import FrequencyResponse, read_actuator
 from nrs_design.identification.held import Held
-from tests.identification import motors, synthetic
+from tests.identification import motors
 from tests.identification.support import MOTOR, sinusoids, source
 
 FEW = (1.2, 2.0, 3.0, 5.0, 8.0, 14.0)
@@ -128,15 +128,6 @@ def test_bad_input():
         identify_actuator([replace(records[0], output=output)], MOTOR)
     with pytest.raises(DataError, match="in V and rpm"):
         identify_actuator([records[0], replace(records[1], unit="V")], MOTOR)
-
-
-def test_thesis_constants_of_the_generator():
-    """Thesis 4.1."""
-    assert (synthetic.GAIN, synthetic.TIME_CONSTANT, synthetic.FRICTION) == (
-        4.8417e-4,
-        0.0351,
-        276.575,
-    )
 
 
 @pytest.fixture(scope="module")

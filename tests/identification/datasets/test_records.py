@@ -48,14 +48,6 @@ def test_angle_in_degrees(tmp_path):
     assert record.force.max() == pytest.approx(1e-3 * DEFLECTION.max())
 
 
-def test_time_repeats(tmp_path):
-    fails(tmp_path, "time repeats", 52, time=np.where(np.arange(200) == 50, TIME[49], TIME))
-
-
-def test_time_goes_back(tmp_path):
-    fails(tmp_path, "time goes back", 52, time=np.where(np.arange(200) == 50, 0.1, TIME))
-
-
 def test_gap(tmp_path):
     """Stretches of 50 rows are fitted together; shorter ones alone are no record."""
     fails(tmp_path, "a gap of 0.06 s, where steps are 0.01 s, and no 50 rows without one", 42,
@@ -83,17 +75,6 @@ def test_out_of_contact_is_no_saturation(tmp_path):
     deflection = DEFLECTION - 0.004
     force = np.maximum(750 * deflection, 0.0)
     assert len(tissue(tmp_path, deflection=deflection, force=force).force) == 200
-
-
-def test_nothing_happens(tmp_path):
-    fails(tmp_path, "deflection never changes", 2, deflection=0 * TIME, force=TIME)
-    fails(tmp_path, "force never changes", 2, force=0 * TIME)
-
-
-def test_too_short(tmp_path):
-    fails(tmp_path, "has 20 rows", 21, time=TIME[:20], deflection=DEFLECTION[:20])
-    with pytest.raises(DataError, match="has 0 rows"):
-        read_tissue(write(tmp_path, "time_s,deflection_m,force_N"))
 
 
 def test_groups_of_columns(tmp_path):
@@ -136,17 +117,6 @@ def test_ready_response(tmp_path):
     assert isinstance(found, FrequencyResponse)
     assert np.abs(found.response[0]) == pytest.approx(10 ** (-66 / 20))
     assert found.frequency[1] == pytest.approx(4 * np.pi)
-
-
-@pytest.mark.parametrize(
-    ("frequency", "message", "line"), [([1, 2], "too few", 3), ([1, 0, 2], "not positive", 3)]
-)
-def test_bad_response(tmp_path, frequency, message, line):
-    zeros = [0.0] * len(frequency)
-    path = write(tmp_path, "frequency_hz,magnitude_db,phase_deg", frequency, zeros, zeros)
-    with pytest.raises(DataError, match=message) as caught:
-        read_actuator(path)
-    assert caught.value.line == line
 
 
 def test_an_angle_that_begins_anew_after_each_turn(tmp_path):

@@ -26,7 +26,7 @@ def test_the_true_law_is_chosen(law, motion, noise, q):
     assert found.chosen.law.name == law.name
     assert "least BIC" in found.reason
     assert [model.law.name for model in found.models] == list(LAWS)
-    assert found.synthetic
+    assert all(source.synthetic for source in found.sources)
 
 
 @pytest.mark.parametrize("step", [0.0, pytest.param(1e-6, marks=pytest.mark.slow)])

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -464,3 +465,9 @@ def test_functions_show_stability_at_the_rate_that_they_claim():
 )
 def test_as_many_rows_and_columns_as_asked_for(M, square):
     assert is_square(M, 2) is square
+
+
+def test_a_kind_that_does_not_exist_is_no_name_of_the_package():
+    package = import_module("nrs_design.proof.evidence")
+    with pytest.raises(AttributeError, match="has no attribute 'Hope'"):
+        _ = package.Hope

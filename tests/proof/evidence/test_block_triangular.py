@@ -247,3 +247,11 @@ def test_parts_are_spread_over_equal_modes():
     assert [index for index, _ in spread.parts] == [index for index, _ in evidence.parts]
     assert spread.find_fault(twice) is None
     assert evidence.find_fault(twice) is not None
+
+
+def test_averages_are_covered_where_every_block_covers_them():
+    each = mode_quadratic((("m0", ((1,),)), ("m1", ((1,),))), 0, Fraction(1, 2))
+    for part, covered in ((ONE, True), (each, False)):
+        evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, part)))
+        assert evidence.find_fault(CASCADE) is None
+        assert evidence.covers_mixtures is covered

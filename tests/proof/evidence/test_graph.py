@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nrs_design.proof.channels import Coupling
+from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import Shows, read_evidence
 from nrs_design.proof.evidence import graph as graph_module
@@ -909,6 +909,47 @@ class TestStays:
 DRAWN = family([["1/2"]], [["1/2"]], time=STEPS)
 
 
+def at(place: str, count: int) -> tuple[Node, ...]:
+    return (Node(place, ((1,),)),) * count
+
+
+def _with_many_forces() -> SwitchedSystem:
+    free = tuple(Mode(f"f{k}", matrix([[0, 0], [0, 1]])) for k in range(3000))
+    return replace(bouncing_in_steps(), contact=Contact(free, (matrix([[1, 1]]),) * 3000))
+
+
+HALVED, EDGES = family([["1/2"]], time=STEPS), "there are too many edges to check"
+HOSTILE = {
+    "nodes": (HALVED, FormsOnGraph(at("modes", 99_999), 0, SLOW), EDGES),
+    "edges": (
+        HALVED,
+        FormsOnGraph(at("modes", 99), 0, SLOW, edges=tuple(Arc(0, "", k) for k in range(99_999))),
+        "the graph has no edge in mode m0",
+    ),
+    "nodes of modes": (
+        DRAWN,
+        FormsOnGraph((*at("m0", 3000), *at("m1", 3000)), 0, SLOW, stays=Stays()),
+        EDGES,
+    ),
+    "multipliers": (
+        bouncing_in_steps(),
+        FormsOnGraph(
+            ((Node("modes", Q2_STEPS),) * 999 + at("free", 999)),
+            0,
+            SLOW,
+            multipliers=tuple(Multiplier("lost", k, 1) for k in range(1998)),
+        ),
+        EDGES,
+    ),
+    "forces": (_with_many_forces(), IN_STEPS, EDGES),
+    "modes": (
+        family(*[[[0]]] * 5000, time=STEPS, switching=Switching(transitions=())),
+        scalars(*[1] * 5000),
+        "there are too many switches to check",
+    ),
+}
+
+
 class TestGraph:
     """Edges that are chosen, the words that they leave out, and what a shape covers."""
 
@@ -963,6 +1004,42 @@ class TestGraph:
         monkeypatch.setattr(graph_module, "MAX_WORK", 1)
         graph = common_quadratic(((1,),), 0, Fraction(9, 10))
         assert graph.find_misfit(DRAWN) == "there are too many edges to check"
+
+    def test_averages_grow_where_each_mode_has_a_multiplier_of_its_own(self):
+        """By way of targets: ``x+ = C r``, ``|r| <= q |x|``, each C q is a half, of means 25."""
+        columns, rows = (matrix([[10]]), matrix([["1/20"]])), (matrix([["1/20"]]), matrix([[10]]))
+        system = family([[0]], [[0]], time=STEPS)
+        rounded = replace(system, roundings=(Rounding("r", columns, rows),))
+        nodes, edges = (Node("modes", ((1024,),)),) * 2, (Arc(None, "m0", 0), Arc(None, "m1", 1))
+        own = (Multiplier("rounding 1", 0, 110 * 1024), Multiplier("rounding 1", 1, 5))
+        graph = FormsOnGraph(nodes, 10, SLOW, multipliers=own, edges=edges)
+        refused = "edges lead to all nodes of a place where contact is lost or arithmetic rounds"
+        assert broken(rounded, graph) == set()
+        assert graph.find_misfit(rounded) == refused
+        # Without rounding they are linear, and an average for ever is no worse than words of modes;
+        # but that is not what a graph proves.
+        linear = replace(graph, multipliers=())
+        assert linear.find_fault(system) is None
+        constant = replace(system, switching=Switching(fixed_ends=(("m0", "m1"),)))
+        assert "this kind of switching" in linear.find_fault(constant)
+        assert replace(linear, edges=ALL).find_fault(constant) is None
+        chosen = (Arc(0, None, 0), Arc(1, None, 1), *EACH.edges)
+        assert replace(EACH, edges=chosen).find_misfit(bouncing_in_steps()) == refused
+
+    @pytest.mark.parametrize("case", HOSTILE)
+    def test_what_nobody_can_check_is_refused_at_once(self, case):
+        system, graph, fault = HOSTILE[case]
+        with ends_soon():
+            assert graph.find_fault(system) == fault
+
+    def test_sets_of_nodes_are_followed_only_so_far(self, monkeypatch):
+        """A chain of sets, each with a node less."""
+        edges = (Arc(0, "m0", 0), *(Arc(k, "m0", k + 1) for k in range(9)), Arc(None, "m1", None))
+        graph = FormsOnGraph(at("modes", 10), 0, SLOW, edges=edges)
+        assert graph.find_fault(DRAWN) is None
+        monkeypatch.setattr(graph_module, "LEAST_WORK", 10**9)
+        monkeypatch.setattr(FormsOnGraph, "_find_too_many", lambda *_: None)
+        assert graph.find_misfit(DRAWN) == "the graph has too many sets of nodes"
 
     def test_continuous_time_has_one_form_at_each_place(self):
         twice = replace(BOUNCE, nodes=(*BOUNCE.nodes, *BOUNCE.nodes))

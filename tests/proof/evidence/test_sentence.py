@@ -10,7 +10,15 @@ from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Stay, Switching
 from tests.proof.graphs import common_polynomial, common_quadratic, one_form
-from tests.proof.systems import bouncing, bouncing_in_steps, family, leaning, matrix, resets_between
+from tests.proof.systems import (
+    bouncing,
+    bouncing_in_steps,
+    bouncing_in_turns,
+    family,
+    leaning,
+    matrix,
+    resets_between,
+)
 
 HALF = Fraction(1, 2)
 RESETS = resets_between(("m0", "m1", [[1]]), ("m1", "m0", [[1]]))
@@ -58,6 +66,25 @@ def test_lost_contact_is_said_with_its_modes_and_its_rate_in_seconds():
     assert flowing.startswith("Every solution, with contact lost")
     each = free_sentence(system, HALF, 1, 3, lost=True, once=True)
     assert "|w| is the largest of all sqrt(w' Q w) there" in each
+
+
+def test_each_form_of_a_norm_is_named():
+    """A claim is true for the forms that a certificate holds, and not for one of them alone."""
+    system, rate = bouncing_in_steps(), Fraction(99, 100)
+    one = one_form(system, ((40, 20), (20, 60)), 0, rate, crossings=(16,), lost=True)
+    other = replace(one, nodes=(one.nodes[0], one.nodes[1]._replace(form=((30,),))))
+    assert other.find_fault(system) is None
+    assert "|w| = sqrt(w' Q w) with the Q of contact or of free motion." in other.claim(system)
+    axes = leaning(bouncing(), "1/8")
+    said = free_sentence(axes, HALF, 1, 1, lost=True, once=True, alike=False)
+    assert "over the axes with the Q of contact or of free motion." in said
+    turns = bouncing_in_turns()
+    said = free_sentence(turns, HALF, 1, 1, lost=True, once=True, alike=False)
+    assert "with the Q of the step of its round and of contact or of free motion." in said
+    fourth = free_sentence(turns, HALF, 2, 1, lost=False, once=True)
+    assert "a positive definite form of degree 4 in x, that of the step of its round." in fourth
+    several = free_sentence(system, HALF, 2, 3, lost=False, once=True)
+    assert "|x|^4 is the largest of some positive definite forms of degree 4 in x." in several
 
 
 def test_axes_are_added_up():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import typer
@@ -10,7 +11,6 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.destinations import Destinations
 from nrs_design.cli.options import Date, ReportTo
 from nrs_design.cli.printing import progress, say
-from nrs_design.cli.tables import print_table
 from nrs_design.identification.cli.identify.common import (
     ColumnMap,
     CoversOption,
@@ -19,6 +19,7 @@ from nrs_design.identification.cli.identify.common import (
     WriteTo,
     deliver,
     estimate_numbers,
+    print_fits,
     read_all,
 )
 from nrs_design.identification.cli.identify.tissue_options import (
@@ -42,9 +43,11 @@ from nrs_design.identification.cli.identify.tissue_options import (
 )
 
 if TYPE_CHECKING:
+    from nrs_design.identification.statistics import Estimate
     from nrs_design.identification.tissue import ModelFit, RecordFit, TissueIdentification
     from nrs_design.identification.tissue.prony import Series
     from nrs_design.identification.tissue.tangent import Tangent
+    from nrs_design.models.contact import AbstractContactLaw
     from nrs_design.reporting import Report
 
 
@@ -85,6 +88,7 @@ def tissue(
     from nrs_design.identification.datasets import read_tissue
     from nrs_design.identification.lever import parse_arm, parse_offset, parse_preload
     from nrs_design.identification.tissue import Preparation, identify_tissue
+    from nrs_design.identification.tissue.prony import fit_series
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
 
     outputs = Destinations.checked(write, report, date)
@@ -124,7 +128,7 @@ def tissue(
             progress=step,
             declared=asked is None,
         )
-        series = _series(found) if prony else None
+        series = [fit_series(trial) for trial in found.trials] if prony else None
     return deliver(
         outputs,
         found,
@@ -142,28 +146,14 @@ def _page(found: TissueIdentification, arm: float | None, series: list[Series]) 
 
 
 def _print(found: TissueIdentification, arm: float | None, series: list[Series]) -> None:
-    from nrs_design.identification.lever import parameter_units
+    from nrs_design.identification.lever import in_words, named
+    from nrs_design.identification.reporting.tissue import comparison
 
-    least = min(model.bic for model in found.models)
-    unit = "N m" if found.rotational else "N"
-    rows = [
-        [
-            model.law.name,
-            "\n".join(_parameters(model, parameter_units(model.law, found.rotational))),
-            ", ".join(f"{value:.4g}" for value in model.rmse),
-            f"{model.bic - least:.4g}",
-            doubts_of(model, chosen=model is found.chosen),
-        ]
-        for model in found.models
-    ]
-    columns = ["law", "pooled parameters [95 %]", f"RMSE {unit}", "BIC - least", "doubts"]
-    print_table("", columns, rows)
+    print_fits(comparison(found))
     say(found.reason)
     law = found.chosen.law
-    units = parameter_units(law, found.rotational)
-    ranges = zip(law.parameters(), found.chosen.ranges, units, strict=True)
-    for name, estimate, unit in ranges:
-        say(f"{name} = {estimate} {unit} holds {found.covers}")
+    for parameter in named(law, found.chosen.ranges, found.rotational):
+        say(f"{in_words([parameter])} holds {found.covers}")
     if found.tangent is not None:
         _print_tangent(found.tangent, found.rotational)
     if found.chosen.box:
@@ -172,57 +162,22 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
         remarks = (*_offsets(fit, found.rotational), *fit.trial.remarks)
         say(f"{fit.record.name}: {'; '.join(remarks)}")
     if arm is not None:
-        turned = law.at_pivot(arm)
-        values = zip(law.parameters(), turned.values, parameter_units(law, True), strict=True)
-        say(f"at the pivot: {', '.join(f'{n} = {v:.6g} {u}' for n, v, u in values)}")
+        turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
+        say(f"at the pivot: {in_words(named(law, turned, True))}")
     for item in series:
         say(item.text(rotational=found.rotational))
 
 
-def doubts_of(model: ModelFit, *, chosen: bool) -> str:
-    """Join the doubts about a law: all of the chosen one, the first two of others."""
-    shown = model.doubts if chosen else model.doubts[:2]
-    return "; ".join(shown) + (" ..." if len(model.doubts) > len(shown) else "")
-
-
-def _series(found: TissueIdentification) -> list[Series]:
-    from nrs_design.identification.tissue.prony import fit_series
-
-    return [fit_series(trial) for trial in found.trials]
-
-
-def _series_summary(series: Series) -> Facts:
-    law = series.reduced
-    return {
-        "record": series.record,
-        "rest": series.rest,
-        "arms": list(series.arms),
-        "times_s": list(series.times),
-        "rmse": series.rmse,
-        "bic": list(series.bic),
-        "reduced": None
-        if law is None
-        else {"law": law.name, **dict(zip(law.parameters(), law.values, strict=True))},
-    }
-
-
 def _print_tangent(about: Tangent, rotational: bool) -> None:
-    from nrs_design.identification.lever import parameter_units
+    from nrs_design.identification.lever import in_words, named
     from nrs_design.identification.statistics import span
 
-    parts = zip(
-        about.law.parameters(), about.ranges, parameter_units(about.law, rotational), strict=True
-    )
-    values = ", ".join(f"{name} = {estimate} {unit}" for name, estimate, unit in parts)
     length = "rad" if rotational else "m"
+    values = in_words(named(about.law, about.ranges, rotational))
     say(f"small motions about {span(about.low, about.high, length, 5)}: {values}")
-    names = (*about.law.parameters(), "phi")
-    units = (*parameter_units(about.law, rotational), "")
-    power = ", ".join(
-        f"{name} = {estimate} {unit}".rstrip()
-        for name, estimate, unit in zip(names, about.power, units, strict=True)
-    )
-    say(f"the law itself, by its tangent at {about.about:.5g} {length}: {power}")
+    *power, exponent = about.power
+    values = in_words([*named(about.law, power, rotational), ("phi", exponent, "")])
+    say(f"the law itself, by its tangent at {about.about:.5g} {length}: {values}")
 
 
 def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
@@ -237,46 +192,14 @@ def _offsets(fit: RecordFit, rotational: bool) -> list[str]:
     return texts
 
 
-def _parameters(model: ModelFit, units: tuple[str, ...]) -> list[str]:
-    parts = zip(model.law.parameters(), model.estimates, units, strict=True)
-    return [f"{name} {estimate} {unit}" for name, estimate, unit in parts]
-
-
 def _facts(found: TissueIdentification, arm: float | None, series: list[Series] | None) -> Facts:
-    from nrs_design.identification.lever import parameter_units
-
-    law = found.chosen.law
-    listed = {} if series is None else {"prony": [_series_summary(item) for item in series]}
+    law, about = found.chosen.law, found.tangent
+    listed = {} if series is None else {"prony": [_series_facts(item) for item in series]}
     return {
         "chosen": law.name,
         "reason": found.reason,
-        "ranges": {
-            name: estimate_numbers(estimate) | {"unit": unit}
-            for name, estimate, unit in zip(
-                law.parameters(),
-                found.chosen.ranges,
-                parameter_units(law, found.rotational),
-                strict=True,
-            )
-        },
-        "tangent": None
-        if found.tangent is None
-        else {
-            "preload": [found.tangent.low, found.tangent.high],
-            "ranges": {
-                name: estimate_numbers(estimate)
-                for name, estimate in zip(
-                    found.tangent.law.parameters(), found.tangent.ranges, strict=True
-                )
-            },
-            "about": found.tangent.about,
-            "law": {
-                name: estimate_numbers(estimate)
-                for name, estimate in zip(
-                    (*found.tangent.law.parameters(), "phi"), found.tangent.power, strict=True
-                )
-            },
-        },
+        "ranges": _parameters(law, found.chosen.ranges, found.rotational),
+        "tangent": None if about is None else _tangent(about, found.rotational),
         "range_covers": found.chosen.coverage,
         "range_covers_words": found.covers,
         "box": found.chosen.box or None,
@@ -288,47 +211,74 @@ def _facts(found: TissueIdentification, arm: float | None, series: list[Series] 
     }
 
 
-def _model(model: ModelFit, rotational: bool) -> Facts:
-    from nrs_design.identification.lever import parameter_units
+def _parameters(law: AbstractContactLaw, estimates: Iterable[Estimate], rotational: bool) -> Facts:
+    from nrs_design.identification.lever import named
 
-    names = model.law.parameters()
+    return {
+        name: estimate_numbers(estimate) | {"unit": unit}
+        for name, estimate, unit in named(law, estimates, rotational)
+    }
+
+
+def _tangent(about: Tangent, rotational: bool) -> Facts:
+    *power, exponent = about.power
+    law = _parameters(about.law, power, rotational) | {"phi": estimate_numbers(exponent)}
+    return {
+        "preload": [about.low, about.high],
+        "ranges": _parameters(about.law, about.ranges, rotational),
+        "about": about.about,
+        "law": law,
+    }
+
+
+def _series_facts(series: Series) -> Facts:
+    law = series.reduced
+    return {
+        "record": series.record,
+        "rest": series.rest,
+        "arms": list(series.arms),
+        "times_s": list(series.times),
+        "rmse": series.rmse,
+        "bic": list(series.bic),
+        "reduced": None
+        if law is None
+        else {"law": law.name, **dict(zip(law.parameters(), law.values, strict=True))},
+    }
+
+
+def _model(model: ModelFit, rotational: bool) -> Facts:
     return {
         "law": model.law.name,
-        "parameters": {
-            name: estimate_numbers(estimate) | {"unit": unit}
-            for name, estimate, unit in zip(
-                names, model.estimates, parameter_units(model.law, rotational), strict=True
-            )
-        },
+        "parameters": _parameters(model.law, model.estimates, rotational),
         "relaxation_time_s": model.law.relaxation_time,
         "aic": model.aic,
         "bic": model.bic,
         "doubts": list(model.doubts),
         "records": [
-            {
-                "parameters": {
-                    name: estimate_numbers(estimate)
-                    for name, estimate in zip(names, fit.estimates, strict=True)
-                },
-                "rmse": fit.rmse,
-                "rmse_pooled": pooled,
-                "aic": fit.aic,
-                "bic": fit.bic,
-                "offsets": {
-                    offset.name: estimate_numbers(offset.estimate)
-                    | {"fitted": offset.fitted, "provided": offset.provided or None}
-                    for offset in fit.offsets
-                },
-                "used": int(fit.trial.used.sum()),
-                "samples": len(fit.record.force),
-                "cuts": list(map(str, fit.trial.cuts)),
-                "remarks": list(fit.trial.remarks),
-                "r2": fit.r2,
-                "residual_over_range": fit.rmse / fit.trial.span,
-                "whiteness_p": fit.uncertainty.whiteness,
-                "starts": fit.starts,
-                "agreeing": fit.agreeing,
-            }
+            _record(fit, rotational) | {"rmse_pooled": pooled}
             for fit, pooled in zip(model.fits, model.rmse, strict=True)
         ],
+    }
+
+
+def _record(fit: RecordFit, rotational: bool) -> Facts:
+    return {
+        "parameters": _parameters(fit.law, fit.estimates, rotational),
+        "rmse": fit.rmse,
+        "aic": fit.aic,
+        "bic": fit.bic,
+        "offsets": {
+            offset.name: estimate_numbers(offset.estimate)
+            | {"fitted": offset.fitted, "provided": offset.provided or None}
+            for offset in fit.offsets
+        },
+        "used": int(fit.trial.used.sum()),
+        "samples": len(fit.record.force),
+        "cuts": list(map(str, fit.trial.cuts)),
+        "remarks": list(fit.trial.remarks),
+        "r2": fit.r2,
+        "residual_over_range": fit.rmse / fit.trial.span,
+        "whiteness_p": fit.uncertainty.whiteness,
+        "starts": fit.starts,
+        "agreeing": fit.agreeing,
     }

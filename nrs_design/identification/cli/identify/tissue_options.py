@@ -1,4 +1,4 @@
-"""Options of ``nrs-design identify tissue``: what of the records is used, and what is fitted."""
+"""Options of ``nrs-design identify tissue``: which samples are used, and what is fitted."""
 
 from __future__ import annotations
 

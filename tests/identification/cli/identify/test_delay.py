@@ -67,10 +67,3 @@ def test_wrong_delays(tmp_path, arguments, message):
     done = run("identify", "delay", *arguments, cwd=tmp_path, code=2)
     assert message in done.stderr
     assert "_any" not in done.stderr
-
-
-def test_help_has_examples(tmp_path):
-    assert "Example: nrs-design audit run.csv" in run("audit", "-h", cwd=tmp_path).stdout
-    assert "Example: nrs-design identify delay" in run(
-        "identify", "delay", "-h", cwd=tmp_path
-    ).stdout  # fmt: skip

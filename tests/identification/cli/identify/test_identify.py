@@ -32,16 +32,11 @@ def test_a_report_has_the_date_that_is_given_and_no_other(tmp_path, command, dat
     ("arguments", "message"),
     [
         (["tissue", "missing.csv"], "missing.csv: cannot be read"),
-        (["tissue", SOFT[0], SOFT[0]], "has the same content"),
         (["tissue", SOFT[0], NOSE[0]], "linear and rotational records are mixed"),
-        (["tissue", NOSE[0], "--lever-arm", "0.24 m"], "records are rotational"),
         (["tissue", SOFT[0], "--lever-arm", "24 N"], "is not a length"),
-        (["tissue", SOFT[0], "--lever-arm", "0 m"], "not positive"),
         (["tissue", SOFT[0], "--map", "Fz"], "is not a pair"),
-        (["tissue", SOFT[0], "--report", "page.docx"], "not a type of report"),
         (["tissue", SOFT[0], "--write", COMMUTING], "has no place for identified values"),
         (["tissue", SINUSOIDS[0]], "are missing"),
-        (["actuator", SINUSOIDS[0], SINUSOIDS[0]], "there twice"),
         (["actuator", SOFT[0]], "are missing"),
     ],
 )
@@ -53,5 +48,6 @@ def test_bad_input_is_one_message(tmp_path, arguments, message):
 
 
 def test_help_has_examples(tmp_path):
-    for command in ("tissue", "actuator"):
+    for command in ("tissue", "actuator", "delay", "tool"):
         assert "Example: nrs-design identify" in run("identify", command, "-h", cwd=tmp_path).stdout
+    assert "Example: nrs-design audit run.csv" in run("audit", "-h", cwd=tmp_path).stdout

@@ -2,12 +2,10 @@
 
 import contextlib
 import shutil
-from types import SimpleNamespace
 from unittest.mock import patch
 
 import pytest
 
-from nrs_design.identification.cli.identify.tissue import doubts_of
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import read_spec
 from tests.identification.cli.identify.records import NOSE, SOFT
@@ -272,10 +270,3 @@ def test_another_unit_or_sign_is_no_success(tmp_path, scales, said):
 )
 def test_wrong_options_of_tissue(tmp_path, option, message):
     assert message in run("identify", "tissue", SOFT[0], *option, cwd=tmp_path, code=2).stderr
-
-
-def test_every_doubt_of_the_chosen_law_is_printed():
-    """The third and later ones were behind "..."."""
-    doubted = SimpleNamespace(doubts=("one", "two", "three"))
-    assert doubts_of(doubted, chosen=True) == "one; two; three"
-    assert doubts_of(doubted, chosen=False) == "one; two ..."

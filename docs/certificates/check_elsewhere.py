@@ -90,14 +90,14 @@ def holds(statement, modes, free, discrete):
     others = {"multipliers", "edges", "stays"} & statement.keys()
     if not free or statement["kind"] != "graph" or others or len(statement["nodes"]) != 1:
         return None
-    Q, d = statement["nodes"][0]["Q"]["numerators"], statement.get("degree", 2)
+    Q, d = statement["nodes"][0]["form"], statement.get("degree", 1)
     rate = F(statement["rate"])
     decays = 0 < rate < 1 if discrete else rate > 0
-    if not modes or d < 2 or d % 2 or not decays or not positive_definite(Q):
+    if not modes or d < 1 or not decays or not positive_definite(Q):
         return False
     forms = statement.get("vanishing", [[[0] * len(Q)] * len(Q)] * len(modes))
     pairs = zip(modes.values(), forms, strict=True)
-    return all(falls(*mode, N, Q, d // 2, rate, discrete) for mode, N in pairs)
+    return all(falls(*mode, N, Q, d, rate, discrete) for mode, N in pairs)
 
 
 with open(sys.argv[1], encoding="utf-8") as file:

@@ -11,10 +11,10 @@ from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.evidence.abstract import AT_ANY_DEFLECTION, IN_KEPT_CONTACT
+from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.system_fields import system_fields
 
-SCHEMA = "nrs-design/certificate/7"
+SCHEMA = "nrs-design/certificate/8"
 # What says nothing about the claim, so that the id does not cover it.
 UNSIGNED = frozenset({"id", "origin"})
 

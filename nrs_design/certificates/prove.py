@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from pathlib import Path
+from typing import Any, NoReturn
 
 from nrs_design.certificates.certificate import (
     SCHEMA,
@@ -18,16 +19,17 @@ from nrs_design.certificates.certificate import (
     content_id,
     to_document,
 )
-from nrs_design.errors import DISAGREE, InternalError, NrsDesignError
+from nrs_design.errors import DISAGREE, CertificateError, InternalError, NrsDesignError
+from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
 from nrs_design.proof.evidence import AbstractEvidence, Shows, read_evidence
-from nrs_design.proof.evidence.fields import read_text
+from nrs_design.proof.evidence.fields import read_system, read_text
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.system_fields import read_system
 from nrs_design.proof.text import quoted
 
 MAX_VERDICTS = 2
+MAX_BYTES = 32 * 2**20
 # What a hostile document can raise before the exact check: all of it means rejection.
 _MALFORMED = (
     LookupError,
@@ -56,13 +58,59 @@ class Verification:
         return self.fault is None and certificate is not None and certificate.verdict == "proved"
 
 
+def read_document(path: Path) -> dict[str, Any]:
+    """Read a certificate file as JSON without floats or duplicate keys.
+
+    Raises
+    ------
+    CertificateError
+        If the file is missing, too large, or not such JSON.
+    """
+    content = b""
+    try:
+        content = _read_bytes(path)
+        document = json.loads(
+            read_json_text(content),
+            parse_float=_no_float,
+            parse_constant=_no_float,
+            object_pairs_hook=unique_keys,
+        )
+    except OSError as error:
+        raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
+    except (ValueError, RecursionError) as error:
+        if path.name.endswith((".yaml", ".yml")):
+            raise CertificateError(
+                "this is a spec, not a certificate",
+                path=path,
+                remedy="name the certificate first: nrs-design verify CERT SPEC",
+            ) from error
+        said = "this is a page" if is_page(content) else str(error)
+        raise CertificateError(
+            f"not a certificate: {said}", path=path, remedy="make it with certify-switching --out"
+        ) from error
+    if not isinstance(document, dict):
+        raise CertificateError("not a certificate: expected a JSON object", path=path)
+    return document
+
+
+def _read_bytes(path: Path) -> bytes:
+    """Read a whole file, but never an endless one."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise CertificateError("is not a regular file", path=path)
+    with open_regular(path) as file:
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise CertificateError("larger than any certificate", path=path)
+    return content
+
+
 def prove(document: Mapping[str, Any]) -> Verification:
     """Check that a certificate holds for its own modes; whose they are is not asked.
 
     Parameters
     ----------
     document : mapping
-        As `nrs_design.certificates.verify.read_document` gives it.
+        As `read_document` gives it.
     """
 
     def check() -> Verification:
@@ -198,3 +246,7 @@ def _mapping(value: object) -> dict[str, Any]:
     if not isinstance(value, dict):
         raise TypeError(f"expected an object, not {quoted(str(value))}")
     return value
+
+
+def _no_float(text: str) -> NoReturn:
+    raise ValueError(f"{quoted(text)} is a floating-point number; certificates hold integers only")

@@ -7,11 +7,10 @@ and the assumptions must be the same.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 from nrs_design.certificates.prove import (
     Verification,
@@ -22,12 +21,10 @@ from nrs_design.certificates.prove import (
     judged,
     prove,
     read_certificate,
+    read_document,
     read_gains,
 )
-from nrs_design.errors import CertificateError
-from nrs_design.files import is_page, open_regular, read_json_text, unique_keys
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.proof.text import quoted
 
 if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
@@ -35,7 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Verification", "prove", "read_document", "verify", "verify_document"]
 
-MAX_BYTES = 32 * 2**20
 # Says why a proof is rejected, or None.
 FindFault = Callable[[], str | None]
 
@@ -126,52 +122,6 @@ def _verify(
     return check(document, system)
 
 
-def read_document(path: Path) -> dict[str, Any]:
-    """Read a certificate file as JSON without floats or duplicate keys.
-
-    Raises
-    ------
-    CertificateError
-        If the file is missing, too large, or not such JSON.
-    """
-    content = b""
-    try:
-        content = _read_bytes(path)
-        document = json.loads(
-            read_json_text(content),
-            parse_float=_no_float,
-            parse_constant=_no_float,
-            object_pairs_hook=unique_keys,
-        )
-    except OSError as error:
-        raise CertificateError(f"cannot be read ({error.strerror})", path=path) from error
-    except (ValueError, RecursionError) as error:
-        if path.name.endswith((".yaml", ".yml")):
-            raise CertificateError(
-                "this is a spec, not a certificate",
-                path=path,
-                remedy="name the certificate first: nrs-design verify CERT SPEC",
-            ) from error
-        said = "this is a page" if is_page(content) else str(error)
-        raise CertificateError(
-            f"not a certificate: {said}", path=path, remedy="make it with certify-switching --out"
-        ) from error
-    if not isinstance(document, dict):
-        raise CertificateError("not a certificate: expected a JSON object", path=path)
-    return document
-
-
-def _read_bytes(path: Path) -> bytes:
-    """Read a whole file, but never an endless one."""
-    if path.exists() and not (path.is_file() or path.is_dir()):
-        raise CertificateError("is not a regular file", path=path)
-    with open_regular(path) as file:
-        content = file.read(MAX_BYTES + 1)
-    if len(content) > MAX_BYTES:
-        raise CertificateError("larger than any certificate", path=path)
-    return content
-
-
 def _find_foreign(
     document: Mapping[str, Any], spec: LoadedSpec, coordinates: str | None
 ) -> str | None:
@@ -184,7 +134,3 @@ def _find_foreign(
             return "it names no coordinates: it is about another law; verify it without the spec"
         return f"it is about other coordinates than {wanted}"
     return None
-
-
-def _no_float(text: str) -> NoReturn:
-    raise ValueError(f"{quoted(text)} is a floating-point number; certificates hold integers only")

@@ -115,12 +115,13 @@ def verify(
 def _verify(
     certificate: Path, spec: Path | None, coordinates: str | None
 ) -> tuple[Verification, LoadedSpec | None]:
-    from nrs_design.certificates.verify import read_document, verify_document
+    from nrs_design.certificates.prove import prove, read_document
 
     document = read_document(certificate)
     if spec is None:
-        return verify_document(document), None
+        return prove(document), None
     from nrs_design.certificates.beside import proof_beside
+    from nrs_design.certificates.verify import verify_document
 
     with proof_beside(document) as proof:
         from nrs_design.spec import read_spec

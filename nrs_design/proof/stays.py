@@ -17,7 +17,7 @@ from nrs_design.proof.exact import MAX_WORK, IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.matrix import multiply as rational_product
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import Step, flow_step, map_step
+from nrs_design.proof.steps import Stays, Step, flow_step, map_step
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
 
@@ -26,15 +26,6 @@ MAX_PIECES = 4096
 MAX_ENCLOSED = 2**18
 MAX_SWITCHES = 2**20
 MAX_POWER_BITS = 10**6
-
-
-@dataclass(frozen=True, slots=True)
-class Stays:
-    """How stays in a mode are followed."""
-
-    # Modes of which every stay is one step, as they have a longest dwell time.
-    leaving: tuple[str, ...] = ()
-    pieces: int = 1  # In continuous time, the lengths of such a stay are cut in so many pieces
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,13 +10,14 @@ disturbs it (d), what its arithmetic rounds (r) and what other axes do (w), the 
 With F before and G after the step and a multiplier m >= 0 for each fact, positive definiteness of
 
     map:  keeps F + sum weight_i d_i^2 - M' G M + sum m (e^2 - (q z)^2) + sum 2 m delta (c z)
-    flow: -(F M + M' F + keeps F)               + sum m (e^2 - (q z)^2) + sum 2 m delta (c z)
+    flow: -(F M + M' F + keeps F) + sum weight_i d_i^2 + sum m (e^2 - (q z)^2) + sum 2 m delta (c z)
 
-says that a map keeps that share of the function, and a flow decreases at half that rate, for every
-error within its limit (S-procedure). Multipliers are the same for all modes, which keeps the forms
-concave in the maps. An error of w is not within its limit for each axis; but as its multiplier is
-one for all steps, these terms add up to nothing positive over the axes, whatever step each of them
-takes, and the same follows for the sums of the functions over all axes.
+says that a map keeps that share of the function, and a flow decreases at half that rate, but for
+the disturbances, for every error within its limit (S-procedure). Multipliers are the same for all
+modes, which keeps the forms concave in the maps. An error of w is not within its limit for each
+axis; but as its multiplier is one for all steps, these terms add up to nothing positive over the
+axes, whatever step each of them takes, and the same follows for the sums of the functions over all
+axes.
 
 Forms are written in integers. In a map every entry of z is counted in a unit of its own, the least
 in which M, the q and the c are integers. With these units on the diagonal of D, a form F becomes
@@ -32,15 +33,8 @@ from fractions import Fraction
 from math import gcd, isqrt, lcm
 
 from nrs_design.proof.channels import Coupling, Rounding
-from nrs_design.proof.exact import (
-    IntegerMatrix,
-    Product,
-    add,
-    congruence,
-    multiply,
-    transpose,
-)
-from nrs_design.proof.matrix import RationalMatrix, leading, with_crossing
+from nrs_design.proof.exact import IntegerMatrix, Product, add, congruence, multiply, transpose
+from nrs_design.proof.matrix import RationalMatrix, with_crossing
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
@@ -62,6 +56,15 @@ class Acting:
     weights: tuple[Fraction, ...] = ()  # One for each of them
     rounding: bool = False  # What the arithmetic rounds
     coupling: bool = False  # What other axes do
+
+
+@dataclass(frozen=True, slots=True)
+class Stays:
+    """How stays in a mode are followed."""
+
+    # Modes of which every stay is one step, as they have a longest dwell time.
+    leaving: tuple[str, ...] = ()
+    pieces: int = 1  # In continuous time, the lengths of such a stay are cut in so many pieces
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +117,7 @@ class Step:
             How matrices are multiplied; only a search has reason to ask for another way.
         """
         if self.is_flow:
-            form, factor = self._flowing(before, keeps, multiply)
+            form, factor = self._flowing(before, keeps, log2, multiply)
         else:
             image = congruence(self.rows, after, multiply)
             form, factor = add(self._left(before, keeps, log2), image, -1), 1
@@ -145,11 +148,12 @@ class Step:
         return form
 
     def _flowing(
-        self, F: IntegerMatrix, keeps: Fraction, multiply: Product
+        self, F: IntegerMatrix, keeps: Fraction, log2: int, multiply: Product
     ) -> tuple[list[list[int]], int]:
         """Return the form of a flow without facts, times a positive integer, and that integer."""
         p, q = (keeps * self.over).as_integer_ratio()
         below = [b**2 for *_, b in self.errors] + [b for *_, b in self.crossings]
+        below += [weight.denominator for weight in self.weights]
         factor = lcm(q * self.over, *below)
         more = factor // (q * self.over)
         FM = multiply(F, self.rows)
@@ -161,6 +165,8 @@ class Step:
         for i, row in enumerate(F):
             for j, entry in enumerate(row):
                 form[i][j] -= more * p * entry
+        for i, weight in enumerate(self.weights, len(F)):
+            form[i][i] = int(weight * factor) << log2
         return form, factor
 
 
@@ -367,40 +373,6 @@ def multiplier_names(system: SwitchedSystem) -> tuple[str, ...]:
         name for k in pulls for name in (f"{PULL} {k}", f"{PULL} {k} {LOST}", f"{LOST} {PULL} {k}")
     )
     return (LOST, *own)
-
-
-@dataclass(frozen=True, slots=True)
-class Steps:
-    """The numbers of a quadratic function that keeps a bound in discrete time."""
-
-    Q: IntegerMatrix  # Shape (n, n). Numerators of the symmetric matrix.
-    denominator_log2: int  # Q and all multipliers are over two to this power
-    keeps: Fraction  # What a step leaves of the function: one minus the shares of disturbances
-    # In the order of `multiplier_names`, of the roundings, and of the couplings of the system.
-    crossings: tuple[int, ...] = ()
-    roundings: tuple[int, ...] = ()
-    couplings: tuple[int, ...] = ()
-    channels: tuple[int, ...] = ()  # Which disturbances of the system act
-    weights: tuple[Fraction, ...] = ()  # One for each of them
-
-    def forms(self, system: SwitchedSystem) -> Iterator[tuple[str, IntegerMatrix]]:
-        """Yield the form of every step, in units of its own, with where it is."""
-        acting = Acting(self.channels, self.weights, bool(self.roundings), bool(self.couplings))
-        multipliers = dict(zip(multiplier_names(system), self.crossings, strict=True))
-        multipliers |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
-        multipliers |= {f"{COUPLING} {k}": m for k, m in enumerate(self.couplings, 1)}
-        inner = leading(self.Q)
-        for step in steps_of(system, acting, grain_of(self.keeps), lost=True):
-            before = self.Q if step.source == CONTACT else inner
-            after = self.Q if len(step.rows) == len(self.Q) else inner
-            # Free motion ends at the surface as it goes on.
-            if (
-                step.source == step.target
-                or len(step.rows) == len(self.Q)
-                or step.source == CONTACT
-            ):
-                m = multipliers.__getitem__
-                yield step.where, step.form(before, after, self.keeps, m, self.denominator_log2)
 
 
 def find_odd_multipliers(multipliers: Sequence[int], system: SwitchedSystem) -> str | None:

@@ -200,7 +200,7 @@ class ConewiseModeProgram:
             # The function of a state is that of the mode that takes the next step.
             nodes = [Node(CONTACT, Q) for _, Q in sets[0]] + [Node(FREE, R) for _, R in sets[1]]
             edges = (Arc(k, name, None) for k, (name, _) in enumerate((*sets[0], *sets[1])))
-            lost = (Multiplier(LOST, k, value) for k, value in enumerate(lambdas, len(sets[0])))
+            lost = (Multiplier(LOST, value, k) for k, value in enumerate(lambdas, len(sets[0])))
             yield FormsOnGraph(
                 tuple(nodes), max(log2, 0), claim, multipliers=tuple(lost), edges=tuple(edges)
             )

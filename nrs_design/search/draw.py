@@ -68,7 +68,7 @@ def one_form(
     if lost:
         nodes.append(Node(FREE, undeflected(Q, system.order, degree)))
     multipliers = _multipliers(system, crossings, roundings, couplings)
-    found = tuple(Multiplier(fact, None, value) for fact, value in multipliers)
+    found = tuple(Multiplier(fact, value) for fact, value in multipliers)
     return FormsOnGraph(tuple(nodes), log2, rate, degree, found, vanishing)
 
 
@@ -102,7 +102,7 @@ def in_turns(
         own = crossings[k] if crossings else (), roundings[k] if roundings else ()
         targets = range((k + 1) % count * width, (k + 1) % count * width + width)
         for fact, value in _multipliers(system, *own, ()):
-            multipliers += [Multiplier(fact, target, value) for target in targets]
+            multipliers += [Multiplier(fact, value, target) for target in targets]
     return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(multipliers))
 
 

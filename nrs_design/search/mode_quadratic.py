@@ -20,7 +20,7 @@ from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.proof.stays import Stays
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, scale_states

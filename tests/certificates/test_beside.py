@@ -46,7 +46,7 @@ def test_shipped_certificates_hold_as_they_do_in_one_process(spec: Path) -> None
 
 def _worse(document: dict[str, Any]) -> None:
     (statement,) = document["statements"]
-    statement["nodes"][0]["Q"]["numerators"][0][0] = 0
+    statement["nodes"][0]["form"][0][0] = 0
 
 
 def _renamed(document: dict[str, Any]) -> None:

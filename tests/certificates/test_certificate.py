@@ -127,7 +127,7 @@ def test_claims_in_words():
 def test_file_and_id(path, verdict, kinds):
     certificate = run_certification(read_spec(path)).certificate
     document = json.loads(dump(certificate))
-    assert document["schema"] == SCHEMA == "nrs-design/certificate/7"
+    assert document["schema"] == SCHEMA == "nrs-design/certificate/8"
     assert [item["kind"] for item in document["statements"]] == kinds
     assert certificate.evidence is certificate.statements[0]
     assert document["verdict"] == certificate.verdict == verdict

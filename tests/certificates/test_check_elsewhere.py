@@ -100,12 +100,12 @@ def first(document):
 
 
 def flip_sign(document):
-    Q = first(document)["nodes"][0]["Q"]["numerators"]
+    Q = first(document)["nodes"][0]["form"]
     Q[0][0] = -Q[0][0]
 
 
 def break_symmetry(document):
-    first(document)["nodes"][0]["Q"]["numerators"][0][1] += 1
+    first(document)["nodes"][0]["form"][0][1] += 1
 
 
 def claim_more(document):
@@ -243,8 +243,9 @@ def test_discrete_time(judge, rate):
     document = shipped(POLYNOMIAL)
     statement = {
         "kind": "graph",
-        "degree": 4,
-        "nodes": [{"place": "modes", "Q": {"numerators": [[1]], "denominator_log2": 0}}],
+        "degree": 2,
+        "nodes": [{"place": "modes", "form": [[1]]}],
+        "denominator_log2": 0,
         "vanishing": [[[0]]],
         "rate": rate,
     }

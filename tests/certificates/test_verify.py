@@ -38,8 +38,8 @@ from nrs_design.certificates.verify import (
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.errors import CertificateError
 from nrs_design.pipeline import run_certification
+from nrs_design.proof.evidence.fields import system_fields
 from nrs_design.proof.evidence.growing_sequence import staying
-from nrs_design.proof.system_fields import system_fields
 from nrs_design.search.certify import Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec, read_spec
@@ -76,7 +76,7 @@ ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {
     "constant-force": {"Q", "slope"},
-    "graph": {"nodes", "vanishing", "multipliers"},
+    "graph": {"nodes", "denominator_log2", "vanishing", "multipliers"},
     "parameter-quadratic": {"Q_low", "Q_high"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
@@ -84,7 +84,6 @@ NUMBERS = {
 }
 ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)
-Q = (*FIRST, "nodes", 0, "Q")
 DROP = object()
 NOT_ITS_MODES = "is not that of the spec"
 
@@ -253,16 +252,16 @@ class TestLegitimate:
         document, spec = pair
         self.accept(changed(document, ("package", "version"), "99.0"), spec)
 
-    @pytest.mark.parametrize("exponent", [0, 7, 10**4000])
+    @pytest.mark.parametrize("exponent", [0, 7, 14_000])
     def test_scale_in_the_exponent(self, given, exponent):
         document, spec = given
-        self.accept(changed(document, (*Q, "denominator_log2"), exponent), spec)
+        self.accept(changed(document, (*FIRST, "denominator_log2"), exponent), spec)
 
     @pytest.mark.parametrize("factor", [3, 10**100])
     def test_scale_in_the_numerators(self, impedance, factor):
         document, spec = impedance
         for k in range(len(at(document, (*FIRST, "nodes")))):
-            place = (*FIRST, "nodes", k, "Q", "numerators")
+            place = (*FIRST, "nodes", k, "form")
             scaled = [[factor * q for q in row] for row in at(document, place)]
             document = changed(document, place, scaled)
         self.accept(document, spec)
@@ -473,7 +472,7 @@ class TestForgery:
 
     def test_another_degree(self):
         document, spec = signed("polynomial")
-        for degree in (2, 6, 0, -4, 10**6):
+        for degree in (1, 3, 0, -2, 10**6):
             self.reject(changed(document, (*FIRST, "degree"), degree), spec, "")
 
     def test_shorter_dwell_time_than_declared(self):
@@ -563,7 +562,7 @@ class TestForgery:
 
     def test_integer_too_long_for_text(self, given):
         document, spec = given
-        long = changed(document, (*Q, "denominator_log2"), 10**5000)
+        long = changed(document, (*FIRST, "denominator_log2"), 10**5000)
         assert "malformed" in verify_document(long, spec).fault
 
 
@@ -633,7 +632,7 @@ class TestFiles:
             verify(Path("/dev/zero"), given[1])
 
     def test_too_large(self, tmp_path, given, monkeypatch):
-        monkeypatch.setattr("nrs_design.certificates.verify.MAX_BYTES", 100)
+        monkeypatch.setattr("nrs_design.certificates.prove.MAX_BYTES", 100)
         path = tmp_path / "c.json"
         path.write_text(json.dumps(given[0]))
         with pytest.raises(CertificateError, match="larger"):
@@ -662,7 +661,7 @@ def test_wrong_kind_of_spec(name):
 
 def test_other_schemas_are_made_again(pair):
     document, spec = pair
-    for schema in ("nrs-design/certificate/6", "nrs-design/certificate/8", 2, None):
+    for schema in ("nrs-design/certificate/7", "nrs-design/certificate/9", 2, None):
         other = resign({**document, "schema": schema})
         for outcome in (verify_document(other), verify_document(other, spec)):
             assert "make it again with certify-switching" in outcome.fault

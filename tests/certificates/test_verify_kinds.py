@@ -163,8 +163,9 @@ def test_statements_of_one_spec_prove_nothing_about_another(issue, example):
         [{"kind": "common-quadratic", "Q": {}, "rate": "1", "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m0", []]], "claim": ""}],
         [{"kind": "no-common-quadratic", "factors": [["m9", [[1], [1]]]], "claim": ""}],
-        [{"kind": "graph", "degree": 4, "vanishing": [[]], "rate": "1", "claim": "", "nodes": [
-            {"place": "modes", "Q": {"numerators": [], "denominator_log2": 0}}]}],
+        [{"kind": "graph", "degree": 2, "vanishing": [[]], "rate": "1", "claim": "",
+          "denominator_log2": 0, "nodes": [{"place": "modes", "form": []}]}],
+        [{"kind": "graph", "nodes": [], "denominator_log2": 0, "rate": "1", "claim": ""}],
         [{"kind": "growing-sequence", "share": "1/2", "claim": ""}],
         [{"kind": "growing-sequence", "share": "1/2", "part": [], "claim": ""}],
         [{"kind": "growing-sequence", "share": "1/0", "part": {"kind": "growing-sequence"}}],

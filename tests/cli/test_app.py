@@ -70,10 +70,13 @@ CHECKING = ("cli", "certificates", "proof", "errors", "files", "printable", "win
 MOST_MODULES = 40
 
 
-@pytest.mark.parametrize("name", ["soft-tissue", "soft-tissue-axes"])
+SHIPPED = sorted(path.name for path in (ROOT / "reports").glob("*.cert.json"))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
 def test_verify_loads_the_proof_and_the_file_format_alone(tmp_path, name):
-    result, facts = loaded_by(tmp_path, "verify", ROOT / "reports" / f"{name}.cert.json")
-    assert result.returncode == 0, result.stderr
+    result, facts = loaded_by(tmp_path, "verify", ROOT / "reports" / name)
+    assert result.returncode in (0, 1), result.stderr
     ours = [module.split(".") for module in facts["modules"] if module.startswith("nrs_design")]
     assert {parts[1] for parts in ours if len(parts) > 1} <= set(CHECKING)
     assert len(ours) <= MOST_MODULES, ours

@@ -137,7 +137,7 @@ def test_wrong_spec(certified, spec):
 
 def test_altered(certified, tmp_path):
     document = json.loads((certified / "commuting.json").read_text())
-    document["statements"][0]["nodes"][0]["Q"]["numerators"][0][0] += 1
+    document["statements"][0]["nodes"][0]["form"][0][0] += 1
     path = tmp_path / "c.json"
     path.write_text(json.dumps(document))
     content = document_of("verify", "c.json", COMMUTING, cwd=tmp_path, code=1)

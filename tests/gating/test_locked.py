@@ -202,7 +202,7 @@ def test_locked_spec_that_was_not_named_is_noted(check):
 
 def test_valid_certificate_other_than_the_locked_one(check, project):
     def scale(document):
-        document["statements"][0]["nodes"][0]["Q"]["denominator_log2"] += 1
+        document["statements"][0]["denominator_log2"] += 1
 
     new = edit_certificate(project, scale)
     outcome = check()
@@ -215,7 +215,7 @@ def test_valid_certificate_other_than_the_locked_one(check, project):
 
 def test_false_certificate_with_a_lock_to_match(check, project):
     def flip(document):
-        numerators = document["statements"][0]["nodes"][0]["Q"]["numerators"]
+        numerators = document["statements"][0]["nodes"][0]["form"]
         numerators[0][0] = -numerators[0][0]
 
     new = edit_certificate(project, flip)

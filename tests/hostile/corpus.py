@@ -139,12 +139,8 @@ CERTIFICATES: dict[str, Callable[[], str | bytes]] = {
         statements=[
             {
                 "kind": "graph",
-                "nodes": [
-                    {
-                        "place": "modes",
-                        "Q": {"numerators": [[1 << 12_000] * 20] * 20, "denominator_log2": 0},
-                    }
-                ],
+                "nodes": [{"place": "modes", "form": [[1 << 12_000] * 20] * 20}],
+                "denominator_log2": 0,
                 "rate": "1",
             }
         ]
@@ -157,10 +153,8 @@ CERTIFICATES: dict[str, Callable[[], str | bytes]] = {
                 "kind": "graph",
                 "rate": "1/2",
                 "stays": {"leaving": [], "pieces": 1},
-                "nodes": [
-                    {"place": f"m{i}", "Q": {"numerators": [[1]], "denominator_log2": 0}}
-                    for i in range(20_000)
-                ],
+                "nodes": [{"place": f"m{i}", "form": [[1]]} for i in range(20_000)],
+                "denominator_log2": 0,
             }
         ],
     ),

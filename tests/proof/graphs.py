@@ -6,14 +6,25 @@ from fractions import Fraction
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
-from nrs_design.proof.stays import Stays
-from nrs_design.proof.steps import CONTACT, FREE, LOST, ROUNDING
+from nrs_design.proof.steps import (
+    CONTACT,
+    FREE,
+    LOST,
+    ROUNDING,
+    Acting,
+    Stays,
+    grain_of,
+    multiplier_names,
+    steps_of,
+)
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.draw import in_turns, one_form
 
 __all__ = [
     "common_polynomial",
     "common_quadratic",
     "conewise_modes",
+    "forms_of_steps",
     "in_turns",
     "mode_quadratic",
     "one_form",
@@ -24,7 +35,7 @@ __all__ = [
 def common_quadratic(
     Q: Matrix, log2: int, rate: Fraction, roundings: Sequence[int] = ()
 ) -> FormsOnGraph:
-    found = (Multiplier(f"{ROUNDING} {k}", None, m) for k, m in enumerate(roundings, 1))
+    found = (Multiplier(f"{ROUNDING} {k}", m) for k, m in enumerate(roundings, 1))
     return FormsOnGraph((Node(CONTACT, Q),), log2, rate, multipliers=tuple(found))
 
 
@@ -55,7 +66,7 @@ def conewise_modes(
     """The function of a state is that of the mode that takes the next step."""
     nodes = [Node(CONTACT, Q) for _, Q in touching] + [Node(FREE, R) for _, R in flying]
     edges = (Arc(k, name, None) for k, (name, _) in enumerate((*touching, *flying)))
-    lost = (Multiplier(LOST, k, m) for k, m in enumerate(multipliers, len(touching)))
+    lost = (Multiplier(LOST, m, k) for k, m in enumerate(multipliers, len(touching)))
     return FormsOnGraph(tuple(nodes), log2, rate, multipliers=tuple(lost), edges=tuple(edges))
 
 
@@ -73,3 +84,24 @@ def shape_of(evidence: AbstractEvidence | None) -> str | None:
     if len(evidence.edges) > 1:
         return f"conewise-mode-{degree}"
     return f"conewise-{degree}" if evidence.covers_lost_contact else f"common-{degree}"
+
+
+def forms_of_steps(
+    system: SwitchedSystem,
+    acting: Acting,
+    function: tuple[Matrix, int],
+    keeps: Fraction,
+    crossings: Sequence[int] = (),
+    roundings: Sequence[int] = (),
+):
+    """Yield what one function must fulfil in steps, with where it is; a landing at its depth."""
+    Q, log2 = function
+    known = dict(zip(multiplier_names(system), crossings, strict=True))
+    known |= {f"{ROUNDING} {k}": m for k, m in enumerate(roundings, 1)}
+    for step in steps_of(system, acting, grain_of(keeps), lost=True):
+        before, after = (
+            Q[:n] if n == len(Q) else tuple(row[:n] for row in Q[:n])
+            for n in (step.states, len(step.rows))
+        )
+        if (step.source, step.target, len(after)) != (FREE, CONTACT, len(Q) - 1):
+            yield step.where, step.form(before, after, keeps, known.__getitem__, log2)

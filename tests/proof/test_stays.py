@@ -13,12 +13,12 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.stays import (
     EnclosedStep,
-    Stays,
     find_odd_stays,
     power,
     shifted,
     steps_of_stays,
 )
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Edge, Stay, Switching
 from tests.proof.graphs import mode_quadratic
 from tests.proof.systems import family, resets_between

@@ -16,7 +16,7 @@ from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import (
-    Steps,
+    Acting,
     find_odd_multipliers,
     find_odd_roundings,
     flow_step,
@@ -24,7 +24,7 @@ from nrs_design.proof.steps import (
     multiplier_names,
 )
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.graphs import common_quadratic, one_form
+from tests.proof.graphs import common_quadratic, forms_of_steps, one_form
 from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, matrix
 from tests.proof.truth import (
     combine,
@@ -313,8 +313,8 @@ def test_every_form_by_hand(keeps, acting, roundings):
     kept = [form for form in wanted if form[0].startswith("in mode")]
     for given_system, true in ((system, wanted), (three_states(contact=False), kept)):
         crossings = (5,) if given_system.contact else ()
-        steps = Steps(Q3, 2, keeps, crossings, roundings, (), acting, weights)
-        found = list(steps.forms(given_system))
+        what = Acting(acting, weights, bool(roundings))
+        found = list(forms_of_steps(given_system, what, (Q3, 2), keeps, crossings, roundings))
         assert [where for where, _ in found] == [where for where, _ in true]
         for (_, form), (_, form_by_hand) in zip(found, true, strict=True):
             assert is_in_other_units(form, form_by_hand)

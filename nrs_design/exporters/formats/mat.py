@@ -40,6 +40,8 @@ _TEXT_BYTES = 116
 # Names that may be fields of a structure.
 _FIELD = re.compile("[A-Za-z][A-Za-z0-9_]*")
 _PART = ("name", *"ABCD", "input", "input_unit", "outputs", "output_units")
+# Matrices of a statement that are numerators over two to the power `denominator_log2`.
+_FORMS = frozenset({"form", "Q", "low", "high"})
 _RATIO = re.compile("-?[0-9]+(/[0-9]+)?")
 
 
@@ -152,22 +154,28 @@ def _cells(items: Iterable[Any]) -> Any:
     return found
 
 
-def _value(value: Any) -> Any:
-    """Return a field of a certificate as MATLAB has it."""
+def _value(value: Any, log2: int = 0) -> Any:
+    """Return a field of a certificate as MATLAB has it, forms over two to a power."""
     match value:
-        case {"numerators": rows, "denominator_log2": exponent}:
-            scale = 2**exponent
-            return np.array([[float(Fraction(n, scale)) for n in row] for row in rows])
         case Mapping():
-            return {name: _value(item) for name, item in value.items() if _FIELD.fullmatch(name)}
+            log2 = value.get("denominator_log2", log2)
+            return {
+                name: _form(item, log2) if name in _FORMS else _value(item, log2)
+                for name, item in value.items()
+                if _FIELD.fullmatch(name)
+            }
         case list() | tuple():
-            return _cells(map(_value, value))
+            return _cells(_value(item, log2) for item in value)
         case str() if _RATIO.fullmatch(value):
             return _double(Fraction(value))
         case int():
             return _double(Fraction(value))
         case _:
             return value
+
+
+def _form(rows: list[list[int]], log2: int) -> Any:
+    return np.array([[float(Fraction(entry, 2**log2)) for entry in row] for row in rows])
 
 
 def _double(number: Fraction) -> Any:

@@ -12,18 +12,8 @@ from typing import Any, ClassVar, Self
 from nrs_design.proof.bounds import at_least
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.contradiction import find_contradiction
-from nrs_design.proof.evidence.fields import (
-    MAX_INTEGER_BITS,
-    find_unreadable,
-    read_object,
-    written,
-)
-from nrs_design.proof.exact import (
-    IntegerMatrix,
-    is_positive_definite,
-    is_symmetric,
-    is_too_large,
-)
+from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS, find_unreadable, read_object, written
+from nrs_design.proof.exact import IntegerMatrix, is_positive_definite, is_symmetric, is_too_large
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching

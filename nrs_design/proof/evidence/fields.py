@@ -1,13 +1,13 @@
 """Numbers in certificate files: integers and ratios of integers, never floats.
 
-A dataclass is written field by field, and read by the types of its fields. A field that holds its
-default is left out; one that the class does not have is refused.
+A dataclass, or a named tuple, is written field by field, and read by the types of its fields. A
+field that holds its default is left out; one that the class does not have is refused.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
@@ -17,7 +17,8 @@ from typing import Any, TypeVar, cast, get_args, get_origin, get_type_hints
 from nrs_design.proof.bounds import at_least, at_most, lower, upper
 from nrs_design.proof.exact import bit_length, is_too_large
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import quoted
 
 Matrix = tuple[tuple[int, ...], ...]
@@ -27,10 +28,16 @@ T = TypeVar("T")
 MAX_INTEGER_BITS = 14_000
 MAX_RATIO_BITS = 6_640
 MAX_ENTRIES = 100_000
+# The word for switching without rules.
+WITHOUT_RULES = "arbitrary"
+# Deciding a form for every mode takes about rows^3 steps each on their numbers: a minute at this.
+MAX_FAMILY_WORK = 10**10
+# There is a function for every step of a round.
+MAX_ROUND = 100
 
 
 def written(value: Any) -> Any:
-    """Return a value of a dataclass as JSON holds it.
+    """Return a value as JSON holds it.
 
     A matrix that is the only one of an object stands among its other fields.
 
@@ -41,24 +48,27 @@ def written(value: Any) -> Any:
     """
     if isinstance(value, RationalMatrix):
         return _matrix_fields(value)
-    if isinstance(value, tuple):
-        return [written(item) for item in value]
     if isinstance(value, Fraction):
         return str(value)
-    if not is_dataclass(value):
-        return value
+    if not _has_fields(value):
+        return [written(item) for item in value] if isinstance(value, tuple) else value
     result: dict[str, Any] = {}
-    for field in fields(value):
-        item = getattr(value, field.name)
+    for name, (_, default, _) in _hints(cast(Hashable, type(value))).items():
+        item = getattr(value, name)
         if isinstance(item, RationalMatrix):
             result |= _matrix_fields(item)
-        elif item != field.default:
-            result[field.name] = written(item)
+        elif item != default:
+            result[name] = written(item)
     return result
 
 
+def _has_fields(value: object) -> bool:
+    """Tell whether a value or a class is a dataclass or a named tuple."""
+    return is_dataclass(value) or hasattr(value, "_fields")
+
+
 def read_object(kind: type[T], value: object) -> T:
-    """Read a dataclass that `written` has written.
+    """Read a dataclass or a named tuple that `written` has written.
 
     Raises
     ------
@@ -86,7 +96,9 @@ def read_object(kind: type[T], value: object) -> T:
 def _hints(kind: Hashable) -> dict[str, tuple[Any, Any, bool]]:
     """Return the type of every field, its default, and whether its number has a sign."""
     hints = get_type_hints(kind)
-    assert is_dataclass(kind)
+    if not is_dataclass(kind):
+        defaults = cast(Any, kind)._field_defaults
+        return {name: (hint, defaults.get(name, MISSING), False) for name, hint in hints.items()}
     return {
         field.name: (hints[field.name], field.default, bool(field.metadata))
         for field in fields(kind)
@@ -126,35 +138,12 @@ def _read_matrix(value: Any) -> RationalMatrix:
     return RationalMatrix(rows, denominator)
 
 
-def matrix_fields(Q: Matrix, denominator_log2: int) -> dict[str, Any]:
-    """Return the fields of a dyadic matrix."""
-    return {"numerators": [list(row) for row in Q], "denominator_log2": denominator_log2}
-
-
-def read_dyadic(fields: Mapping[str, Any]) -> tuple[Matrix, int]:
-    """Read a dyadic matrix: its integer numerators, and the logarithm of its denominator."""
-    denominator_log2 = read_integer(fields["denominator_log2"])
-    if denominator_log2 < 0:
-        raise ValueError("a denominator is not a power of two")
-    return read_integers(fields["numerators"]), denominator_log2
-
-
 def read_integers(value: Any) -> Matrix:
     """Read a matrix of integers."""
     matrix = tuple(tuple(read_integer(entry) for entry in read_list(row)) for row in value)
     if is_too_large(matrix):
         raise ValueError("a matrix is too large to check")
     return matrix
-
-
-def rounding_fields(roundings: tuple[int, ...]) -> dict[str, Any]:
-    """Return the field of the multipliers for what the arithmetic rounds, if there are any."""
-    return {"roundings": list(roundings)} if roundings else {}
-
-
-def read_roundings(fields: Mapping[str, Any]) -> tuple[int, ...]:
-    """Read the multipliers for what the arithmetic rounds; none where there is no such field."""
-    return tuple(read_integer(entry) for entry in fields.get("roundings", []))
 
 
 def read_integer(value: object) -> int:
@@ -208,6 +197,65 @@ _PLAIN: Mapping[Any, Callable[[object], Any]] = {
     RationalMatrix: _read_matrix,
     Time: lambda value: Time(read_text(value)),
 }
+
+
+def system_fields(system: SwitchedSystem) -> dict[str, Any]:
+    """Return what a certificate says about its system, apart from the name.
+
+    Raises
+    ------
+    ValueError
+        If a number of a mode or a reset has more digits than a file holds.
+    """
+    fields: dict[str, Any] = written(system)
+    del fields["name"]
+    return {**fields, "switching": fields.get("switching", WITHOUT_RULES)}
+
+
+def read_system(name: str, fields: Mapping[str, Any]) -> SwitchedSystem:
+    """Read the system that `system_fields` has written.
+
+    Parameters
+    ----------
+    name : str
+        Of the spec that it comes from.
+    fields : mapping
+        Of a certificate; other keys are not looked at.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If a field is missing or malformed, a matrix has no shape or no positive denominator, two
+        modes have one name, or the modes are too large to check.
+    """
+    own = {key: value for key, value in fields.items() if key in SwitchedSystem.__slots__}
+    own |= {"name": name}
+    if fields["switching"] == WITHOUT_RULES:
+        del own["switching"]
+    system = read_object(SwitchedSystem, own)
+    _check_modes(system.modes, len(system.states))
+    if system.contact is not None:
+        _check_work(system.contact.free, 1 + len(system.contact.pulls))
+    if system.clock is not None and not 2 <= system.clock.length <= MAX_ROUND:
+        raise ValueError(f"a round has from 2 to {MAX_ROUND} steps")
+    return system
+
+
+def _check_modes(modes: Sequence[Mode], states: int) -> None:
+    sizes = [len(mode.A.numerators) for mode in modes]
+    if len({mode.name for mode in modes}) < len(modes):
+        raise ValueError("two modes have the same name")
+    if any(mode.A.shape[0] != mode.A.shape[1] for mode in modes):
+        raise ValueError("a mode is not square")
+    if not sizes or max(sizes) != states:
+        raise ValueError("the largest mode does not have the states that are named")
+    _check_work(modes)
+
+
+def _check_work(modes: Iterable[Mode], times: int = 1) -> None:
+    matrices = (mode.A.numerators for mode in modes)
+    if times * sum(len(N) ** 3 * bit_length(N) for N in matrices) > MAX_FAMILY_WORK:
+        raise ValueError("the modes are too large to check")
 
 
 def find_unreadable(value: object) -> str | None:

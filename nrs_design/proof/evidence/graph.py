@@ -9,18 +9,10 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import product
 from math import comb, lcm
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self, TypeAlias
 
-from nrs_design.proof.evidence.abstract import AbstractFunction, is_square
-from nrs_design.proof.evidence.fields import (
-    Matrix,
-    matrix_fields,
-    read_dyadic,
-    read_integer,
-    read_integers,
-    read_ratio,
-    read_text,
-)
+from nrs_design.proof.evidence.abstract import AbstractFunction, find_odd_form, is_square
+from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.exact import (
     MAX_WORK,
@@ -41,6 +33,7 @@ from nrs_design.proof.steps import (
     FREE,
     ROUNDING,
     Acting,
+    Stays,
     Step,
     grain_of,
     steps_of,
@@ -49,7 +42,7 @@ from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
-    from nrs_design.proof.stays import EnclosedStep, Stays
+    from nrs_design.proof.stays import EnclosedStep
 
 MAX_DEGREE = 64
 MAX_MONOMIALS = 120
@@ -72,21 +65,21 @@ class Node(NamedTuple):
 class Arc(NamedTuple):
     """Steps from node to node, by their numbers; None stands for every node, or every mode."""
 
-    source: int | None
-    mode: str | None
-    target: int | None
+    source: int | None = None
+    mode: str | None = None
+    target: int | None = None
 
 
 class Multiplier(NamedTuple):
     """The multiplier of a fact, for steps to one node, or to every node."""
 
     fact: str
-    target: int | None
     value: int
+    target: int | None = None
 
 
 # From every node to every node that a step may lead to.
-ALL = (Arc(None, None, None),)
+ALL = (Arc(),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +160,10 @@ class FormsOnGraph(AbstractFunction):
             return not switching.fixed_ends
         return not (switching.resets or (switching.fixed_ends and not self.covers_mixtures))
 
+    def find_unsayable(self, system: SwitchedSystem) -> str | None:
+        """Say that nothing follows from no form."""
+        return None if self.nodes else "it has no form"
+
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check places, sizes, rate and multipliers, and that no run is left without an edge."""
         return (
@@ -217,8 +214,8 @@ class FormsOnGraph(AbstractFunction):
         if d > 1 and max(sizes.values()) > MAX_MONOMIALS:
             return f"there are more than {MAX_MONOMIALS} monomials of degree {d}"
         for place, form in self.nodes:
-            if not is_square(form, sizes[place]):
-                return f"a form at {place} is not a {sizes[place]} x {sizes[place]} matrix"
+            if (odd := find_odd_form(form, self.denominator_log2, sizes[place])) is not None:
+                return f"a form at {place}: {odd}"
         if d > 1:
             matrices = [mode.A.numerators for mode in system.modes]
             matrices += [reset.map.numerators for reset in system.switching.resets]
@@ -490,80 +487,6 @@ class FormsOnGraph(AbstractFunction):
             source, target = (like.get(nodes[k].place, nodes[k].place) for k in (a, b))
             found.append(key[source, like.get(step.mode, step.mode), target, step.time])
         return replace(carried, vanishing=tuple(found))
-
-    def to_fields(self) -> dict[str, Any]:
-        """Return forms, rate and multipliers, and of all else what is not as usual."""
-        fields: dict[str, Any] = {
-            "nodes": [
-                {"place": place, "Q": matrix_fields(form, self.denominator_log2)}
-                for place, form in self.nodes
-            ],
-            "rate": str(self.rate),
-        }
-        if self.degree > 1:
-            fields["degree"] = 2 * self.degree
-            fields["vanishing"] = [[list(row) for row in N] for N in self.vanishing]
-        if self.multipliers:
-            fields["multipliers"] = [_named(item) for item in self.multipliers]
-        if self.edges != ALL:
-            fields["edges"] = [_named(edge) for edge in self.edges]
-        if self.stays is not None:
-            fields["stays"] = {"leaving": list(self.stays.leaving), "pieces": self.stays.pieces}
-        return fields
-
-    @classmethod
-    def from_fields(cls, fields: Mapping[str, Any], system: SwitchedSystem) -> Self:
-        """Read forms, rate and multipliers, and how places and edges are drawn."""
-        nodes, exponents = [], set()
-        for item in fields["nodes"]:
-            form, exponent = read_dyadic(item["Q"])
-            nodes.append(Node(read_text(item["place"]), form))
-            exponents.add(exponent)
-        if len(exponents) != 1:
-            raise ValueError("the forms do not share one denominator")
-        half, odd = divmod(read_integer(fields.get("degree", 2)), 2)
-        if odd:
-            raise ValueError("the degree is odd")
-        multipliers = tuple(
-            Multiplier(
-                read_text(item["fact"]), _optional(item.get("target")), read_integer(item["value"])
-            )
-            for item in fields.get("multipliers", [])
-        )
-        edges = tuple(
-            Arc(
-                _optional(item.get("source")),
-                read_text(item["mode"]) if "mode" in item else None,
-                _optional(item.get("target")),
-            )
-            for item in fields.get("edges", [{}])
-        )
-        vanishing = tuple(read_integers(N) for N in fields.get("vanishing", []))
-        stays = None
-        if "stays" in fields:
-            from nrs_design.proof.stays import Stays
-
-            leaving = tuple(read_text(name) for name in fields["stays"]["leaving"])
-            stays = Stays(leaving, read_integer(fields["stays"]["pieces"]))
-        return cls(
-            tuple(nodes),
-            exponents.pop(),
-            read_ratio(fields["rate"]),
-            half,
-            multipliers,
-            vanishing,
-            edges,
-            stays,
-        )
-
-
-def _named(item: Multiplier | Arc) -> dict[str, Any]:
-    """Return what is said of a multiplier or an edge; nothing stands for any."""
-    return {key: value for key, value in item._asdict().items() if value is not None}
-
-
-def _optional(value: object) -> int | None:
-    return None if value is None else read_integer(value)
 
 
 def _at(place: str, turn: int) -> str:

@@ -5,24 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 from typing import ClassVar
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
-from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows, find_odd_form
-from nrs_design.proof.evidence.fields import (
-    Matrix,
-)
+from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
+from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Time
-from nrs_design.proof.steps import Steps, find_odd_multipliers, find_odd_roundings
+from nrs_design.proof.steps import (
+    CONTACT,
+    COUPLING,
+    FREE,
+    ROUNDING,
+    Acting,
+    find_odd_multipliers,
+    find_odd_roundings,
+    grain_of,
+    multiplier_names,
+    steps_of,
+)
 from nrs_design.proof.system import SwitchedSystem
 
 Forms = Iterator[tuple[str, IntegerMatrix]]
-Rows = Sequence[Sequence[Fraction]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +69,9 @@ class InvariantEllipsoid(AbstractEvidence):
     denominator_log2: int  # Q is these numerators over two to this power
     shares: tuple[Fraction, ...]  # The a_i: in 1/s, or per step with a sum below 1
     level: Fraction  # In the unit of the output
-    multipliers: tuple[int, ...] = ()  # Over the denominator of Q; none where contact is kept
-    # Over the denominator of Q: the multipliers of `nrs_design.proof.steps.Steps`, if what the
-    # arithmetic rounds is covered.
+    # Over the denominator of Q, in the order of `multiplier_names`; none where contact is kept.
+    multipliers: tuple[int, ...] = ()
+    # Over the denominator of Q: one for each rounding of the system, if they are covered.
     roundings: tuple[int, ...] = ()
     taus: tuple[int, ...] = ()  # Over the denominator of Q: one for each coupling of the system
 
@@ -127,7 +133,7 @@ class InvariantEllipsoid(AbstractEvidence):
         output = next(item for item in system.outputs if item.name == self.output)
         yield "Q is not symmetric and positive definite", self.Q
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
-        motions = self._motions(system, Q)
+        motions = self._motions(system)
         yield from ((f"the ellipsoid can be left {where}", form) for where, form in motions)
         for q in output.rows:
             row = q.fractions()[0]
@@ -136,28 +142,25 @@ class InvariantEllipsoid(AbstractEvidence):
             failure = f"{self.output} can be beyond the level"
             yield failure, RationalMatrix.from_rows(form).numerators
 
-    def _motions(self, system: SwitchedSystem, Q: Rows) -> Forms:
-        """Yield the condition of every motion, with where it is."""
-        named = self.acting(system)
+    def _motions(self, system: SwitchedSystem) -> Forms:
+        """Yield the condition of every step, with where it is."""
+        named, share = self.acting(system), sum(self.shares, Fraction(0))
         weights = tuple(a / c.bound**2 for a, c in zip(self.shares, named, strict=True))
-        if system.time is Time.CONTINUOUS:
-            unit = 2**self.denominator_log2
-            taus = [Fraction(tau, unit) for tau in self.taus]
-            flows = _Flows(system, named, Q, sum(self.shares, Fraction(0)), weights, taus)
-            multipliers = [Fraction(entry, unit) for entry in self.multipliers]
-            for where, form in flows.forms(multipliers):
-                yield where, RationalMatrix.from_rows(form).numerators
-            return
-        yield from Steps(
-            self.Q,
-            self.denominator_log2,
-            1 - sum(self.shares, Fraction(0)),
-            self.multipliers,
-            self.roundings,
-            self.taus,
-            channels=tuple(system.channels.index(channel) for channel in named),
-            weights=weights,
-        ).forms(system)
+        channels = tuple(system.channels.index(channel) for channel in named)
+        acting = Acting(channels, weights, bool(self.roundings), bool(self.taus))
+        keeps = share if system.time is Time.CONTINUOUS else 1 - share
+        known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
+        known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
+        known |= {f"{COUPLING} {k}": m for k, m in enumerate(self.taus, 1)}
+        inner = leading(self.Q)
+        for step in steps_of(system, acting, grain_of(keeps), lost=True):
+            before = self.Q if step.source == CONTACT else inner
+            after = self.Q if len(step.rows) == len(self.Q) else inner
+            # At the surface both functions are one: free motion ends there as it goes on.
+            ends = step.source == FREE and step.target == CONTACT and after is inner
+            if step.time and not ends:
+                m = known.__getitem__
+                yield step.where, step.form(before, after, keeps, m, self.denominator_log2)
 
     def bound(self, system: SwitchedSystem) -> Bound:
         """Return the level with what it holds for."""
@@ -207,69 +210,3 @@ class InvariantEllipsoid(AbstractEvidence):
             f" That the limit of {limit} is kept is not shown; it is, in proportion, for "
             f"{', '.join(smaller)}."
         )
-
-
-@dataclass(frozen=True, slots=True)
-class _Flows:
-    """Everything that the state can do in continuous time, and that it does not leave V <= 1."""
-
-    system: SwitchedSystem
-    channels: Sequence[Channel]
-    Q: Rows
-    share: Fraction
-    weights: Sequence[Fraction]
-    taus: Sequence[Fraction] = ()
-
-    def forms(self, multipliers: Sequence[Fraction]) -> Iterator[tuple[str, Rows]]:
-        """Yield the condition of every motion, with where it is."""
-        contact = self.system.contact or Contact(())
-        inner, last, count = leading(self.Q), len(self.Q) - 1, len(self.system.modes)
-        for k, mode in enumerate(self.system.modes):
-            form = self._flow(mode.A.fractions(), self._columns(k), self.Q, self._rows(k))
-            yield f"in mode {mode.name}", form
-        for k, mode in enumerate(contact.free, count):
-            own = [[*row[:last], *row[last + 1 :]] for row in self._rows(k)]
-            form = self._flow(leading(mode.A.fractions()), self._columns(k)[:-1], inner, own)
-            yield f"in free motion, mode {mode.name}", form
-        pairs = product(enumerate(contact.free, count), contact.pulls)
-        for ((k, mode), q), multiplier in zip(pairs, multipliers, strict=True):
-            form = self._flow(mode.A.fractions(), self._columns(k), self.Q, self._rows(k))
-            pushed = [*q.fractions()[0], *(Fraction(0) for _ in (*self.channels, *self.taus))]
-            crossing = [multiplier * entry for entry in pushed]
-            yield (
-                f"while the environment lags, mode {mode.name}",
-                with_crossing(form, last, crossing),
-            )
-
-    def _columns(self, k: int) -> Rows:
-        """Return the B of the k-th mode: of the disturbances, then of the couplings."""
-        columns = [channel.columns[k].fractions() for channel in self.channels]
-        columns += [item.columns[k].fractions() for item in self.system.couplings]
-        return [[row[0] for row in rows] for rows in zip(*columns, strict=True)]
-
-    def _rows(self, k: int) -> Rows:
-        """Return the q of the couplings of the k-th mode, over the state and what disturbs it."""
-        n, known = self.system.order, self.system.channels
-        rows = [item.rows[k].fractions()[0] for item in self.system.couplings]
-        acting = [n + known.index(channel) for channel in self.channels]
-        return [[*row[:n], *(row[i] for i in acting)] for row in rows]
-
-    def _flow(self, A: Rows, B: Rows, Q: Rows, q: Rows) -> Rows:
-        """Return ``[[-(A'Q + QA + a Q), -QB], [., diag(weights, tau)]] - sum tau_k q_k' q_k``."""
-        moved = multiply(Q, [[*row, *entries] for row, entries in zip(A, B, strict=True)])
-        n = len(Q)
-        diagonal = (*self.weights, *self.taus)
-        size = n + len(diagonal)
-        form = [[Fraction(0)] * size for _ in range(size)]
-        for i in range(n):
-            for j in range(n):
-                form[i][j] = -moved[i][j] - moved[j][i] - self.share * Q[i][j]
-            for j in range(n, size):
-                form[i][j] = form[j][i] = -moved[i][j]
-        for j, weight in enumerate(diagonal, n):
-            form[j][j] = weight
-        for tau, row in zip(self.taus, q, strict=True):
-            for i, left in enumerate(row):
-                for j, right in enumerate(row):
-                    form[i][j] -= tau * left * right
-        return form

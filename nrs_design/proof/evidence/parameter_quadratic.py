@@ -9,10 +9,7 @@ from math import lcm
 from typing import ClassVar
 
 from nrs_design.proof.evidence.abstract import AbstractFunction, find_odd_form
-from nrs_design.proof.evidence.fields import (
-    Matrix,
-    rate_words,
-)
+from nrs_design.proof.evidence.fields import Matrix, rate_words
 from nrs_design.proof.exact import IntegerMatrix, add, lyapunov_decrease, scaled
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem

@@ -9,11 +9,7 @@ from typing import ClassVar
 
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows, find_odd_form
-from nrs_design.proof.evidence.fields import (
-    MAX_INTEGER_BITS,
-    Matrix,
-    rate_words,
-)
+from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS, Matrix, rate_words
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
 from nrs_design.proof.matrix import RationalMatrix, leading, multiply
 from nrs_design.proof.mode import Time

@@ -153,7 +153,7 @@ def test_what_fails_in_a_block_is_said_of_it():
         parts = [ONE, ONE]
         parts[k] = wide
         evidence = BlockTriangular(blocks, tuple(enumerate(parts)))
-        size = "a form at modes is not a 1 x 1 matrix"
+        size = "a form at modes: Q is not a 1 x 1 matrix"
         assert evidence.find_fault(CASCADE) == f"block {k + 1}: {size}"
         parts[k] = common_quadratic(((-1,),), 0, Fraction(1, 2))
         evidence = BlockTriangular(blocks, tuple(enumerate(parts)))

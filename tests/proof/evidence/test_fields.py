@@ -1,6 +1,7 @@
 """Numbers in certificate files: nothing but exact integers and ratios gets in."""
 
 import json
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 
@@ -9,34 +10,37 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.fields import (
     find_unreadable,
-    matrix_fields,
     rate_text,
     rate_words,
-    read_dyadic,
     read_integer,
     read_integers,
     read_ratio,
-    read_roundings,
+    read_system,
     read_text,
-    rounding_fields,
+    system_fields,
 )
 from nrs_design.proof.exact import MAX_WORK
-from nrs_design.proof.mode import Time
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import FixedParameter, Reset, Stay, Switching
 from tests.proof.graphs import common_quadratic
-from tests.support import number_in
-
-WHOLE = st.integers(-(2**70), 2**70)
-
-
-@given(
-    st.lists(st.lists(WHOLE, min_size=3, max_size=3), min_size=3, max_size=3), st.integers(0, 99)
+from tests.proof.systems import (
+    SYSTEMS,
+    bouncing,
+    bouncing_in_steps,
+    doubled_in_turns,
+    family,
+    genuine,
+    juggling_among_modes,
+    matrix,
+    saturating,
+    settling,
 )
-def test_matrix_survives_the_file(rows, power):
-    Q = tuple(map(tuple, rows))
-    assert read_dyadic(matrix_fields(Q, power)) == (Q, power)
+from tests.support import number_in
 
 
 @pytest.mark.parametrize("value", [True, 1.0, "1", None, [1], Decimal(1), Fraction(1)])
@@ -50,12 +54,6 @@ def test_only_an_integer_is_an_integer(value):
 def test_a_matrix_beyond_all_bounds_is_refused():
     with pytest.raises(ValueError, match="too large to check"):
         read_integers([[1 << MAX_WORK]])
-
-
-@pytest.mark.parametrize("power", [-1, -(10**9)])
-def test_a_denominator_is_a_power_of_two(power):
-    with pytest.raises(ValueError, match="power of two"):
-        read_dyadic({"numerators": [[1]], "denominator_log2": power})
 
 
 def test_only_a_text_is_a_text():
@@ -132,10 +130,6 @@ def test_what_is_just_readable(value, is_readable):
     assert (find_unreadable(value) is None) is is_readable
 
 
-def test_a_denominator_of_one():
-    assert read_dyadic({"numerators": [[3]], "denominator_log2": 0}) == (((3,),), 0)
-
-
 @pytest.mark.parametrize(
     ("value", "said"),
     [
@@ -167,14 +161,214 @@ def test_numbers_that_a_file_can_hold(number, ratio):
     assert read_ratio(str(ratio)) == ratio
 
 
-@pytest.mark.parametrize(
-    ("roundings", "fields"), [((), {}), ((0,), {"roundings": [0]}), ((3, 4), {"roundings": [3, 4]})]
+RESET = Reset("m0", "m1", RationalMatrix(((1, -2), (0, 3)), 4))
+RULES = Switching(
+    dwell_time=Fraction(1, 3),
+    transitions=(("m0", "m1"), ("m1", "m0")),
+    resets=(RESET, RESET),
+    fixed_ends=(("m0", "m1"),),
+    fixed_parameter=FixedParameter("k", Fraction(-3, 8), Fraction(5)),
+    stays=(("m0", Stay(Fraction(1, 2))), ("m1", Stay(Fraction(1), Fraction(7, 2)))),
 )
-def test_multipliers_of_roundings_stand_in_a_file_if_there_are_any(roundings, fields):
-    assert rounding_fields(roundings) == fields
-    assert read_roundings(fields) == roundings
+RULED = family([[-1, 0], [0, -1]], [["-1/2", 1], [0, -2]], switching=RULES)
 
 
-def test_only_integers_multiply_roundings():
-    with pytest.raises(TypeError, match="expected an integer"):
-        read_roundings({"roundings": [1.0]})
+ROUNDED = replace(
+    bouncing_in_steps(),
+    roundings=(Rounding("F", (matrix([[1], ["1/2"]]),) * 3, (matrix([["1/9", 0]]),) * 3),),
+)
+NAMELESS = {"numerators": [[1, 0], [0, 1]], "denominator": 1}
+
+
+def stored(system):
+    return json.loads(json.dumps(system_fields(system)))
+
+
+WRITTEN = {**SYSTEMS, "ruled": lambda: RULED, "rounded": lambda: ROUNDED}
+
+
+@pytest.mark.parametrize("example", WRITTEN)
+def test_what_is_written_is_read(example):
+    system = WRITTEN[example]()
+    assert read_system(system.name, stored(system)) == system
+
+
+def test_without_rules_there_is_a_word():
+    assert stored(genuine("common-quadratic")[0])["switching"] == "arbitrary"
+
+
+@pytest.mark.parametrize("value", [2**14_000, -(2**14_000)])
+def test_numbers_that_python_would_not_read_back_are_not_written(value):
+    system = replace(RULED, modes=(Mode("m0", RationalMatrix(((value,),))),))
+    with pytest.raises(ValueError, match="more digits"):
+        system_fields(system)
+    with pytest.raises(ValueError, match="more digits"):
+        system_fields(replace(system, modes=(Mode("m0", RationalMatrix(((1,),), abs(value))),)))
+
+
+def test_the_longest_numbers_that_python_reads_back_are_written():
+    longest = 2**14_000 - 1
+    system = replace(RULED, modes=(Mode("m0", RationalMatrix(((longest, -1),), longest)),))
+    assert system_fields(system)["modes"][0]["denominator"] == longest
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "reason"),
+    [
+        ("modes", [], "largest mode"),
+        ("modes", [{"name": "m0"} | NAMELESS, {"name": "m0"} | NAMELESS], "the same name"),
+        ("modes", [{"name": "m0", "numerators": [], "denominator": 1}], "lengths"),
+        ("modes", [{"name": "m0", "numerators": [[]], "denominator": 1}], "lengths"),
+        ("modes", [{"name": "m0", "numerators": [[1]], "denominator": -1}], "positive denominator"),
+        ("modes", [{"name": "m0", "numerators": [[1], [1]], "denominator": 1}], "not square"),
+        ("modes", [{"name": "m", **NAMELESS}, {"name": "m0"}], "numerators"),
+        ("modes", {}, "expected a list"),
+        ("modes", [{"name": "m0", "numerators": [[1, 2]], "denominator": 1}], "not square"),
+        ("modes", [{"name": "m0", "numerators": [[1], [1, 2]], "denominator": 1}], "lengths"),
+        ("modes", [{"name": "m0", "numerators": [[1]], "denominator": 0}], "positive denominator"),
+        ("modes", [{"name": 3, "numerators": [[1]], "denominator": 1}], "expected a text"),
+        ("states", ["x"], "largest mode"),
+        ("states", ["x", "y", "z"], "largest mode"),
+        ("states", [1, 2], "expected a text"),
+        ("time", "never", "not a valid Time"),
+        ("switching", {**stored(RULED)["switching"], "dwell_time": "-1"}, "not a ratio"),
+        ("switching", {**stored(RULED)["switching"], "fixed_ends": "ab"}, "expected a list"),
+    ],
+)
+def test_malformed_systems(field, value, reason):
+    with pytest.raises((KeyError, ValueError, TypeError), match=reason):
+        read_system("x", {**stored(RULED), field: value})
+
+
+def test_a_system_without_modes_and_states():
+    with pytest.raises(ValueError, match="largest mode"):
+        read_system("x", {**stored(RULED), "modes": [], "states": []})
+
+
+def test_two_modes_of_one_name():
+    fields = stored(RULED)
+    fields["modes"][1]["name"] = "m0"
+    with pytest.raises(ValueError, match="the same name"):
+        read_system("x", fields)
+
+
+def test_modes_that_would_take_hours():
+    n = 200
+    rows = [[10**1000 * (i == j) for j in range(n)] for i in range(n)]
+    fields = stored(RULED) | {
+        "states": [f"x{i}" for i in range(n)],
+        "modes": [{"name": "m0", "numerators": rows, "denominator": 1}],
+    }
+    with pytest.raises(ValueError, match="too large to check"):
+        read_system("x", fields)
+
+
+def tens(count):
+    """Modes of ten states, each of which takes a hundredth of the work that is allowed."""
+    rows = [[2 ** (10**5 - 1) * (i + j == 0) for j in range(10)] for i in range(10)]
+    return [{"name": f"m{k}", "numerators": rows, "denominator": 1} for k in range(count)]
+
+
+def test_the_largest_family_that_is_read():
+    states, tiny = [f"x{i}" for i in range(10)], {"numerators": [[1]], "denominator": 1}
+    fields = stored(family([[1]])) | {"states": states, "modes": tens(100)}
+    assert len(read_system("x", fields).modes) == 100
+    fields["modes"].append({"name": "one more", **tiny})
+    with pytest.raises(ValueError, match="too large to check"):
+        read_system("x", fields)
+
+
+def test_the_largest_motions_without_contact_that_are_read():
+    """Each of them is decided once, and once more for each force."""
+    pull = {"numerators": [[1] * 10], "denominator": 1}
+    contact = {"free": tens(50), "pulls": [pull], "required": False, "loss": ""}
+    fields = stored(family([[1]])) | {"states": [f"x{i}" for i in range(10)], "modes": tens(1)}
+    assert len(read_system("x", {**fields, "contact": contact}).contact.free) == 50
+    with pytest.raises(ValueError, match="too large to check"):
+        read_system("x", {**fields, "contact": {**contact, "pulls": [pull, pull]}})
+
+
+@pytest.mark.parametrize("value", [1, None, "true"])
+def test_whether_contact_may_be_lost_is_a_truth_value(value):
+    fields = stored(bouncing())
+    assert "required" not in fields["contact"]
+    fields["contact"]["required"] = value
+    with pytest.raises(TypeError, match="expected true or false"):
+        read_system("bouncing", fields)
+
+
+@pytest.mark.parametrize(
+    ("clock", "reason"),
+    [
+        ({"length": 1, "first": ["m0"]}, "from 2 to 100 steps"),
+        ({"length": 101, "first": ["m0"]}, "from 2 to 100 steps"),
+        ({"length": "3", "first": ["m0"]}, "expected an integer"),
+        ({"length": 3, "first": "m0"}, "expected a list"),
+        ({"length": 3, "first": [0]}, "expected a text"),
+    ],
+)
+def test_malformed_turns(clock, reason):
+    fields = system_fields(doubled_in_turns(3))
+    assert fields["clock"] == {"length": 3, "first": ["m0"]}
+    with pytest.raises((TypeError, ValueError), match=reason):
+        read_system("x", {**fields, "clock": clock})
+
+
+def test_the_longest_and_the_shortest_round():
+    for length in (2, 100):
+        system = doubled_in_turns(length)
+        assert read_system("family", system_fields(system)) == system
+
+
+def test_that_a_force_pushes_in_is_written_only_where_it_does():
+    fields = system_fields(settling())
+    assert fields["contact"]["pushed"] is True
+    assert "pushed" not in system_fields(bouncing())["contact"]
+    assert read_system("family", fields) == settling()
+    for wrong in (1, "true", None):
+        changed = {**fields, "contact": {**fields["contact"], "pushed": wrong}}
+        with pytest.raises(TypeError, match="expected true or false"):
+            read_system("family", changed)
+
+
+def test_what_saturates_is_written_only_where_something_does():
+    system = saturating()
+    fields = system_fields(system)
+    assert "saturation" not in system_fields(bouncing())
+    assert read_system("family", fields) == system
+    start = replace(system.saturation.start, wanted=Fraction(1, 2))
+    wanted = replace(system, saturation=replace(system.saturation, start=start))
+    assert system_fields(wanted)["saturation"]["start"]["wanted"] == "1/2"
+    assert read_system("family", system_fields(wanted)) == wanted
+    for part in ("signals", "start"):
+        with pytest.raises(KeyError, match=part):
+            read_system(
+                "family",
+                {
+                    **fields,
+                    "saturation": {k: v for k, v in fields["saturation"].items() if k != part},
+                },
+            )
+
+
+def test_how_contact_is_lost_is_written_beside_the_assumptions():
+    bounce = bouncing()
+    system = replace(bounce, contact=replace(bounce.contact, loss="as it goes"))
+    fields = json.loads(json.dumps(system_fields(system)))
+    assert (fields["contact"]["loss"], fields["assumptions"]) == ("as it goes", [])
+    assert read_system(system.name, fields) == system
+    for odd in ({"contact": 3}, {"contact": None}, {"clock": []}):
+        with pytest.raises(TypeError, match="expected an object"):
+            read_system(system.name, {**fields, **odd})
+    for odd in ({"lost": ""}, {"loss": None}, {"free": None}):
+        with pytest.raises((TypeError, ValueError)):
+            read_system(system.name, {**fields, "contact": {**fields["contact"], **odd}})
+
+
+def test_free_motion_among_the_modes_is_read_as_it_was_written():
+    system = juggling_among_modes()
+    pulling = replace(system, flights=replace(system.flights, pulls=(matrix([[1, 0, 2]]),)))
+    for written in (system, pulling):
+        fields = json.loads(json.dumps(system_fields(written)))
+        assert read_system(written.name, fields) == written
+        assert written.is_losable

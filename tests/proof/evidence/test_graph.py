@@ -11,14 +11,15 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.contact import Contact
-from nrs_design.proof.evidence import Shows, read_evidence
+from nrs_design.proof.evidence import Shows
 from nrs_design.proof.evidence import graph as graph_module
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
+from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.evidence.graph import ALL, Arc, FormsOnGraph, Multiplier, Node
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.stays import Stays
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, Verdict, certify
@@ -95,7 +96,7 @@ def by_mode(*forms, rate: Entry = "1/100") -> FormsOnGraph:
 
 def with_form(evidence: FormsOnGraph, k: int, form) -> FormsOnGraph:
     nodes = list(evidence.nodes)
-    nodes[k] = nodes[k]._replace(form=form)
+    nodes[k] = Node(nodes[k].place, form)
     return replace(evidence, nodes=tuple(nodes))
 
 
@@ -124,7 +125,7 @@ class TestCommon:
 
     @pytest.mark.parametrize("Q", [(), ((1,),), ((1, 0),), ((1, 0), (0,)), ((1, 0, 0), (0, 1, 0))])
     def test_wrong_shape(self, Q):
-        assert self.fault(COMMUTING, Q, HALF) == "a form at modes is not a 2 x 2 matrix"
+        assert self.fault(COMMUTING, Q, HALF) == "a form at modes: Q is not a 2 x 2 matrix"
 
     @pytest.mark.parametrize(
         "Q", [((1, 1), (0, 1)), ((0, 0), (0, 0)), ((1, 1), (1, 1)), ((-1, 0), (0, -1))]
@@ -299,7 +300,7 @@ class TestPolynomials:
             ("how contact is lost", replace(system, contact=None)),
         ):
             assert words in evidence.find_misfit(changed)
-        weighted = replace(evidence, multipliers=(Multiplier("lost", None, 1),))
+        weighted = replace(evidence, multipliers=(Multiplier("lost", 1),))
         assert "no multipliers" in weighted.find_misfit(system)
 
     def test_resets_are_lifted_too_between_modes_of_different_sizes(self):
@@ -644,7 +645,7 @@ class TestAxes:
         for power in range(24):
             item = conewise(pair, ((unit,),), rate, couplings=(1 << power,), log2=10)
             assert item.find_fault(pair) is not None
-        own = tuple(Multiplier("coupling 1", 0, value) for value in (200 * unit,))
+        own = tuple(Multiplier("coupling 1", value, 0) for value in (200 * unit,))
         assert "one for all" in replace(item, multipliers=own).find_fault(pair)
 
     @pytest.mark.parametrize(
@@ -669,7 +670,8 @@ class TestAxes:
         for value in (0, -1):
             first = next(m for m in evidence.multipliers if m.fact == "coupling 1")
             changed = tuple(
-                m._replace(value=value) if m is first else m for m in evidence.multipliers
+                Multiplier(m.fact, value, m.target) if m is first else m
+                for m in evidence.multipliers
             )
             assert replace(evidence, multipliers=changed).find_fault(system) is not None
         assert "no fact" in evidence.find_fault(replace(system, couplings=()))
@@ -895,7 +897,7 @@ class TestStays:
 
     def test_what_forms_of_each_mode_do_not_have(self):
         system, evidence = genuine("mode-quadratic, dwell")
-        with_facts = replace(evidence, multipliers=(Multiplier("lost", None, 1),))
+        with_facts = replace(evidence, multipliers=(Multiplier("lost", 1),))
         assert "has no multipliers" in with_facts.find_misfit(system)
         numbers = tuple(tuple(int(i == j) for j in range(20)) for i in range(20))
         tiny = RationalMatrix(numbers, 2**7000)
@@ -1048,14 +1050,14 @@ class TestGraph:
     @pytest.mark.parametrize(
         ("evidence", "system", "multipliers", "fault"),
         [
-            (IN_STEPS, bouncing_in_steps(), (("lost", None, -1),), "a multiplier is negative"),
-            (IN_STEPS, bouncing_in_steps(), (("rounding 1", None, 1),), "no fact"),
-            (IN_STEPS, bouncing_in_steps(), (("lost", 2, 16),), "no fact"),
-            (IN_STEPS, bouncing_in_steps(), (("lost", None, 16),) * 2, "no fact"),
-            (IN_STEPS, bouncing_in_steps(), (("lost m0", None, 16),), "no fact"),
+            (IN_STEPS, bouncing_in_steps(), (("lost", -1),), "a multiplier is negative"),
+            (IN_STEPS, bouncing_in_steps(), (("rounding 1", 1),), "no fact"),
+            (IN_STEPS, bouncing_in_steps(), (("lost", 16, 2),), "no fact"),
+            (IN_STEPS, bouncing_in_steps(), (("lost", 16),) * 2, "no fact"),
+            (IN_STEPS, bouncing_in_steps(), (("lost m0", 16),), "no fact"),
             (IN_STEPS, bouncing_in_steps(), (), None),
-            (PULLED, bouncing(1), (("pull 1 free", None, 4),), "while the environment lags"),
-            (PULLED, bouncing(1), (("pull 1", None, 4),), "no fact"),
+            (PULLED, bouncing(1), (("pull 1 free", 4),), "while the environment lags"),
+            (PULLED, bouncing(1), (("pull 1", 4),), "no fact"),
         ],
     )
     def test_multipliers_belong_to_facts_and_targets(self, evidence, system, multipliers, fault):
@@ -1065,9 +1067,9 @@ class TestGraph:
 
     def test_a_multiplier_for_one_target_comes_before_that_for_all(self):
         system = bouncing_in_steps()
-        own = (Multiplier("lost", None, 10**9), Multiplier("lost", 1, 16))
+        own = (Multiplier("lost", 10**9), Multiplier("lost", 16, 1))
         assert replace(IN_STEPS, multipliers=own).find_fault(system) is None
-        swapped = (Multiplier("lost", 1, 10**9), Multiplier("lost", None, 16))
+        swapped = (Multiplier("lost", 10**9, 1), Multiplier("lost", 16))
         assert "lost" in replace(IN_STEPS, multipliers=swapped).find_fault(system)
 
     def test_places_are_those_of_the_system(self):
@@ -1097,14 +1099,17 @@ class TestGraph:
         assert not polynomial.is_common_quadratic
 
 
+PLAIN = {"nodes": [{"place": "modes", "form": [[1]]}], "denominator_log2": 0, "rate": "1/2"}
+
+
 class TestFields:
     """What a certificate file holds."""
 
     def test_only_what_is_not_usual_is_written(self):
         evidence = common_quadratic(I2, 0, HALF)
         fields = evidence.to_fields()
-        Q = {"numerators": [[1, 0], [0, 1]], "denominator_log2": 0}
-        assert fields == {"nodes": [{"place": "modes", "Q": Q}], "rate": "1/2"}
+        nodes = [{"place": "modes", "form": [[1, 0], [0, 1]]}]
+        assert fields == {"nodes": nodes, "denominator_log2": 0, "rate": "1/2"}
         assert FormsOnGraph.from_fields(fields, COMMUTING) == evidence
 
     @pytest.mark.parametrize(
@@ -1112,28 +1117,29 @@ class TestFields:
         [
             {},
             {"rate": "1/2"},
-            {"rate": "1/2", "nodes": []},
-            {
-                "nodes": [{"place": 1, "Q": {"numerators": [[1]], "denominator_log2": 0}}],
-                "rate": "1",
-            },
-            {"nodes": [{"place": "modes", "Q": {"numerators": [[1.0]], "denominator_log2": 0}}]},
-            {"nodes": [{"place": "modes", "Q": {"numerators": [[1]], "denominator_log2": -1}}]},
+            {**PLAIN, "nodes": []},
+            {**PLAIN, "nodes": [{"place": 1, "form": [[1]]}]},
+            {**PLAIN, "nodes": [{"place": "modes", "form": [[1.0]]}]},
+            {**PLAIN, "nodes": [{"place": "modes", "form": [[1]], "at": 1}]},
+            {**PLAIN, "nodes": [["modes", [[1]]]]},
+            {**PLAIN, "denominator_log2": "0"},
+            {**PLAIN, "edges": [{"target": None}]},
+            {**PLAIN, "multipliers": [{"fact": "lost"}]},
+            {**PLAIN, "stays": {"leaving": [], "pieces": 1.0}},
         ],
     )
     def test_malformed_fields(self, fields):
         with pytest.raises((KeyError, TypeError, ValueError)):
             FormsOnGraph.from_fields(fields, COMMUTING)
 
-    def test_odd_degrees_and_different_denominators(self):
-        system, evidence = genuine("common-polynomial")
-        fields = {"kind": evidence.kind, **evidence.to_fields()}
-        with pytest.raises(ValueError, match="odd"):
-            read_evidence({**fields, "degree": 5}, system)
-        fields = EACH.to_fields()
-        fields["nodes"][0]["Q"]["denominator_log2"] += 1
-        with pytest.raises(ValueError, match="do not share one denominator"):
-            FormsOnGraph.from_fields(fields, bouncing_in_steps())
+    def test_plain_fields_are_read(self):
+        graph = FormsOnGraph.from_fields(PLAIN, COMMUTING)
+        assert graph == common_quadratic(((1,),), 0, HALF)
+
+    @pytest.mark.parametrize("log2", [-1, MAX_INTEGER_BITS + 1])
+    def test_a_denominator_is_a_power_of_two(self, log2):
+        fault = common_quadratic(I2, log2, HALF).find_misfit(COMMUTING)
+        assert "the denominator of Q is not two to a power" in fault
 
     @pytest.mark.parametrize(
         "example", ["conewise-mode-quadratic", "conewise-polynomial", "mode-polynomial"]

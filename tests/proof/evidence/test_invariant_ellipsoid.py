@@ -15,9 +15,9 @@ from nrs_design.proof.evidence import InvariantEllipsoid, Shows
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
-from nrs_design.proof.steps import Steps
+from nrs_design.proof.steps import Acting
 from nrs_design.proof.system import SwitchedSystem
-from tests.proof.graphs import common_quadratic
+from tests.proof.graphs import common_quadratic, forms_of_steps
 from tests.proof.systems import (
     LAGGING,
     Entry,
@@ -498,6 +498,8 @@ def test_forms_while_contact_comes_and_goes_by_hand():
         )
         for ((A, B), q), weight in zip(pairs, weights, strict=True)
     ]
+    # Each free mode comes with how it lags.
+    motions = [motions[k] for k in (0, 1, 2, 4, 5, 3, 6, 7)]
     all_forms(system, replace(EVIDENCE3, multipliers=weights), motions)
 
 
@@ -516,9 +518,8 @@ def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
     evidence = replace(EVIDENCE3, multipliers=multipliers, roundings=roundings)
     assert evidence.find_misfit(system) is None
     assert find_contradiction(system) is None
-    steps = Steps(
-        Q3, 3, 1 - sum(SHARES3), multipliers, roundings, (), (2, 1), tuple(WEIGHTS3)
-    ).forms(system)
+    acting = Acting((2, 1), tuple(WEIGHTS3), bool(roundings))
+    steps = forms_of_steps(system, acting, (Q3, 3), 1 - sum(SHARES3), multipliers, roundings)
     wanted = [(f"the ellipsoid can be left {where}", form) for where, form in steps]
     _, *forms = evidence.forms(system)
     assert forms[: len(wanted)] == wanted

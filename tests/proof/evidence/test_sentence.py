@@ -6,6 +6,7 @@ from fractions import Fraction
 import pytest
 
 from nrs_design.proof.contact import Contact
+from nrs_design.proof.evidence.graph import Node
 from nrs_design.proof.evidence.sentence import free_sentence, ruled_sentence
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Stay, Switching
@@ -72,7 +73,7 @@ def test_each_form_of_a_norm_is_named():
     """A claim is true for the forms that a certificate holds, and not for one of them alone."""
     system, rate = bouncing_in_steps(), Fraction(99, 100)
     one = one_form(system, ((40, 20), (20, 60)), 0, rate, crossings=(16,), lost=True)
-    other = replace(one, nodes=(one.nodes[0], one.nodes[1]._replace(form=((30,),))))
+    other = replace(one, nodes=(one.nodes[0], Node(one.nodes[1].place, ((30,),))))
     assert other.find_fault(system) is None
     assert "|w| = sqrt(w' Q w) with the Q of contact or of free motion." in other.claim(system)
     axes = leaning(bouncing(), "1/8")

@@ -3,7 +3,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from nrs_design.proof.stays import Stays
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Stay
 from nrs_design.reporting.evidence import page_of
 from tests.proof.systems import genuine

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from math import comb
 
 from nrs_design.proof.exact import MAX_WORK, IntegerMatrix
 from nrs_design.proof.matrix import RationalMatrix
@@ -125,7 +126,7 @@ def steps_of_stays(
             yield map_step(at_once, name, (name, edge.target.name), jump, 1, time=0)
 
 
-def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int) -> str | None:
+def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int, degree: int = 1) -> str | None:
     """Say why stays cannot be followed so, or None: switches fit, stays are few, short and whole.
 
     Parameters
@@ -135,7 +136,9 @@ def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int) -> str | Non
     stays : Stays
         How they are to be followed.
     bits : int
-        Of the rate.
+        Of the rate, to the power of the degree.
+    degree : int
+        Of the monomials to which the powers of the modes are lifted.
     """
     if (odd := _find_odd_switch(system)) is not None:
         return odd
@@ -156,7 +159,7 @@ def find_odd_stays(system: SwitchedSystem, stays: Stays, bits: int) -> str | Non
     enclosed = stays.pieces * sum(edge.source.name in leaving for edge in system.edges())
     if not 1 <= stays.pieces <= MAX_PIECES or enclosed > MAX_ENCLOSED:
         return "the stays are enclosed in too few or too many pieces"
-    if discrete and _power_is_too_large(system, leaving, bits):
+    if discrete and _power_is_too_large(system, leaving, bits, degree):
         return "the dwell time is too long for such large numbers"
     return None
 
@@ -178,11 +181,13 @@ def _find_odd_switch(system: SwitchedSystem) -> str | None:
     return None
 
 
-def _power_is_too_large(system: SwitchedSystem, leaving: tuple[str, ...], bits: int) -> bool:
+def _power_is_too_large(
+    system: SwitchedSystem, leaving: tuple[str, ...], bits: int, degree: int
+) -> bool:
     """Tell whether the powers would take more than some seconds, one by one or all together."""
     numbers = [v for mode in system.modes for row in mode.A.numerators for v in row]
     numbers += [mode.A.denominator for mode in system.modes]
-    bits = max(bits, *(abs(v).bit_length() for v in numbers))
+    bits = max(bits, *(degree * abs(v).bit_length() for v in numbers))
     every, total, largest = system.stays(), 0, 0
     for edge in system.edges():
         stay: Stay = every[edge.source.name]
@@ -190,7 +195,7 @@ def _power_is_too_large(system: SwitchedSystem, leaving: tuple[str, ...], bits: 
             total += sum(range(int(stay.shortest), int(stay.longest) + 1))
             largest = max(largest, int(stay.longest))
         largest = max(largest, int(stay.shortest))
-    work = system.order**3 * bits
+    work = comb(system.order + degree - 1, degree) ** 3 * bits
     return largest * bits > MAX_POWER_BITS or largest * work > MAX_WORK or total * work > MAX_WORK
 
 

@@ -1,6 +1,7 @@
 """Whether a mode is stable, up to sizes at which deciding it would take minutes."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 
@@ -92,3 +93,11 @@ def test_what_would_take_minutes_is_not_decided(time):
     certification = certify(system)
     assert str(certification.verdict) == "inconclusive"
     assert any("too large" in attempt.outcome for attempt in certification.attempts)
+
+
+@pytest.mark.parametrize("time", Time)
+@pytest.mark.parametrize("entry", ["-2", "-1/2", "1/2", "2"])
+def test_one_state(entry, time):
+    """Left of zero or within the unit circle: each answer differs between the two times."""
+    wanted = entry.startswith("-") if time is Time.CONTINUOUS else "/" in entry
+    assert is_stable(RationalMatrix.from_rows([[Fraction(entry)]]), time) is wanted

@@ -185,7 +185,7 @@ class FormsOnGraph(AbstractFunction):
         from nrs_design.proof.stays import find_odd_stays
 
         bits = (self.rate**self.degree).denominator.bit_length()
-        return find_odd_stays(system, self.stays, bits)
+        return find_odd_stays(system, self.stays, bits, self.degree)
 
     def _places(self, system: SwitchedSystem) -> dict[str, int]:
         """Return every place with the number of its states."""
@@ -217,9 +217,9 @@ class FormsOnGraph(AbstractFunction):
             if (odd := find_odd_form(form, self.denominator_log2, sizes[place])) is not None:
                 return f"a form at {place}: {odd}"
         if d > 1:
-            matrices = [mode.A.numerators for mode in system.modes]
-            matrices += [reset.map.numerators for reset in system.switching.resets]
-            matrices += [((mode.A.denominator,),) for mode in system.modes]
+            maps = [mode.A for mode in system.modes]
+            maps += [reset.map for reset in system.switching.resets]
+            matrices = [A.numerators for A in maps] + [((A.denominator,),) for A in maps]
             factors = 1 if system.time is Time.CONTINUOUS else 2 * d
             bits = max(bit_length(node.form) for node in self.nodes)
             bits += factors * max(map(bit_length, matrices))

@@ -4,7 +4,9 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from math import comb
+from random import Random
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,6 +18,7 @@ from nrs_design.proof.evidence import graph as graph_module
 from nrs_design.proof.evidence.abstract import NOT_ROUNDED, ROUNDED
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS
 from nrs_design.proof.evidence.graph import ALL, Arc, FormsOnGraph, Multiplier, Node
+from nrs_design.proof.lift import monomials
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
@@ -23,7 +26,9 @@ from nrs_design.proof.steps import Stays
 from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, Verdict, certify
+from nrs_design.search.draw import undeflected
 from nrs_design.search.method import Method
+from nrs_design.search.polynomial import search_polynomial
 from tests.proof.graphs import (
     common_polynomial,
     common_quadratic,
@@ -53,6 +58,7 @@ from tests.proof.systems import (
     must_leave_in_time,
     oscillator,
     over,
+    pushed,
     rectangular,
     resets_between,
     robot,
@@ -60,7 +66,15 @@ from tests.proof.systems import (
     slow_switching_in_steps,
     two_ways,
 )
-from tests.proof.truth import holds
+from tests.proof.truth import (
+    combine,
+    exponential,
+    holds,
+    is_in_other_units,
+    times,
+    transpose,
+)
+from tests.search.support import found as accepted
 from tests.support import broken, ends_soon, is_definite_by_ldl
 
 HALF, STEPS = Fraction(1, 2), Time.DISCRETE
@@ -196,7 +210,16 @@ class TestPolynomials:
         return 2 * found.evidence.degree if found.verdict is Verdict.PROVED else None
 
     @pytest.mark.parametrize(
-        ("a", "degree"), [("5.829", 4), ("7", 4), ("10.76", 12), ("11.1", 24), ("11.262", None)]
+        ("a", "degree"),
+        [
+            ("5.829", 4),
+            ("7", 4),
+            ("10.76", 12),
+            ("11", 20),
+            ("11.1", 24),
+            ("11.262", None),
+            ("12", None),
+        ],
     )
     def test_pair_of_dayawansa_and_martin(self, a, degree):
         """Degree two ends at 3 + 2 sqrt(2), stability at 11.2608."""
@@ -877,6 +900,10 @@ class TestStays:
         evidence = mode_quadratic(forms, 0, Fraction(1, 1000), ("m0",), 256)
         assert not holds(system, evidence)
         assert "after some stay" in evidence.find_fault(system)
+        for end in stays[0][1].shortest, stays[0][1].longest:
+            rules = Switching(stays=(("m0", Stay(end, end)), stays[1]))
+            only = replace(evidence, stays=Stays(("m0",)))
+            assert only.find_fault(replace(system, switching=rules)) is None
         large = with_form(with_form(evidence, 0, ((100, 0), (0, 90))), 1, ((60, 0), (0, 59)))
         assert large.find_fault(system) is None
         assert holds(system, large)
@@ -1013,7 +1040,7 @@ class TestGraph:
         system = family([[0]], [[0]], time=STEPS)
         rounded = replace(system, roundings=(Rounding("r", columns, rows),))
         nodes, edges = (Node("modes", ((1024,),)),) * 2, (Arc(None, "m0", 0), Arc(None, "m1", 1))
-        own = (Multiplier("rounding 1", 0, 110 * 1024), Multiplier("rounding 1", 1, 5))
+        own = (Multiplier("rounding 1", 110 * 1024, 0), Multiplier("rounding 1", 5, 1))
         graph = FormsOnGraph(nodes, 10, SLOW, multipliers=own, edges=edges)
         refused = "edges lead to all nodes of a place where contact is lost or arithmetic rounds"
         assert broken(rounded, graph) == set()
@@ -1036,11 +1063,15 @@ class TestGraph:
 
     def test_sets_of_nodes_are_followed_only_so_far(self, monkeypatch):
         """A chain of sets, each with a node less."""
-        edges = (Arc(0, "m0", 0), *(Arc(k, "m0", k + 1) for k in range(9)), Arc(None, "m1", None))
-        graph = FormsOnGraph(at("modes", 10), 0, SLOW, edges=edges)
+        edges = (
+            Arc(59, "m0", 59),
+            *(Arc(k, "m0", k + 1) for k in range(59)),
+            Arc(None, "m1", None),
+        )
+        graph = FormsOnGraph(at("modes", 60), 0, SLOW, edges=edges)
         assert graph.find_fault(DRAWN) is None
-        monkeypatch.setattr(graph_module, "LEAST_WORK", 10**9)
-        monkeypatch.setattr(FormsOnGraph, "_find_too_many", lambda *_: None)
+        # Its edges are few enough.
+        monkeypatch.setattr(graph_module, "LEAST_WORK", 10**4)
         assert graph.find_misfit(DRAWN) == "the graph has too many sets of nodes"
 
     def test_continuous_time_has_one_form_at_each_place(self):
@@ -1204,3 +1235,653 @@ def test_bouncing_in_turns_rounds():
     none = in_turns(system, forms, 0, SLOW, ((0,), (0,)), ((0,), (0,)))
     assert none.find_misfit(system) is None
     assert none.covers_rounding
+
+
+# Of three states, with denominators that differ, and nothing symmetric but the forms.
+CONTACT3 = (
+    [["-1/2", "1/3", "2/3"], [1, "-1/5", "-3/7"], ["1/4", "2/3", "-1/9"]],
+    [["-1/11", "2/3", "1/8"], ["-1/5", -2, 1], ["5/4", "1/6", "1/3"]],
+)
+FREE3 = (
+    [["-1/3", "1/2"], ["1/7", "-2/5"], ["3/4", "-1/6"]],
+    [["1/8", "-1/2"], ["2/7", "1/5"], ["-1/4", "5/6"]],
+)
+COLUMNS3 = ([["1/2"], ["-1/3"], ["2/5"]], [[2], ["1/4"], [-1]], [[-1], ["1/2"], ["1/5"]])
+SIZES3 = ["1/2", 1, "1/5"], ["-1/9", 2, 1], ["3/2", -1, 0], [1, "1/7", 0]
+FORMS3 = ((9, 2, -1), (2, 7, 3), (-1, 3, 8)), ((6, 1, 2), (1, 5, -2), (2, -2, 7))
+
+
+def three_states(time: Time, *, pulled: bool = True, disturbed: bool = True) -> SwitchedSystem:
+    last = int(time is STEPS)
+    free = (
+        Mode(name, matrix([[*row, last * (i == 2)] for i, row in enumerate(rows)]))
+        for name, rows in zip("fg", FREE3, strict=True)
+    )
+    columns = tuple(map(matrix, (*COLUMNS3, COLUMNS3[0])))
+    rows = tuple(matrix([row]) for row in SIZES3)
+    wide = tuple(matrix([[*row, *["3/7"] * last]]) for row in (*SIZES3[1::-1], *SIZES3[:1:-1]))
+    pulls = (matrix([["1/2", "-1/3", 2]]), matrix([["1/5", 4, "3/2"]]))
+    return replace(
+        family(*CONTACT3, time=time),
+        contact=Contact(tuple(free), pulls if pulled else ()),
+        roundings=(Rounding("r", columns, rows),) * (disturbed and last),
+        couplings=(Coupling("w", columns[::-1], wide),) if disturbed else (),
+    )
+
+
+def steps_by_hand(system: SwitchedSystem):
+    """Yield where, mode, places, how many rows there are after it, and names of the crossings."""
+    flows, pulls = system.time is Time.CONTINUOUS, system.contact.pulls
+    for k, mode in enumerate(system.modes):
+        yield f"in mode {mode.name}", k, ("modes", "modes"), 3, {}
+        if not flows:
+            where = f"where contact is lost in mode {mode.name}"
+            yield where, k, ("modes", "free"), 2, {"lost": None}
+    for k, mode in enumerate(system.contact.free, len(system.modes)):
+        yield f"in free motion, mode {mode.name}", k, ("free", "free"), 2, {}
+        if not flows:
+            yield f"where contact is made, mode {mode.name}", k, ("free", "modes"), 3, {}
+            where = f"where contact is made at the surface, mode {mode.name}"
+            yield where, k, ("free", "modes"), 2, {}
+        for i, q in enumerate(pulls, 1):
+            # In steps, the numerators of a force are as good as the force.
+            (force,) = q.fractions() if flows else q.numerators
+            own = {f"pull {i} {mode.name}" if flows else f"pull {i}": force}
+            yield f"while the environment lags, mode {mode.name}", k, ("modes", "modes"), 3, own
+            if not flows:
+                both = {f"pull {i} lost": force, f"lost pull {i}": None}
+                where = f"where a lagging environment is left, mode {mode.name}"
+                yield where, k, ("modes", "free"), 2, both
+
+
+def form_by_hand(system, evidence, a, b, k, rows, crossings):
+    """The inequality of an edge, as the class states it."""
+    n = 2 if evidence.nodes[a].place == "free" else 3
+    M = [list(row) for row in system.every_mode[k].A.fractions()]
+    names = {m.fact: m.value for m in evidence.multipliers if m.target in (None, b)}
+    parts = [*zip(("rounding 1",), system.roundings, strict=False)]
+    parts += [*zip(("coupling 1",), system.couplings, strict=False)]
+    for _, part in parts:
+        for row, (entry,) in zip(M, part.columns[k].fractions(), strict=True):
+            row.append(entry)
+    sizes = [[*part.rows[k].fractions()[0], *[Fraction(0)] * 2] for _, part in parts]
+    sizes = [row[: 3 + len(parts)] for row in sizes]
+    whole = M[2]
+    if n == 2:
+        M, sizes = ([[*row[:2], *row[3:]] for row in part] for part in (M, sizes))
+    M, width = M[:rows], len(M[0])
+    F = [[Fraction(0)] * width for _ in range(width)]
+    for i, j in product(range(n), repeat=2):
+        F[i][j] += evidence.nodes[a].form[i][j]
+    G = [list(row[:rows]) for row in evidence.nodes[b].form[:rows]]
+    if system.time is Time.CONTINUOUS:
+        half = times([row[:n] for row in F], M)
+        form = combine((-1, half), (-1, transpose(half)), (-2 * evidence.rate, F))
+    else:
+        form = combine((evidence.rate**2, F), (-1, times(transpose(M), times(G, M))))
+    for i, ((name, _), q) in enumerate(zip(parts, sizes, strict=True), n):
+        form[i][i] += names[name]
+        form = combine((1, form), (-names[name], times(transpose([q]), [q])))
+    for name, row in crossings.items():
+        c = whole if row is None else [*row, *[Fraction(0)] * len(parts)]
+        for j, entry in enumerate(c):
+            form[n - 1][j] += names[name] * entry
+            form[j][n - 1] += names[name] * entry
+    return form
+
+
+MULTIPLIERS3 = {
+    Time.CONTINUOUS: ("pull 1 f", "pull 2 f", "pull 1 g", "pull 2 g", "coupling 1"),
+    STEPS: ("lost", *(f"{p}" for k in (1, 2) for p in (f"pull {k}", f"pull {k} lost",
+            f"lost pull {k}")), "rounding 1", "coupling 1"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("shape", [Time.CONTINUOUS, STEPS, "each"])
+def test_every_form_by_hand(shape):
+    """Lost contact with what lags, what is rounded, and other axes; or a form for each mode."""
+    if shape == "each":
+        system = three_states(STEPS, pulled=False, disturbed=False)
+        flying = ("f", ((4, 1), (1, 3))), ("g", ((5, -2), (-2, 6)))
+        named = tuple(zip(("m0", "m1"), FORMS3, strict=True))
+        evidence = conewise_modes(named, flying, 0, Fraction(6, 7), (5, 3))
+    else:
+        system, lost = three_states(shape), FORMS3[0]
+        facts = zip(MULTIPLIERS3[shape], (3, 5, 7, 11, 13, 17, 19, 23, 29), strict=False)
+        nodes = Node("modes", lost), Node("free", tuple(row[:2] for row in lost[:2]))
+        numbers = tuple(Multiplier(fact, None, value) for fact, value in facts)
+        evidence = FormsOnGraph(nodes, 0, Fraction(2, 7), multipliers=numbers)
+    assert evidence.find_misfit(system) is None
+    place = [node.place for node in evidence.nodes]
+    wanted = [
+        (where, form_by_hand(system, evidence, a, b, k, rows, crossings))
+        for where, k, places, rows, crossings in steps_by_hand(system)
+        for a, b in product(range(len(place)), repeat=2)
+        if (place[a], place[b]) == places
+        and any(e.source in (None, a) and e.mode in (None, system.every_mode[k].name)
+                for e in evidence.edges)
+    ]  # fmt: skip
+    words, forms = zip(*evidence.forms(system), strict=True)
+    count = len(place)
+    assert forms[:count] == tuple(node.form for node in evidence.nodes)
+    found = [word.partition("rate ")[2] for word in words[count:]]
+    assert found == [where for where, _ in wanted]
+    for form, (where, true) in zip(forms[count:], wanted, strict=True):
+        assert is_in_other_units(form, true), where
+
+
+@pytest.mark.parametrize("degree", [1, 3])
+def test_forms_between_modes_of_one_state_by_hand(degree):
+    """``5 x^2d`` and ``7 x^2d`` at the rate 3/4; the switch to m1 multiplies by two fifths."""
+    rules = Switching(resets=resets_between(("m0", "m1", [["2/5"]])))
+    system = family([["1/2"]], [["-1/3"]], time=STEPS, switching=rules)
+    zero = (((0,),),) * 4 if degree > 1 else ()
+    evidence = replace(scalars(5, 7, rate="3/4"), degree=degree, vanishing=zero)
+    first, second, *forms = (form for _, form in evidence.forms(system))
+    assert (first, second) == (((5,),), ((7,),))
+    kept, power = Fraction(3, 4) ** (2 * degree), 2 * degree
+    maps = ((5, 5, "1/2"), (7, 7, "1/3"), (5, 7, "1/5"), (7, 5, "1/3"))
+    for ((form,),), (before, after, gain) in zip(forms, maps, strict=True):
+        true = kept * before - after * Fraction(gain) ** power
+        unit = (4 * Fraction(gain).denominator) ** power
+        assert Fraction(form) / true in (unit, Fraction(unit, 3**power), unit // 2**power)
+
+
+SHAPES = {
+    "one": (bouncing_in_steps(), IN_STEPS),
+    "flow": (bouncing(1), PULLED),
+    "each": (bouncing_in_steps(), EACH),
+    "turns": (bouncing_in_turns(), in_turns(bouncing_in_turns(), (Q2_STEPS,) * 2, 0, SLOW,
+                                            ((16,), (16,)))),
+    "stays": (family([["1/2", 0], [0, "1/2"]], [["1/4", 0], [0, "1/4"]], time=STEPS),
+              by_mode(I2, I2, rate="3/4")),
+}  # fmt: skip
+
+
+class TestRefused:
+    """Numbers that do not fit, of every shape; and sizes that would take hours."""
+
+    @pytest.mark.parametrize("shape", SHAPES)
+    def test_numbers_that_do_not_fit(self, shape):
+        system, evidence = SHAPES[shape]
+        assert evidence.find_misfit(system) is None
+        for k, (place, form) in enumerate(evidence.nodes):
+            n = len(form)
+            wide = tuple((*row, 0) for row in form)
+            for other in ((), wide, form[:-1], ((1,) * (n + 1),) * (n + 1)):
+                fault = f"a form at {place} is not a {n} x {n} matrix"
+                assert with_form(evidence, k, other).find_fault(system) == fault
+            skew = (*form[:-1], (form[-1][0] + 1, *form[-1][1:]))
+            negative = tuple(tuple(-e for e in row) for row in form)
+            # A form of one state is always symmetric.
+            for other in (negative, *[skew] * (n > 1)):
+                assert with_form(evidence, k, other).find_fault(system) is not None
+                assert not holds(system, with_form(evidence, k, other))
+        for rate in (Fraction(0), Fraction(-1, 2), *[Fraction(1)] * (system.time is STEPS)):
+            fault = replace(evidence, rate=rate).find_fault(system)
+            assert fault == "the claimed rate is not one of exponential decay"
+        names = {node.place for node in evidence.nodes}
+        for name in names:
+            nodes = tuple(node for node in evidence.nodes if node.place != name)
+            # Without forms in flight it would be one of kept contact, which nothing is lost in.
+            fault = replace(evidence, nodes=nodes).find_fault(system)
+            assert ("no fact" if name == "free" else "every place") in fault
+        for k, item in enumerate(evidence.multipliers):
+            changed = [*evidence.multipliers]
+            changed[k] = item._replace(value=-1)
+            fault = replace(evidence, multipliers=tuple(changed)).find_fault(system)
+            assert fault == "a multiplier is negative"
+        for fact in ("rounding 1", "coupling 1", "lost 1", "pull 3"):
+            odd = replace(evidence, multipliers=(*evidence.multipliers, Multiplier(fact, None, 1)))
+            assert "multiplier" in odd.find_fault(system)
+        idle = tuple(item._replace(value=0) for item in evidence.multipliers)
+        assert replace(evidence, multipliers=idle).find_misfit(system) is None
+
+    def test_no_crossings_where_contact_is_kept(self):
+        kept = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
+        alone = in_turns(kept, (Q2_STEPS,) * 2, 0, SLOW)
+        assert alone.find_misfit(kept) is None
+        lost = replace(alone, multipliers=(Multiplier("lost", None, 16),))
+        assert "no fact" in lost.find_misfit(kept)
+
+    def test_forms_of_each_mode_do_not_cover_what_lags(self):
+        """Of states in contact that a free mode rules they have no edge."""
+        fault = EACH.find_fault(bouncing_in_steps(1))
+        assert fault == "the graph has no edge while the environment lags, mode free"
+
+    @pytest.mark.parametrize("factor", [1, 3, 10**200])
+    def test_the_scale_of_forms_does_not_matter(self, factor):
+        scaled = common_quadratic(((factor, 0), (0, factor)), 7, HALF)
+        assert scaled.find_fault(COMMUTING) is None
+        assert not broken(COMMUTING, scaled)
+
+    @pytest.mark.parametrize("example", ["common-polynomial", "mode-polynomial"])
+    def test_rates_beyond_that_of_the_system(self, example):
+        """Both modes of the first have the real part -1; 0.97482 a step is what the other does."""
+        system, evidence = genuine(example)
+        wrong = ("1", "0", "-1/2") if system.time is Time.CONTINUOUS else ("0.974", "0", "1", "2")
+        for rate in wrong:
+            assert replace(evidence, rate=Fraction(rate)).find_fault(system) is not None
+
+    @pytest.mark.parametrize(("n", "degree"), [(120, 1), (121, 1), (3, 14), (64, 2), (64, 32)])
+    def test_the_most_monomials(self, n, degree):
+        """There are 120 of degree 14 in three variables; quadratic forms have as many states."""
+        size = comb(n + degree - 1, degree)
+        large = size > 120
+        unit, zero = (
+            tuple(tuple(c * (i == j) for j in range(1 if large and degree > 1 else size))
+                  for i in range(1 if large and degree > 1 else size)) for c in (1, 0)
+        )  # fmt: skip
+        evidence = common_polynomial(degree, unit, 0, (zero,) if degree > 1 else (), HALF)
+        system = family([[-int(i == j) for j in range(n)] for i in range(n)])
+        refused = large and degree > 1
+        fault = f"there are more than 120 monomials of degree {degree}" if refused else None
+        with ends_soon():
+            assert evidence.find_misfit(system) == fault
+
+    @pytest.mark.parametrize("degree", [-2, 66, 10**300])
+    @pytest.mark.parametrize("example", ["common-polynomial", "mode-polynomial"])
+    def test_hostile_degrees_and_integers(self, example, degree):
+        system, evidence = genuine(example)
+        fields = {"kind": evidence.kind, **evidence.to_fields(), "degree": degree}
+        giant = tuple(tuple(q * 10**4000 for q in row) for row in evidence.nodes[0].form)
+        with ends_soon():
+            assert "degree" in read_evidence(fields, system).find_fault(system)
+            with_form(evidence, 0, giant).find_fault(system)
+
+    @pytest.mark.parametrize(
+        ("modes", "resets", "bits"),
+        [((7, 1), (), 3), (("1/5", 1), (), 3), ((1, -7), (), 3), ((1, 1), (5,), 3),
+         ((1, 1), ("1/7",), 3), ((1, 1), ("1/9",), 4)],
+    )  # fmt: skip
+    def test_the_longest_numbers_that_are_lifted(self, monkeypatch, modes, resets, bits):
+        """Of modes and of resets, numerators and denominators: the longest, for four factors."""
+        rules = Switching(resets=resets_between(*(("m0", "m1", [[g]]) for g in resets)))
+        system = family(*([[entry]] for entry in modes), time=STEPS, switching=rules)
+        evidence = quartic(1, 1)
+        monkeypatch.setattr(graph_module, "LEAST_WORK", 0)
+        monkeypatch.setattr(graph_module, "MAX_WORK", 1 + 4 * bits)
+        assert evidence.find_misfit(system) is None
+        monkeypatch.setattr(graph_module, "MAX_WORK", 4 * bits)
+        assert evidence.find_misfit(system) == "its numbers are too large to check"
+
+    def test_long_powers_that_are_lifted_do_not_hang(self):
+        """A stay of 4096 steps, in 36 monomials of degree 7."""
+        A = [[Fraction(i + 2 * j + 1, 10**9 + 7) for j in range(3)] for i in range(3)]
+        unit, zero = (
+            tuple(tuple(c * (i == j) for j in range(36)) for i in range(36)) for c in (1, 0)
+        )
+        system = family(A, A, time=STEPS, switching=Switching(Fraction(4096)))
+        item = replace(by_mode(unit, unit, rate="9/10"), degree=7, vanishing=(zero,) * 4)
+        with ends_soon():
+            fault = item.find_fault(system)
+        assert fault == "the dwell time is too long for such large numbers"
+
+
+class TestAttacks:
+    """Forged numbers for families that grow, or do not decay."""
+
+    # Contact and flight are stable, each for itself, and bouncing grows. Found by a random search.
+    TOUCHING, FLYING = [[2, -1, 2], [5, -3, 4], [1, -3, 0]], [[-1, 6], [0, -2]]
+
+    def growing(self) -> SwitchedSystem:
+        free = [[*row, 0] for row in (*self.FLYING, self.TOUCHING[2][:2])]
+        return losable(self.TOUCHING, free, Time.CONTINUOUS)
+
+    def alone(self, A) -> FormsOnGraph:
+        """Return what the search finds for one mode, of degree 4."""
+        found = accepted(search_polynomial, family(A), degree=2, optimize_rate=False)
+        assert isinstance(found, FormsOnGraph)
+        assert found.degree == 2
+        return found
+
+    def test_the_family_grows(self):
+        system = self.growing()
+        contact, free = (
+            exponential(0.02 * np.array(mode.A.floats()))
+            for mode in (*system.modes, *system.contact.free)
+        )
+        x = np.array([1.0, -1.0, 1.0])
+        for _ in range(3000):
+            x = (contact if x[2] > 0 else free) @ x
+        assert np.linalg.norm([*x[:2], max(x[2], 0.0)]) > 1e3
+
+    @pytest.mark.parametrize("where", ["in mode m0", "in free motion, mode f", "at the surface"])
+    def test_each_condition_of_a_polynomial_bars_a_family_that_grows(self, where):
+        system = self.growing()
+        contact, flight = self.alone(self.TOUCHING), self.alone(self.FLYING)
+        Q, (N,) = contact.nodes[0].form, contact.vanishing
+        inner, (R,) = flight.nodes[0].form, flight.vanishing
+        if where == "in free motion, mode f":
+            # A form of contact alone.
+            inner, R = undeflected(Q, 3, 2), ((0,) * 3,) * 3
+        if where == "in mode m0":
+            # A form of flight alone, filled up to all states.
+            kept = [k for k, term in enumerate(monomials(3, 2)) if not term[-1]]
+            rows = [[int(i == j) for j in range(6)] for i in range(6)]
+            for a, i in enumerate(kept):
+                for b, j in enumerate(kept):
+                    rows[i][j] = inner[a][b]
+            Q, N = tuple(map(tuple, rows)), ((0,) * 6,) * 6
+        nodes = Node("modes", Q), Node("free", inner)
+        rate = flight.rate if where == "in mode m0" else contact.rate
+        forged = replace(contact, nodes=nodes, vanishing=(N, R), rate=rate)
+        assert where in forged.find_fault(system)
+        if where == "at the surface":
+            assert contact.find_fault(family(self.TOUCHING)) is None
+            assert flight.find_fault(family(self.FLYING)) is None
+        else:
+            assert broken(system, forged) == {where}
+        assert not holds(system, forged)
+
+    def test_a_form_in_flight_that_does_not_vanish_proves_nothing(self):
+        """It would make any decrease positive: here that of a mass that does not slow down."""
+        sliding = losable([[-2, -1], [1, 0]], [[0, 0], [1, 0]], Time.CONTINUOUS)
+        _, evidence = genuine("conewise-polynomial")
+        forged = replace(evidence, vanishing=(*evidence.vanishing[:1], ((10**9,),)))
+        assert broken(sliding, forged) == set()
+        assert forged.find_fault(sliding) == "a form that must vanish does not"
+        honest = replace(forged, vanishing=(*evidence.vanishing[:1], ((0,),)))
+        assert "in free motion, mode f" in honest.find_fault(sliding)
+
+    def test_the_forms_that_vanish_are_needed(self):
+        """Without them, the lifted modes would have quadratic functions."""
+        system, evidence = genuine("mode-polynomial")
+        zero = tuple(tuple((0,) * len(row) for row in N) for N in evidence.vanishing)
+        assert replace(evidence, vanishing=zero).find_fault(system) is not None
+        modes = list(system.modes)
+        modes[0], modes[2] = replace(modes[0], A=modes[2].A), replace(modes[2], A=modes[0].A)
+        assert evidence.find_fault(replace(system, modes=tuple(modes))) is not None
+
+    def test_polynomials_keep_the_rules_of_stays(self):
+        halves = family([["1/2"]], [["-1/2"]], time=STEPS)
+        assert quartic(1, 1).find_fault(halves) is None
+        ends = replace(halves, switching=Switching(fixed_ends=(("m0", "m1"),)))
+        assert "does not cover this kind of switching" in quartic(1, 1).find_fault(ends)
+        long = Switching(stays=(("m0", Stay(Fraction(1), Fraction(4097))),))
+        left = replace(quartic(1, 1), stays=Stays(("m0",)))
+        fault = left.find_fault(replace(halves, switching=long))
+        assert fault == "the dwell time is too long"
+
+    def test_a_step_of_free_motion_is_a_condition_of_its_own(self):
+        """The velocity doubles, the surface is never reached, and contact would stop all motion."""
+        system = losable([[0, 0], [0, 0]], [[2, 0], [0, 1]], STEPS)
+        candidate = conewise_modes((("m0", I2),), (("f", ((100,),)),), 0, SLOW, (0,))
+        assert broken(system, candidate) == {"in free motion, mode f"}
+        assert "in free motion" in candidate.find_fault(system)
+
+    def test_what_disturbs_is_not_taken_for_a_rounding(self):
+        """Rows of roundings go over the state and what disturbs it, which decay says nothing of."""
+        system = bouncing_in_turns(rounded=True)
+        (item,) = system.roundings
+        numbers = ((16,), (16,)), ((1,), (1,))
+        evidence = in_turns(system, (Q2_STEPS,) * 2, 0, SLOW, *numbers)
+
+        def disturbed(first: int) -> SwitchedSystem:
+            rows = (row.fractions()[0] for row in item.rows)
+            wide = tuple(matrix([[first or row[0], *row[1:], 7]]) for row in rows)
+            return pushed(replace(system, roundings=(replace(item, rows=wide),)))
+
+        assert [*evidence.forms(disturbed(0))] == [*evidence.forms(system)]
+        # A rounding that grows with the state is still held against.
+        assert evidence.find_fault(disturbed(100)) is not None
+
+
+# The rate of a mass that a coupling speeds up to 2 1/s in contact, or in flight, or by which V
+# rises while the environment lags: damping, and the couplings of contact and of free motion.
+BARRED = {
+    "in mode m0": (0, 4, 0),
+    "in free motion, mode free": (0, 0, 4),
+    "while the environment lags, mode free": (1, 0, "7/4"),
+}
+
+
+class TestAxesWithinTheirBounds:
+    """What couplings allow is barred, and raises no form that is proved."""
+
+    @pytest.mark.parametrize("where", BARRED)
+    def test_each_condition_bars_what_is_false(self, where):
+        damping, touching, flying = BARRED[where]
+        single = bouncing(damping)
+        column, sizes = matrix([[1], [0]]), (matrix([[touching, 0]]), matrix([[flying, 0]]))
+        part = Coupling("c", (column,) * 2, sizes)
+        system = replace(single, modes=single.modes[:1], couplings=(part,))
+        unit, found = 64, set()
+        whole = tuple(tuple(unit * entry for entry in row) for row in Q2)
+        count = len(system.contact.pulls)
+        for tau, m in product(range(1, 1024, 24), (0, 1, 4, 16, 64, 256)[: 1 + 5 * (count > 0)]):
+            item = conewise(system, whole, "1/100", (m,) * count, (), (tau,), 6)
+            places = broken(system, item)
+            assert where in places
+            found.add(frozenset(places))
+        # With some multipliers nothing else is broken.
+        assert frozenset({where}) in found
+        # An axis by itself grows, with all that the bound allows against it: in contact without a
+        # spiral, in flight at once, and V just below the surface, on the way out without force.
+        if where == "in mode m0":
+            assert touching > 2
+            assert (touching - 2) ** 2 >= 4
+        elif "free motion" in where:
+            assert flying > 2
+        else:
+            v, delta, w = Fraction(-1), Fraction(1, 1000), -Fraction(flying)
+            assert v + delta < 0
+            assert (8 * v + 4 * delta) * (-2 * v + w) + (4 * v + 12 * delta) * v > 0
+
+    def test_a_scalar_in_steps_is_proved_up_to_its_rate(self):
+        """``x+ = x/2 + w`` with ``|w| <= c |x|`` over all axes: decays iff c < 1/2, at 1/2 + c."""
+
+        def scalar(size: str) -> SwitchedSystem:
+            coupling = Coupling("c", (matrix([[1]]),), (matrix([[size]]),))
+            return replace(family([["1/2"]], time=STEPS), couplings=(coupling,))
+
+        quarter = scalar("1/4")
+        assert conewise(quarter, ((1,),), "0.7501", couplings=(3,)).find_fault(quarter) is None
+        for numerator, (size, rate) in product(range(200), (("1/4", "0.7499"), ("1/2", "0.9999"))):
+            item = conewise(quarter, ((16,),), rate, couplings=(numerator,), log2=4)
+            assert item.find_fault(scalar(size)) is not None
+
+    def test_one_tau_for_every_mode_in_steps(self):
+        """Each mode has a tau of its own, and two axes that take turns in the modes grow."""
+        columns, rows = (matrix([[2]]), matrix([["1/100"]])), (matrix([["1/100"]]), matrix([[2]]))
+        modes = family([["1/2"]], [["1/2"]], time=STEPS)
+        pair, unit = replace(modes, couplings=(Coupling("c", columns, rows),)), 1024
+        for k, tau in enumerate((40 * unit, unit // 200)):
+            own = Coupling("c", columns[k : k + 1], rows[k : k + 1])
+            alone = replace(pair, modes=pair.modes[k : k + 1], couplings=(own,))
+            item = conewise(alone, ((unit,),), "9/10", couplings=(tau,), log2=10)
+            assert item.find_fault(alone) is None
+        for power in range(24):
+            item = conewise(pair, ((unit,),), "99/100", couplings=(1 << power,), log2=10)
+            assert item.find_fault(pair) is not None
+        # One axis is pushed twofold by twice the state of the other, then the other way round.
+        turn = np.array([[0.5, 4.0], [0.0, 0.5]])
+        assert np.abs(np.linalg.eigvals(turn @ turn.T)).max() > 16
+
+    @pytest.mark.parametrize("motion", range(3))
+    @pytest.mark.parametrize("column", [[[1], [0]], [[0], [1]]])
+    def test_a_wild_push_in_any_motion_is_refused(self, motion, column):
+        """In either mode, and in free motion; on the speed, or on the way contact is lost by."""
+        system, item = genuine("coupled-axes, steps")
+        first = system.couplings[0]
+        rows, columns = list(first.rows), list(first.columns)
+        rows[motion], columns[motion] = matrix([[4, 0]]), matrix(column)
+        part = replace(first, rows=tuple(rows), columns=tuple(columns))
+        wild = replace(system, couplings=(part, *system.couplings[1:]))
+        (own,) = (m for m in item.multipliers if m.fact == "coupling 1")
+        others = tuple(m for m in item.multipliers if m is not own)
+        for tau in (0, 1, 100, 10**4, 10**6, 10**8, own.value):
+            numbers = (*others, own._replace(value=tau))
+            assert replace(item, multipliers=numbers).find_fault(wild) is not None
+
+    @pytest.mark.parametrize(
+        "example",
+        ["coupled-axes", "coupled-axes, kept", "coupled-axes, pulling", "coupled-axes, steps",
+         "coupled-axes, kept in steps", "coupled-axes, pulling in steps"],
+    )  # fmt: skip
+    def test_no_motion_of_three_axes_within_the_bounds_raises_the_sum(self, example):
+        """At random states, each axis in a mode of its own, with all that the bounds allow."""
+        system, item = genuine(example)
+        Q, flows = item.nodes[0].form, system.time is Time.CONTINUOUS
+        for seed in range(20):
+            before = after = Fraction(0)
+            for x, moved, kept in pushed_axes(system, Random(seed)):
+                if flows:
+                    forces = [dot(row[:kept], x[:kept]) for row in Q[:kept]]
+                    before += dot(forces, x[:kept])
+                    after += 2 * dot(forces, moved[:kept])
+                else:
+                    value = _value if system.contact else _square
+                    before, after = before + value(Q, x), after + value(Q, moved)
+            assert after <= (-2 * item.rate if flows else item.rate**2) * before
+
+
+def pushed_axes(system: SwitchedSystem, random: Random):
+    """Yield of three axes the state, what becomes of it under random pushes, and what V sees."""
+    axes = [situation(system, random) for _ in range(3)]
+    pushes = []
+    for part in system.couplings:
+        square = sum(dot(part.rows[k].fractions()[0], x) ** 2 for k, _, x, _ in axes)
+        direction = [random.gauss(0, 1) for _ in range(3)]
+        size = float(square) ** 0.5 * (1 - 1e-9) / sum(e**2 for e in direction) ** 0.5
+        pushes.append([Fraction(size * entry) for entry in direction])
+    for i, (k, A, x, kept) in enumerate(axes):
+        moves = [dot(row, x) for row in A]
+        for part, push in zip(system.couplings, pushes, strict=True):
+            column = part.columns[k].fractions()
+            moves = [a + push[i] * b for a, (b,) in zip(moves, column, strict=True)]
+        yield x, moves, kept
+
+
+def situation(system: SwitchedSystem, random: Random):
+    """Return a mode, its matrix, a state that it can be in, and how many entries V has of it."""
+    n, contact = system.order, system.contact
+    x = [Fraction(random.randint(-9, 9)) for _ in range(n)]
+    k = random.randrange(len(system.every_mode))
+    A = system.every_mode[k].A.fractions()
+    if k < len(system.modes):
+        return k, A, [*x[:-1], abs(x[-1])] if contact else x, n
+    lags = [*x[:-1], abs(x[-1])]
+    pulled = [q for q in contact.pulls if dot(q.fractions()[0], lags) <= 0]
+    if pulled and random.random() < 0.5:
+        return k, A, lags, n
+    return k, A, [*x[:-1], -abs(x[-1])], n - 1
+
+
+def dot(left, right):
+    return sum((a * b for a, b in zip(left, right, strict=True)), Fraction(0))
+
+
+def _square(Q: Rows, x: list[Fraction]) -> Fraction:
+    return dot(x, [dot(row, x) for row in Q])
+
+
+class TestRulesOfStays:
+    """What rules of switching ask for besides, and sizes that do not hang."""
+
+    def test_steps_are_counted_from_one_and_a_longer_dwell_time_is_covered(self):
+        _, evidence = genuine("mode-quadratic, discrete")
+        system = ando_shih("0.99")
+        at_once, one = (Switching(Fraction(dwell)) for dwell in (0, 1))
+        for rules in (at_once, one):
+            assert evidence.find_fault(replace(system, switching=rules)) is None
+        half = replace(system, switching=Switching(Fraction(3, 2)))
+        assert "whole" in evidence.find_fault(half)
+        longer = replace(slow_switching_in_steps(), switching=Switching(Fraction(7)))
+        assert certify(longer, Method.MODE_QUADRATIC).verdict is Verdict.PROVED
+
+    def test_resets_of_another_shape_or_order(self):
+        _, evidence = genuine("mode-quadratic, rectangular")
+        turned = resets_between(("m0", "m1", [["1/2"], [0]]), ("m1", "m0", [["1/2", 0]]))
+        system = replace(rectangular(), switching=Switching(resets=turned))
+        assert "no fitting reset" in evidence.find_fault(system)
+        swapped = tuple(
+            Node(a.place, b.form) for a, b in zip(evidence.nodes, evidence.nodes[::-1], strict=True)
+        )
+        assert "matrix" in replace(evidence, nodes=swapped).find_fault(rectangular())
+
+    @pytest.mark.parametrize("first", ["m0", "m1"])
+    def test_a_switch_at_once_is_seen_after_one_that_comes_later(self, first):
+        """From m1 to m0 the form doubles, whichever of the modes has a dwell time of its own."""
+        system = family([[-1]], [[-1]], switching=Switching(stays=((first, Stay(HALF)),)))
+        fault = scalars(2, 1, rate="1/100").find_fault(system)
+        assert fault == ("V rises at the switch from m1 to m0" if first == "m0" else None)
+
+    @pytest.mark.parametrize(("after", "fault"), [(1, False), (3, True)])
+    def test_a_mode_that_is_left_at_once_is_enclosed_from_the_beginning(self, after, fault):
+        rules = Switching(
+            stays=(("m0", Stay(Fraction(0), Fraction(1))),), transitions=(("m0", "m1"),)
+        )
+        system = family([[-1]], [[-1]], switching=rules)
+        item = scalars(2, after, rate="1/100", leaving=("m0",), pieces=16)
+        assert ("after some stay, from m0" in str(item.find_fault(system))) is fault
+
+    @pytest.mark.parametrize(
+        ("stays", "transitions"),
+        [
+            ((("m0", 3, 2),), None),
+            ((("m0", 0, HALF),), None),
+            ((("m0", 1, 2), ("m0", 1, 1)), None),
+            ((("m2", 1, 2),), None),
+            # Where no motion keeps the rules, a mode that doubles would be said to decay.
+            ((("m0", 1, 2),), ()),
+            ((("m0", 1, 2),), (("m1", "m0"),)),
+        ],
+    )
+    def test_contradictory_rules(self, stays, transitions):
+        named = tuple((name, Stay(Fraction(a), Fraction(b))) for name, a, b in stays)
+        rules = Switching(stays=named, transitions=transitions)
+        evidence = scalars(960, 30, rate=Fraction(999, 1000), leaving=("m0",))
+        system = replace(must_leave(2), switching=rules)
+        assert evidence.find_fault(system) is not None
+        if transitions is not None:
+            fault = "no switch leads from a mode that must be left"
+            assert evidence.find_fault(system) == fault
+            alone = replace(system, modes=system.modes[:1], switching=Switching(stays=named))
+            item = replace(evidence, nodes=evidence.nodes[:1])
+            assert item.find_fault(alone) == fault
+
+    def test_stiff_modes_that_are_coupled_do_not_hang(self):
+        rules = Switching(Fraction(4096))
+        for exponent in (3, 9, 300):
+            fast = 10**exponent
+            modes = [[-fast, fast], [-fast, -1]], [[-1, 1], [-1, -fast]]
+            with ends_soon():
+                by_mode(I2, I2).find_fault(family(*modes, switching=rules))
+
+    @pytest.mark.parametrize("dwell", [4096, 4097, 10**30])
+    def test_hostile_dwell_times_rates_and_sizes_do_not_hang(self, dwell):
+        n, rules = 64, Switching(Fraction(dwell))
+        A = [[Fraction((i * j) % 5 - 2 - 900 * (i == j), 1000) for j in range(n)] for i in range(n)]
+        unit = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+        large = family(A, A, time=STEPS, switching=rules)
+        small = family([["1/2"]], [["1/3"]], time=STEPS, switching=rules)
+        with ends_soon():
+            assert by_mode(unit, unit, rate="999/1000").find_fault(large) is not None
+            long_rate = Fraction(10**1999 - 1, 10**1999)
+            assert scalars(1, 1, rate=long_rate).find_fault(small) is not None
+
+    def test_four_thousand_steps_of_a_small_system_are_checked(self):
+        system = replace(slow_switching_in_steps(), switching=Switching(Fraction(4096)))
+        item = by_mode(((1, 0), (0, 100)), ((100, 0), (0, 1)), rate="99/100")
+        with ends_soon():
+            assert item.find_fault(system) is None
+
+    def test_more_switches_than_can_be_checked_are_refused(self):
+        modes = tuple(Mode(f"m{i}", RationalMatrix(((-1,),))) for i in range(1200))
+        with ends_soon():
+            fault = scalars(*[1] * 1200).find_fault(replace(family([[-1]]), modes=modes))
+        assert "too many switches" in fault
+
+    @pytest.mark.parametrize("example", ["mode-quadratic, left", "mode-quadratic, left in time"])
+    def test_files_name_the_modes_that_must_be_left(self, example):
+        system, evidence = genuine(example)
+        fields = {"kind": evidence.kind, **evidence.to_fields()}
+        assert fields["stays"]["leaving"] == ["m0"]
+        assert read_evidence(fields, system) == evidence
+        for key in ("leaving", "pieces"):
+            stays = {k: v for k, v in fields["stays"].items() if k != key}
+            with pytest.raises(KeyError, match=key):
+                read_evidence({**fields, "stays": stays}, system)
+        fields["stays"]["leaving"] = []
+        assert read_evidence(fields, system).find_fault(system) is not None

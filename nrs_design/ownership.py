@@ -112,8 +112,8 @@ def check_certificate(spec: Path, file: Path) -> None:
     """Refuse to overwrite the certificate of another spec; see `check_owner`."""
     from nrs_design.certificates.verify import read_document
 
-    if not os.path.lexists(file):
-        return
+    if not file.is_file():
+        return  # A folder, or a link to nothing, is refused where it is written.
     try:
         document = read_document(file)
     except CertificateError:

@@ -128,3 +128,8 @@ def test_a_robot_and_a_design_of_one_name_keep_apart(tmp_path):
     check_export(tmp_path / "mine.nrs.yaml", file)
     with pytest.raises(OutputError, match="for a robot"):
         check_name("mine", file)
+
+
+def test_a_folder_is_no_certificate_of_another(folder):
+    """It was "not a certificate (remove that file)"; where it is written it is called a folder."""
+    check_certificate(folder / "specs/first.nrs.yaml", folder)

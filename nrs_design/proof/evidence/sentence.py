@@ -67,7 +67,7 @@ def free_sentence(
     if system.clock is not None:
         parts.append(f"in rounds of {system.clock.length} steps,")
     law = "x' = A x" if continuous else "x+ = A x"
-    of = "" if x == "w" and continuous else f" of {law}"
+    of = "" if x == "w" else f" of {law}"
     among = f"switching arbitrarily among {modes}"
     if lost and system.contact is not None:
         free = counted(len(system.contact.free), "mode")

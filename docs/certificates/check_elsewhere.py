@@ -1,4 +1,4 @@
-"""Re-check a certificate of nrs-design, schema 7, with nothing but Python's own fractions.
+"""Re-check a certificate of nrs-design, schema 8, with nothing but Python's own fractions.
 
 Usage: python check_elsewhere.py CERTIFICATE.json. Exit code: 0 if every statement holds, 1 if one
 does not, 3 if one is not checked here. Whose modes the file holds is what `nrs-design verify` adds.

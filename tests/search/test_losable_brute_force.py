@@ -227,7 +227,7 @@ def assert_true(seed: int) -> tuple[Verdict, set[str]]:
 
 def test_random_loops_that_lose_contact():
     found = [assert_true(seed) for seed in range(6)]
-    assert ATTACKED == set().union(*(kinds for _, kinds in found))
+    assert set().union(*(kinds for _, kinds in found)) == ATTACKED
     assert [verdict for verdict, _ in found].count(Verdict.PROVED) > 3
 
 

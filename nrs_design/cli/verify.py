@@ -272,6 +272,8 @@ def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -
 
 
 def _print_gains(certificate: Certificate, spec: Spec) -> None:
+    if not certificate.gains:
+        return
     from nrs_design.certificates.units import gain_units
     from nrs_design.spec import InteractionDesignSpec
 

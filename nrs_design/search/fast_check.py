@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import accumulate, combinations_with_replacement
 from operator import mul, sub
+from typing import Any
 
 from nrs_design.proof.evidence import AbstractEvidence, FormsOnGraph
 from nrs_design.proof.evidence.abstract import find_indefinite
@@ -49,11 +50,10 @@ def find_fault(
     charge(PER_CANDIDATE)
     if (unfit := evidence.find_unfit(system)) is not None:
         return unfit
-    forms, encloses = evidence.forms(system), False
-    if isinstance(evidence, FormsOnGraph):
-        encloses = evidence.stays is not None and evidence.stays.pieces > 1
-        if system.order >= PACKED_ORDER:
-            forms = evidence.forms(system, multiply_packed)
+    packed = _PACKED.get(type(evidence)) if system.order >= PACKED_ORDER else None
+    forms = evidence.forms(system) if packed is None else packed(evidence, system)
+    # Evidence that encloses what happens during a stay says in how many pieces.
+    encloses = getattr(getattr(evidence, "stays", None), "pieces", 1) > 1
     counted = _counted(forms, PER_ENCLOSED_FORM if encloses else PER_FORM, charge)
     return find_indefinite(item for item in counted if not is_clearly_positive_definite(item[1]))
 
@@ -122,3 +122,9 @@ def multiply_packed(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]
     halves = sum(half << shift for shift in shifts)
     sums = [sum(map(mul, row, long_rows), halves) for row in left]
     return [[(total >> shift & mask) - half for shift in shifts] for total in sums]
+
+
+# Kinds with forms that may be multiplied in another way.
+_PACKED: Mapping[type[AbstractEvidence], Callable[[Any, SwitchedSystem], Forms]] = {
+    FormsOnGraph: lambda evidence, system: evidence.forms(system, multiply_packed)
+}

@@ -77,7 +77,7 @@ ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for
 NUMBERS = {
     "constant-force": {"Q", "slope"},
     "graph": {"nodes", "denominator_log2", "vanishing", "multipliers"},
-    "parameter-quadratic": {"Q_low", "Q_high"},
+    "parameter-quadratic": {"low", "high", "denominator_log2"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
     "growing-sequence": {"steps", "doublings", "share"},

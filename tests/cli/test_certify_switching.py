@@ -136,7 +136,7 @@ def test_a_mode_that_must_be_left(tmp_path):
     file = tmp_path / "reports" / "failing-controller.cert.json"
     run("verify", file, path, cwd=tmp_path, code=0)
     document = json.loads(file.read_text())
-    document["statements"][0]["leaving"].append("works")
+    document["statements"][0]["stays"]["leaving"].append("works")
     file.write_text(json.dumps(document | {"id": content_id(document)}))
     forged = run("verify", file, path, cwd=tmp_path, code=1)
     assert "has no longest dwell time" in forged.stdout + forged.stderr

@@ -577,7 +577,7 @@ class TestLyingSolvers:
     def test_the_search(self, monkeypatch, name):
         def tell(lie):
             monkeypatch.setattr(
-                common_quadratic,
+                searches,
                 "find_common_quadratic",
                 lambda matrices, *rest, **options: lie(matrices.shape[1]),
             )

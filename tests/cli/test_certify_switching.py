@@ -141,7 +141,7 @@ def test_a_mode_that_must_be_left(tmp_path):
     forged = run("verify", file, path, cwd=tmp_path, code=1)
     assert "has no longest dwell time" in forged.stdout + forged.stderr
     run("report", path, "--out", "page.html", cwd=tmp_path, code=0)
-    assert "which must be left" in (tmp_path / "page.html").read_text()
+    assert "the machine itself must leave in time" in (tmp_path / "page.html").read_text()
     run("certify-switching", path, "--shortest-dwell", cwd=tmp_path, code=2)
 
 

@@ -35,7 +35,7 @@ def lint(session: nox.Session) -> None:
 
 @nox.session
 def environment(session: nox.Session) -> None:
-    """Install the package and what its tests and mypy need, once for all sessions that run in it."""
+    """Install the package and what tests and mypy need, once for all sessions that run in it."""
     install(session, ".[test]", "mypy", "scipy-stubs")
 
 

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
-from scipy.linalg import expm
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import (
@@ -103,13 +101,6 @@ class TestAssembly:
         assert "free motion" not in position
         assert "Contact is not lost" not in position
 
-    def test_assumptions_name_inputs_and_what_follows_for_them(self):
-        for law in (impedance("in", 0), Controller("p", PositionControl(), None, ())):
-            texts = " ".join(assembled(law).assumptions)
-            assert "All inputs are zero" in texts
-            assert "rest at different points" in texts
-            assert "bounded inputs keep the state bounded" in texts
-
     def test_a_command_in_free_motion_moves_the_axis_ever_further(self):
         """Bounded inputs keep motion, force and penetration bounded, but not the deflection."""
         losable = " ".join(assembled(impedance("in", 0)).assumptions)
@@ -170,16 +161,6 @@ class TestAssembly:
         with pytest.raises(AssemblyError, match="different states of their own"):
             assembled(impedance("a", 1), lagged)
 
-    def test_kinds_of_commands_are_not_mixed_unless_idle_states_are_declared(self):
-        free = Controller("p", PositionControl(), None, ())
-        with pytest.raises(AssemblyError, match="different states of their own"):
-            assembled(impedance("a", 0), free)
-
-    def test_force_control_of_a_damped_environment(self):
-        law = ProportionalForce(F("0.02"))
-        with pytest.raises(AssemblyError, match="damping"):
-            assembled(Controller("f", law, "hand", ("hand",)))
-
 
 # Thesis table 2.4, the nose: k1, k2, b and, with a name of its own, Maxwell's k, b.
 NOSE = KelvinBoltzmann(F("0.233"), F("0.972"), F("23.631"))
@@ -228,38 +209,6 @@ class TestViscoelastic:
             free[len(free) - len(contact) :] += contact
             found = polynomial(velocity_mode(MOTION, Admittance(Mt, Bt), law))
             assert list(free / free[0]) == found
-
-    @pytest.mark.parametrize("law", [NOSE, GEL], ids=["nose", "gel"])
-    def test_run_of_the_loop_with_the_force_as_the_thesis_writes_it(self, law):
-        """Integrate motion loop, admittance and ``F' = (eta1 delta + eta2 v - F)/eta3``."""
-        A = np.array(velocity_mode(MOTION, Admittance(F("0.01"), F(2)), law), dtype=float)
-        eta1, eta2, eta3 = law.eta if law is NOSE else (0.0, float(law.b), law.relaxation_time)
-        Ap, Cp = np.array(MOTION.A, dtype=float), np.array(MOTION.C, dtype=float)
-
-        def rate(_, x):
-            xp, vm, delta, force = x[:2], x[2], x[3], x[4]
-            v = Cp @ xp
-            dxp = Ap @ xp - np.array([0.0, 1.0]) * vm
-            dF = (eta1 * delta + eta2 * v - force) / eta3
-            return [*dxp, (force - 2.0 * vm) / 0.01, v, dF]
-
-        start = np.zeros(len(A))
-        start[:4] = [1e-3, 0.02, 0.1, 0.3]  # xp, vm, and 0.3 rad or a stretch of 0.3 rad
-        # Neither law lets the velocity through at once.
-        row, _ = law.react([F(0)] * 2, [[F(1), F(0)], [F(0), F(1)]][: len(law.states)])
-        row = row[: len(law.states)]
-        force = sum(float(c) * z for c, z in zip(row, start[3:], strict=True))
-        times = np.linspace(0, 3, 31)
-        run = solve_ivp(rate, (0, 3), [*start[:4], force], "Radau", times, rtol=1e-10, atol=1e-13)
-        ours = np.array([expm(A * t) @ start for t in times]).T
-        assert ours[:3] == pytest.approx(run.y[:3], abs=1e-8)
-        forces = sum(float(c) * z for c, z in zip(row, ours[3:], strict=True))
-        assert forces == pytest.approx(run.y[4], abs=1e-8)
-
-    def test_at_rest_the_nose_relaxes_with_its_time_constant(self):
-        """Errata 2.4: eta3 = 19.61 s; with the deflection held, the damper follows it so."""
-        rows = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), NOSE)
-        assert float(-1 / rows[-1][-1]) == pytest.approx(19.61079, rel=3e-5)
 
     def test_maxwell_has_no_deflection_among_its_states(self):
         """With it the loop had an eigenvalue zero: it creeps, and nothing drives it back."""

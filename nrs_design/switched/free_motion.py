@@ -9,8 +9,8 @@ from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
-from nrs_design.models.linear_form import coordinates
-from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.proof.channels import Output
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
@@ -133,7 +133,8 @@ def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
 
 def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
     """Yield the forces of what could pull, at the corners of their ranges."""
-    return force_rows(state.motion, state.names, could_pull(state.touched))
+    size = len(state.names)
+    return force_rows(state.motion.output(size), state.names, could_pull(state.touched))
 
 
 def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
@@ -152,17 +153,17 @@ def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
 
 
 def force_rows(
-    motion: Realization | JointMotionLoop, states: Sequence[str], touched: Sequence[Environment]
+    velocity: LinearForm, states: Sequence[str], touched: Iterable[Environment]
 ) -> Iterator[RationalMatrix]:
     """Yield the force, as a row over the states, of each corner of each contact.
 
     Parameters
     ----------
-    motion : Realization or JointMotionLoop
-        The motion loop, whose states come first.
+    velocity : LinearForm
+        Of the contact, as a form of the states.
     states : sequence of str
         Names of the states.
-    touched : sequence of Environment
+    touched : iterable of Environment
         All contacts.
     """
     unit = coordinates(len(states))
@@ -171,5 +172,22 @@ def force_rows(
         names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
         own = [unit[states.index(name)] for name in names]
         for law in environment.corners:
-            force, _ = law.react(motion.output(len(states)), own)
+            force, _ = law.react(velocity, own)
             yield RationalMatrix.from_rows([force])
+
+
+def outputs_of(
+    velocity: LinearForm, states: Sequence[str], touched: Iterable[Environment], limit: Fraction
+) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with what it is meant to keep, and velocity.
+
+    Parameters
+    ----------
+    velocity, states, touched
+        As for `force_rows`.
+    limit : Fraction
+        Of the force, in N m.
+    """
+    rows = tuple(force_rows(velocity, states, touched))
+    force = (Output("force", "N*m", rows, limit),) if rows else ()
+    return (*force, Output("velocity", "rad/s", (RationalMatrix.from_rows([velocity]),)))

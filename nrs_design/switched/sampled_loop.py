@@ -15,22 +15,22 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.linear_form import LinearForm, coordinates, zero
+from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.channels import Coupling
+from nrs_design.proof.channels import Coupling, Output
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
-from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.coupled import AxesCoupling, among_axes
-from nrs_design.switched.free_motion import could_pull
+from nrs_design.switched.free_motion import could_pull, force_rows, outputs_of
 from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
@@ -42,8 +42,6 @@ from nrs_design.switched.sampled_inputs import (
     SampledMode,
     channels_of,
     damping_of,
-    force_rows,
-    outputs_of,
     roundings_of,
 )
 from nrs_design.switched.sampled_motor import motor_box
@@ -97,8 +95,8 @@ def close_sampled_loop(
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
-    acting = could_pull(touched)
-    pulls = tuple(row for environment in acting for row in force_rows(frame.states, environment))
+    velocity = coordinates(len(frame.states))[frame.states.index("omega [rad/s]")]
+    pulls = tuple(force_rows(velocity, frame.states, could_pull(touched)))
     losable = None
     if free:
         flying = tuple(item.mode for item in free)
@@ -111,7 +109,9 @@ def close_sampled_loop(
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
-    outputs = outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else ()
+    outputs: tuple[Output, ...] = ()
+    if channels:
+        outputs = outputs_of(velocity, frame.states, touched, spec.limits.torque.exact)
     driven = None
     if coupling is None:
         driven = motor_command(spec, frame, channels)
@@ -126,13 +126,17 @@ def close_sampled_loop(
         couplings = tuple(
             couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
         )
+    resets: Iterable[tuple[str, str, RationalMatrix]] = ()
+    if spec.idle_states is not None and spec.idle_states.reset:
+        map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
+        resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
     return SwitchedSystem(
         spec.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
         texts,
-        assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),
+        assemble_switching(spec.switching, groups, resets),
         losable,
         frame.period,
         channels,
@@ -324,21 +328,3 @@ def _loss_of_contact(
     if any(e.preloaded or (e.parts and not e.each_losable) for e in touched):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"
-
-
-def _resets(
-    idle: IdleStatesSpec | None, design: ControllerDesign, frame: Frame
-) -> Iterator[tuple[str, str, RationalMatrix]]:
-    """Yield the switches that set reference and velocity of impedance controllers to zero."""
-    if idle is None or not idle.reset:
-        return
-    left = {"reference [rad]", "vm [rad/s]"}
-    unit = coordinates(len(frame.states))
-    rows = [
-        zero(len(unit)) if state in left else row
-        for state, row in zip(frame.states, unit, strict=True)
-    ]
-    for source in design.controllers:
-        for target in design.controllers:
-            if (source.law.commands, target.law.commands) == ("velocity", "position"):
-                yield source.name, target.name, RationalMatrix.from_rows(rows)

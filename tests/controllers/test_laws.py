@@ -12,12 +12,12 @@ from nrs_design.controllers.laws import (
     ProportionalDerivative,
     ProportionalForce,
 )
-from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.design.laws import LAW_DESIGNS
 from nrs_design.models.linear_form import combine, coordinates, zero
 from nrs_design.spec import ControllerSpec
 from nrs_design.spec.units import parse_unit
+from tests.controllers.roundings import linear_forms
 
 ONE = Fraction(1)
 

@@ -17,11 +17,11 @@ from nrs_design.controllers.sensor import (
     build_sensor,
     length_between,
 )
-from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.spec.sensor import SensorSpec
+from tests.controllers.roundings import linear_forms
 
 F = Fraction
 TOOL = {

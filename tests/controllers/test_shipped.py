@@ -10,12 +10,12 @@ from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.shipped import shipped_law, step_limits
-from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
+from tests.controllers.roundings import linear_forms
 from tests.support import FORCE_LIMIT, ROBOT, ROOT, SOFT_TISSUE
 
 PERIOD = Fraction(1, 500)

@@ -8,12 +8,11 @@ import pytest
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
 from nrs_design.controllers.step_analysis import (
     check_range,
-    linear_forms,
     rounded_terms,
 )
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import combine, coordinates
-from tests.controllers.roundings import term_counts
+from tests.controllers.roundings import linear_forms, term_counts
 from tests.exporters.programs import LAWS, law
 
 ONE = Fraction(1)
@@ -95,6 +94,6 @@ def test_what_is_not_linear_has_no_forms(kind, left):
     """Nor may it pass for something else."""
     made = of(Operation("z", kind, left, "x"))
     x, y = coordinates(2)
-    for ask in (lambda: linear_forms(made, 0, {"x": x, "y": y}), lambda: check_range(made)):
+    for ask in (lambda: rounded_terms(made, 0, {"x": x, "y": y}), lambda: check_range(made)):
         with pytest.raises(ValueError, match=f"not linear: {kind}"):
             ask()

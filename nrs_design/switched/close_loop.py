@@ -26,7 +26,7 @@ from nrs_design.switched.free_motion import (
     free_modes,
     lost_contact,
 )
-from nrs_design.switched.loop_assumptions import Assumed, assume_loop
+from nrs_design.switched.loop_assumptions import assume_loop
 from nrs_design.switched.shared_state import SharedState
 
 
@@ -64,26 +64,12 @@ def close_loop(
         parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(mode.name for mode in part) for key, part in parts.items()}
     modes = tuple(chain.from_iterable(parts.values()))
-    assumed = Assumed(
-        state.design,
-        state.touched,
-        state.boxes,
-        state.coordinates,
-        rules,
-        state.idle,
-        state.law,
-        given=state.given,
-        losable=losable is not None,
-        offset=state.offset,
-        free=free,
-        joint=state.joint,
-    )
     return SwitchedSystem(
         name,
         Time.CONTINUOUS,
         state.names,
         modes,
-        assume_loop(assumed),
+        assume_loop(state, rules, losable=losable is not None, free=free),
         assemble_switching(rules, groups, _resets(state)),
         losable,
         flights=among_modes(state, modes) if free else None,

@@ -127,13 +127,6 @@ class ListedLaw:
         """
         return [rounded[name] for name in self.counts[law.law.name][result]]
 
-    def takes_force(self, law: DiscreteLaw) -> bool:
-        """Tell whether a law uses the force, through anything but its filter."""
-        nothing = [Fraction(0)]
-        given = {v.name: [ONE] if v.name == "torque" else nothing for v in self.law.values}
-        terms = rounded_terms(self.law, self.law.modes.index(law.law.name), given)
-        return any(any(term.form) for result in terms.values() for term in result)
-
 
 @lru_cache(maxsize=32)
 def list_law(order: int, kinds: Kinds) -> ListedLaw:

@@ -294,9 +294,12 @@ class _Loop:
 
     def _corners(self, gains: RangedLaw, box: Box, name: str) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
-        law = gains.law
+        box = box.beside(gains.box)
+        _, values = next(box.named_values(name))
         ages = range(self.delays[0], self.delays[1] + 1)
-        if not self.frame.listed.takes_force(law):
+        # A law that takes no force has the same map at every age of its sample.
+        youngest, oldest = (self._rows(gains, age, Turn.BOTH, values) for age in self.delays)
+        if youngest == oldest:
             ages = ages[:1]
         for turn, delay in product(self.frame.turns, ages):
             if turn is Turn.MOTION:
@@ -304,7 +307,7 @@ class _Loop:
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
             late = f"{late}/{turn}" if turn is Turn.ADMITTANCE else late
             rows_at = partial(self._rows, gains, delay, turn)
-            for corner, rows in box.beside(gains.box).corners(rows_at, late):
+            for corner, rows in box.corners(rows_at, late):
                 size = len(self.frame.states)
                 yield SampledMode.of(corner, rows, size, begins=turn is Turn.BOTH)
 

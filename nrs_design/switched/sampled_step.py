@@ -49,28 +49,6 @@ class RoundedStep:
     shares: Mapping[str, Fraction]  # How far that is at most, over the size of the term
     terms: Mapping[str, tuple[Term, ...]]  # What each result is a sum of
 
-    @classmethod
-    def of(
-        cls,
-        listed: ListedLaw,
-        law: DiscreteLaw,
-        numbers: Mapping[str, Fraction],
-        given: Mapping[str, LinearForm],
-        rounded: Mapping[str, LinearForm],
-        shares: Mapping[str, Fraction],
-    ) -> RoundedStep:
-        """Compute it.
-
-        Parameters
-        ----------
-        listed, law, numbers, rounded, shares
-            As for the class.
-        given : mapping of str to LinearForm
-            Inputs and states by name; those that are missing are zero.
-        """
-        terms = listed.terms(law, numbers, given, rounded)
-        return cls(listed, law, numbers, rounded, shares, terms)
-
     def result(self, name: str, nothing: LinearForm) -> LinearForm:
         """Return a result with what it is rounded by."""
         forms = [term.form for term in self.terms[name]]

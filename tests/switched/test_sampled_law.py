@@ -102,10 +102,3 @@ def test_what_the_loop_has_not_is_no_state_of_it():
     listed = list_law(0, kinds_of([sprung]))
     assert {*listed.law.following} - {*listed.following} == {"commanded"}
     assert "T v" not in listed.all_counts
-
-
-def test_position_control_takes_no_force_but_through_a_filter():
-    for order in (0, 1):
-        listed = list_law(order, kinds_of([FORCE, POSITION]))
-        assert listed.takes_force(FORCE)
-        assert listed.takes_force(POSITION) == (order == 1)

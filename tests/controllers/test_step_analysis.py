@@ -26,20 +26,6 @@ def of(*operations, coefficients=(HALF,)):
     return StepLaw(("a",), (X, Y), (), coefficients, operations, {"o": last}, {}, {"o": "1"})
 
 
-def test_forms_by_hand():
-    """h (x - y) + y is (x + y)/2; a saturation changes no form."""
-    made = of(
-        Operation("d", "subtract", "x", "y"),
-        Operation("p", "multiply", "h", "d"),
-        Operation("s", "saturate", "h", "p"),
-        Operation("z", "add", "s", "y"),
-    )
-    x, y = coordinates(2)
-    forms = linear_forms(made, 0, {"x": x, "y": y})
-    assert forms["z"] == [Fraction(1, 2), Fraction(1, 2)]
-    assert forms["s"] == forms["p"]
-
-
 def test_counts_by_hand():
     """The difference of exact numbers rounds once for itself, then its product, then the sum."""
     made = of(

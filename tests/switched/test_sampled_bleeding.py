@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 
 from nrs_design.controllers.laws import IntegralForce, PositionControl
-from nrs_design.design.design import design_controllers
 from nrs_design.errors import SpecError
 from nrs_design.spec import parse_spec
-from nrs_design.spec.build_plant import build_plant
-from nrs_design.switched.assemble import assemble
 from nrs_design.switched.sampled_law import list_law
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of
+from tests.switched.support import assembled
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
 PI += "integral_gain: 0.5 rad/(N*m*s)}"
@@ -20,16 +18,10 @@ KM, TAU, T, K = 4.8417e-4, 0.0351, 2e-3, 43.0
 single = np.float32
 
 
-def assembled(controllers, more=SAMPLED):
-    spec = parse_spec(text_of(controllers, more=more))
-    plant = build_plant(spec)
-    return assemble(spec, plant, design_controllers(spec, plant), "deflection")
-
-
 @pytest.mark.parametrize("controller", ["position", "force", "insertion", "hold"])
 def test_a_period_is_that_of_processor_and_motor(controller):
     """The law as its lines in `controllers.step_law` have it, in doubles, and the motor exactly."""
-    system = assembled(BOTH | {"insertion": INSERTION, "hold": FORCE})
+    system = assembled(text_of(BOTH | {"insertion": INSERTION, "hold": FORCE}, more=SAMPLED))
     names = [state.split(" [")[0] for state in system.states]
     assert names == ["reference", "omega", "e before", "vm", "integral", "F 1 before", "delta"]
     Kp, D = float(single(2060 * 56.9706)), float(single(2060 / T))

@@ -105,15 +105,6 @@ def test_a_loop_that_is_stable_with_every_motor_is_not_refuted(tmp_path):
     assert certify(system, limits=Limits(optimize_rate=False)).verdict is Verdict.PROVED
 
 
-def test_without_inertia_there_is_no_velocity(tmp_path):
-    system = system_of(
-        tmp_path,
-        "{period: 2 ms, delay: 0}",
-        ("min: 0.01 kg*m^2, max: 1 kg*m^2", "min: 0 kg*m^2, max: 0 kg*m^2"),
-    )
-    assert system.order == 4
-
-
 def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
     sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
     system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: losable", sprung)

@@ -159,7 +159,8 @@ class AbstractLinearLaw(AbstractContactLaw):
 
     def simulate(self, motion: Motion) -> Array:
         """Return the reaction, by default of a law that is linear in its parameters."""
-        return self.sensitivities(motion).sum(axis=1)
+        found: Array = self.sensitivities(motion).sum(axis=1)
+        return found
 
     @property
     @abstractmethod

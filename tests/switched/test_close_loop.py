@@ -227,23 +227,6 @@ class TestViscoelastic:
         assert len(gel.modes) == 4
         assert gel.states == ("xp1", "xp2", "vm [rad/s]", "spring stretch [rad]")
 
-    @given(shares=st.tuples(*[st.fractions(0, 1, max_denominator=50)] * 3))
-    def test_anywhere_in_the_box_is_an_average_of_corners(self, shares):
-        """Affine in k1, k2 and 1/b, each for itself."""
-        k1, k2 = (i.low + t * (i.high - i.low) for i, t in zip(RANGES[:2], shares[:2], strict=True))
-        b = 1 / ((1 - shares[2]) / RANGES[2].low + shares[2] / RANGES[2].high)
-        law = KelvinBoltzmann(k1, k2, b)
-        inside = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), law)
-        weights = [
-            np.prod([t if up else 1 - t for t, up in zip(shares, ups, strict=True)])
-            for ups in product((False, True), repeat=3)
-        ]
-        corners = [mode.A.fractions() for mode in viscoelastic("nose").modes]
-        average = sum(
-            w * objects(*map(list, rows)) for w, rows in zip(weights, corners, strict=True)
-        )
-        assert (average == objects(*map(list, inside))).all()
-
     def test_what_is_not_touched_creeps_back_alone(self):
         system = viscoelastic("nose", "tool", "concha")
         assert system.states[4:] == (

@@ -17,7 +17,6 @@ from nrs_design.controllers.laws import (
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact import Elastic, KelvinVoigt
-from nrs_design.models.linear_form import combine
 from nrs_design.models.motion_loop import MotionLoop, realize
 from nrs_design.switched.modes import (
     position_mode,
@@ -94,25 +93,6 @@ class TestImpedance:
         assert rows[2] == [300 * F("1618.80"), 300 * F("28.416"), -200, 4300]
 
 
-def with_displacement(law, contact):
-    """The mode with q, the integral of vm, as its last state."""
-    plain = replace(law, Kt=F(0))
-    rows = [[*row, F(0)] for row in velocity_mode(MOTION, plain, contact)]
-    n, own = len(rows), MOTION.order
-    rows.append([*[F(0)] * n, F(0)])
-    if law.Mt:
-        rows[own][n] = -law.Kt / law.Mt
-        rows[n][own] = F(1)
-        return rows
-    # vm = (F - Kt q)/Bt: what F does to the motion loop, minus Kt times what it is of q.
-    force, _ = contact.react(MOTION.output(n + 1), [[F(int(j == n - 1)) for j in range(n + 1)]])
-    vm = combine((1 / law.Bt, force))
-    vm[n] = -law.Kt / law.Bt
-    rows[own - 1][n] = law.Kt / law.Bt
-    rows[n] = vm
-    return rows
-
-
 class TestSpring:
     """An admittance ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2)."""
 
@@ -130,13 +110,6 @@ class TestSpring:
         total = np.polyadd(np.polymul(den, own), np.polymul(num, contact))
         total = np.trim_zeros(total, "f")
         assert polynomial(rows) == [c / total[0] for c in total]
-
-    @given(*parts)
-    def test_the_displacement_is_no_state_of_its_own(self, Mt, Bt, Kt, k, b, massless):
-        """With q for a state the loop has an eigenvalue of zero more: where the reference is."""
-        law, contact = Admittance(F(0) if massless else Mt, Bt, Kt), KelvinVoigt(k, b)
-        rows = velocity_mode(MOTION, law, contact)
-        assert polynomial(with_displacement(law, contact)) == [*polynomial(rows), 0]
 
     @given(*parts)
     def test_reference_and_deflection_tell_the_same(self, Mt, Bt, Kt, k, b, massless):

@@ -46,7 +46,7 @@ def with_command(
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
-    if not plain or spec.coordinates != "deflection" or not state.touched:
+    if not plain or spec.coordinates != "deflection" or not state.environments:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something, in "
             "deflection coordinates",
@@ -69,11 +69,11 @@ def with_command(
         system,
         assumptions=(*system.assumptions, _ASSUMED),
         channels=(Channel(name, unit, bound, columns),),
-        outputs=outputs_of(velocity, system.states, state.touched, spec.limits.torque.exact),
+        outputs=outputs_of(velocity, system.states, state.environments, spec.limits.torque.exact),
     )
 
 
-def check_memory(touched: Sequence[Environment]) -> None:
+def check_memory(environments: Sequence[Environment]) -> None:
     """Refuse tissue that creeps, for which no bound under a command is stated.
 
     Raises
@@ -81,7 +81,7 @@ def check_memory(touched: Sequence[Environment]) -> None:
     AssemblyError
         If one of the contacts remembers.
     """
-    if any(environment.law.remembers for environment in touched):
+    if any(environment.law.remembers for environment in environments):
         raise AssemblyError(
             "a bound under a velocity command is stated on elastic and damped environments",
             remedy="leave disturbances out",

@@ -87,9 +87,9 @@ def _can_be_free(state: SharedState) -> bool:
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
-        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.touched)
-        and not any(e.parts and not e.each_losable for e in state.touched)
-        and bool(state.touched)
+        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.environments)
+        and not any(e.parts and not e.each_losable for e in state.environments)
+        and bool(state.environments)
     )
 
 
@@ -134,10 +134,10 @@ def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
 def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
     """Yield the forces of what could pull, at the corners of their ranges."""
     size = len(state.names)
-    return force_rows(state.motion.output(size), state.names, could_pull(state.touched))
+    return force_rows(state.motion.output(size), state.names, could_pull(state.environments))
 
 
-def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
+def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
     """Return whose forces tell where nothing pushes at a positive deflection.
 
     Without damping nothing lags, and there are none. Beside damped environments springs count, too:
@@ -145,15 +145,15 @@ def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
 
     Parameters
     ----------
-    touched : iterable of Environment
+    environments : iterable of Environment
         All that may be touched.
     """
-    touched = tuple(touched)
-    return touched if any("b" in e.parameters for e in touched) else ()
+    environments = tuple(environments)
+    return environments if any("b" in e.parameters for e in environments) else ()
 
 
 def force_rows(
-    velocity: LinearForm, states: Sequence[str], touched: Iterable[Environment]
+    velocity: LinearForm, states: Sequence[str], environments: Iterable[Environment]
 ) -> Iterator[RationalMatrix]:
     """Yield the force, as a row over the states, of each corner of each contact.
 
@@ -163,11 +163,11 @@ def force_rows(
         Of the contact, as a form of the states.
     states : sequence of str
         Names of the states.
-    touched : iterable of Environment
+    environments : iterable of Environment
         All contacts.
     """
     unit = coordinates(len(states))
-    for environment in touched:
+    for environment in environments:
         shared, *memories = environment.law.states
         names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
         own = [unit[states.index(name)] for name in names]
@@ -177,17 +177,20 @@ def force_rows(
 
 
 def outputs_of(
-    velocity: LinearForm, states: Sequence[str], touched: Iterable[Environment], limit: Fraction
+    velocity: LinearForm,
+    states: Sequence[str],
+    environments: Iterable[Environment],
+    limit: Fraction,
 ) -> tuple[Output, ...]:
     """Return the force at the corners of its ranges, with what it is meant to keep, and velocity.
 
     Parameters
     ----------
-    velocity, states, touched
+    velocity, states, environments
         As for `force_rows`.
     limit : Fraction
         Of the force, in N m.
     """
-    rows = tuple(force_rows(velocity, states, touched))
+    rows = tuple(force_rows(velocity, states, environments))
     force = (Output("force", "N*m", rows, limit),) if rows else ()
     return (*force, Output("velocity", "rad/s", (RationalMatrix.from_rows([velocity]),)))

@@ -56,7 +56,9 @@ def assume_loop(
         *_input_texts(loop, losable=losable),
         UNCOUPLED,
         *_contact_texts(loop),
-        *chain.from_iterable(_memories(e, alone=len(loop.touched) == 1) for e in loop.touched),
+        *chain.from_iterable(
+            _memories(e, alone=len(loop.environments) == 1) for e in loop.environments
+        ),
         *(_idle_texts(loop, loop.idle) if loop.idle is not None else ()),
         *_kept_texts(loop, losable=losable, free=free),
         *_switch_texts(loop, rules),
@@ -89,11 +91,11 @@ def _input_texts(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
 
 def _contact_texts(loop: SharedState) -> Iterator[Assumption]:
     yield from contact_texts(loop.design)
-    yield from at_once_texts(loop.touched)
+    yield from at_once_texts(loop.environments)
     which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield say(which, ranges_text(loop.touched))
+    yield say(which, ranges_text(loop.environments))
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
-    if integrated and all(e.law.has_rest for e in loop.touched):
+    if integrated and all(e.law.has_rest for e in loop.environments):
         yield say(f"at-a-switch.{loop.coordinates}")
 
 

@@ -36,10 +36,12 @@ from nrs_design.switched.sampled_law import (
     ONE,
     STEP,
     ListedLaw,
+    RoundedStep,
     kinds_of,
     list_law,
+    second,
+    short,
 )
-from nrs_design.switched.sampled_step import RoundedStep, second, short
 
 # The error of motion of a sample ago, and the reference of impedance controllers alone, in whose
 # place the error of motion is a state.

@@ -31,13 +31,12 @@ from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.free_motion import could_pull, force_rows, outputs_of
-from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.gain_box import GainBox, RangedLaw
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
-from nrs_design.switched.sampled_gains import RangedLaw
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
     channels_of,
@@ -90,13 +89,13 @@ def close_sampled_loop(
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
     frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
     loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
-    touched = plant.among(design.contacts)
-    loss = _loss_of_contact(spec, touched, design)
+    environments = plant.among(design.contacts)
+    loss = _loss_of_contact(spec, environments, design)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
     velocity = coordinates(len(frame.states))[frame.states.index("omega [rad/s]")]
-    pulls = tuple(force_rows(velocity, frame.states, could_pull(touched)))
+    pulls = tuple(force_rows(velocity, frame.states, could_pull(environments)))
     losable = None
     if free:
         flying = tuple(item.mode for item in free)
@@ -111,13 +110,13 @@ def close_sampled_loop(
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
     outputs: tuple[Output, ...] = ()
     if channels:
-        outputs = outputs_of(velocity, frame.states, touched, spec.limits.torque.exact)
+        outputs = outputs_of(velocity, frame.states, environments, spec.limits.torque.exact)
     driven = None
     if coupling is None:
         driven = motor_command(spec, frame, channels)
     texts: tuple[str, ...] = (
-        *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
-        *at_once_texts(touched),
+        *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, environments),
+        *at_once_texts(environments),
         *(() if driven is None else (driven.text,)),
     )
     couplings: tuple[Coupling, ...] = ()
@@ -161,13 +160,13 @@ def _flights(
     A controller without contacts takes no force: its modes are the same in contact and free, unless
     a force sample outlasts them.
     """
-    touched = {environment.name for environment in plant.environments}
+    known = {environment.name for environment in plant.environments}
     controllers = {c.name for c in design.controllers}
     touching, flying = [], []
     for name in (item.mode.name for item in motions):
         controller, _, rest = name.partition("/")
         where = rest.partition("/")[0]
-        if controller in controllers and where in touched:
+        if controller in controllers and where in known:
             touching.append(name)
         elif controller in controllers and (where == FREE or frame.remembers):
             flying.append(name)
@@ -262,7 +261,7 @@ class _Loop:
     motor: Box
 
     def in_contact(
-        self, controller: Controller, gains: RangedLaw, touched: Iterable[Environment]
+        self, controller: Controller, gains: RangedLaw, environments: Iterable[Environment]
     ) -> tuple[SampledMode, ...]:
         """Return the motions of a controller in all contacts, and in the air if it has none.
 
@@ -272,8 +271,8 @@ class _Loop:
         found: list[SampledMode] = []
         if not controller.contacts:
             found += self._corners(gains, self.motor, controller.name)
-            touched = touched if self.frame.remembers else ()
-        for environment in touched:
+            environments = environments if self.frame.remembers else ()
+        for environment in environments:
             own = Box({"k": environment.stiffness, "b": damping_of(environment)})
             name = f"{controller.name}/{environment.name}"
             found += self._corners(gains, own.beside(self.motor), name)
@@ -318,7 +317,7 @@ class _Loop:
 
 
 def _loss_of_contact(
-    spec: InteractionDesignSpec, touched: Iterable[Environment], design: ControllerDesign
+    spec: InteractionDesignSpec, environments: Iterable[Environment], design: ControllerDesign
 ) -> Loss:
     """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
     if any(c.law.commands == "position" for c in design.controllers):
@@ -328,6 +327,6 @@ def _loss_of_contact(
     sprung = {c.law.spring != 0 for c in design.controllers}
     if spec.contact == "kept" or (True in sprung and spec.contact is None):
         return "never"
-    if any(e.preloaded or (e.parts and not e.each_losable) for e in touched):
+    if any(e.preloaded or (e.parts and not e.each_losable) for e in environments):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"

@@ -156,8 +156,8 @@ class Frame:
         """Return the map of one period, below it the size of each rounding, and the slip.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
-        of a rounding, the size is at most that of its row below. The last row is the slip: by how
-        much the speed is not the one that the motor comes to under its command.
+        a rounding error is at most the size that its row below gives. The last row is the slip: the
+        difference between the speed and its steady state under the command.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What acts on a sampled loop from outside and from within, and what bounds are stated for."""
+"""Disturbances and rounding errors that act on the modes of a sampled loop."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ class ListedLaw:
     def off(
         self, law: DiscreteLaw, result: str, rounded: Mapping[str, LinearForm]
     ) -> list[LinearForm]:
-        """Return by what the terms of a result are off.
+        """Return the rounding errors of the terms of a result.
 
         Parameters
         ----------
@@ -175,7 +175,7 @@ def list_law(order: int, kinds: Kinds) -> ListedLaw:
 
 
 def own_results(law: StepLaw) -> Iterator[str]:
-    """Yield the results with a rounding of their own."""
+    """Yield the results whose rounding is counted apart from that of their terms."""
     yield from (operation.name for operation in law.operations if operation.rounding == "own")
 
 
@@ -191,7 +191,7 @@ def short(size: Fraction) -> Fraction:
 
 
 def second(name: str) -> str:
-    """Name the part of second order of what a term of the reference does to the command."""
+    """Name the second-order rounding error that a term of the reference adds to the command."""
     return f"u of {name}"
 
 

@@ -70,7 +70,60 @@ class Lagged(AbstractCompliantLaw):
         return None
 
 
+POSITION = Controller("p", PositionControl(), None, ())
+PUSHING = Controller("f", ProportionalForce(F("0.02")), "soft", ("soft",))
+
+
 class TestAssembly:
+    @pytest.mark.parametrize(
+        ("controller", "options", "said", "unsaid"),
+        [
+            (
+                impedance("in", 0),
+                {},
+                (
+                    "While in is active, nothing but soft is touched.",
+                    "the force may jump",
+                    "bounded, but not how far the axis moves away while contact is lost",
+                    "all modes in contact then rest at one point",
+                ),
+                ("free motion",),
+            ),
+            (
+                impedance("in", 0),
+                {"coordinates": "force"},
+                ("not physical in lasting contact", "free motion is not one of the modes"),
+                (),
+            ),
+            (
+                impedance("in", 0),
+                {"contact": "kept"},
+                (
+                    "free motion is not one of the modes",
+                    "bounded inputs keep the state bounded;",
+                    "all modes then rest at one point",
+                ),
+                (),
+            ),
+            (
+                POSITION,
+                {},
+                ("All inputs are zero", "rest at different points"),
+                ("free motion", "Contact is not lost"),
+            ),
+            (
+                PUSHING,
+                {},
+                ("Contact is not lost while force is controlled",),
+                ("free motion is not one of the modes",),
+            ),
+        ],
+    )
+    def test_what_is_taken_for_granted(self, controller, options, said, unsaid):
+        texts = " ".join(assembled(controller, **options).assumptions)
+        assert all(text in texts for text in said)
+        assert not any(text in texts for text in unsaid)
+
     def test_one_mode_for_each_corner(self):
         system = assembled(impedance("in", "0.01", ("soft", "hand")), impedance("out", "0.1"))
         corners = [f"in/hand/k-{k}/b-{b}" for k, b in product(("min", "max"), repeat=2)]
@@ -86,29 +139,6 @@ class TestAssembly:
         position = assembled(Controller("p", PositionControl(), None, ()))
         assert position.states == ("xp1", "xp2")
         assert position.modes[0].A.fractions() == [list(row) for row in MOTION.A]
-
-    def test_assumptions_name_what_they_depend_on(self):
-        deflection = " ".join(assembled(impedance("in", 0)).assumptions)
-        force = " ".join(assembled(impedance("in", 0), coordinates="force").assumptions)
-        assert "While in is active, nothing but soft is touched." in deflection
-        assert "the force may jump" in deflection
-        assert "not physical in lasting contact" in force
-        kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)
-        assert "free motion is not one of the modes" in kept
-        assert "free motion is not one of the modes" in force
-        assert "free motion" not in deflection
-        position = " ".join(assembled(Controller("p", PositionControl(), None, ())).assumptions)
-        assert "free motion" not in position
-        assert "Contact is not lost" not in position
-
-    def test_a_command_in_free_motion_moves_the_axis_ever_further(self):
-        """Bounded inputs keep motion, force and penetration bounded, but not the deflection."""
-        losable = " ".join(assembled(impedance("in", 0)).assumptions)
-        assert "bounded, but not how far the axis moves away while contact is lost" in losable
-        assert "all modes in contact then rest at one point" in losable
-        kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)
-        assert "bounded inputs keep the state bounded;" in kept
-        assert "all modes then rest at one point" in kept
 
     def test_a_spring_is_said_and_what_it_does_not_bound(self):
         law = Admittance(F("0.01"), F(2), F("0.5"))
@@ -141,12 +171,6 @@ class TestAssembly:
         assert caught.value.at == ("controllers", "in", "Kt")
         with pytest.raises(AssemblyError, match="gel, which has no rest position"):
             viscoelastic("gel", law=sprung.law)
-
-    def test_loss_of_contact_is_named_for_force_control_too(self):
-        law = ProportionalForce(F("0.02"))
-        texts = " ".join(assembled(Controller("f", law, "soft", ("soft",))).assumptions)
-        assert "Contact is not lost while force is controlled" in texts
-        assert "free motion is not one of the modes" not in texts
 
     def test_mixed_inertia(self):
         with pytest.raises(AssemblyError, match="different states of their own") as caught:

@@ -22,9 +22,10 @@ from nrs_design.spec import SwitchingSpec
 from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.free_motion import (
     adds_free_motion,
-    among_modes,
+    flights_among,
     free_modes,
     lost_contact,
+    pulls_of,
 )
 from nrs_design.switched.loop_assumptions import assume_loop
 from nrs_design.switched.shared_state import SharedState
@@ -64,6 +65,10 @@ def close_loop(
         parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(mode.name for mode in part) for key, part in parts.items()}
     modes = tuple(chain.from_iterable(parts.values()))
+    flights = None
+    if free:
+        names = (mode.name for mode in modes)
+        flights = flights_among(names, state.environments, pulls_of(state))
     return SwitchedSystem(
         name,
         Time.CONTINUOUS,
@@ -72,7 +77,7 @@ def close_loop(
         assume_loop(state, rules, losable=losable is not None, free=free),
         assemble_switching(rules, groups, _resets(state)),
         losable,
-        flights=among_modes(state, modes) if free else None,
+        flights=flights,
     )
 
 

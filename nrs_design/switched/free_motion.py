@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
@@ -36,15 +37,26 @@ def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
         if contact == "losable":
             raise _not_losable("")
         return None
-    free = [
-        mode for controller in state.design.controllers for mode in free_modes(controller, state)
-    ]
-    return Contact(
-        tuple(free),
-        tuple(_pulls(state)),
-        required=contact == "losable",
-        loss=say("contact-lost.surface"),
-    )
+    free = chain.from_iterable(free_modes(c, state) for c in state.design.controllers)
+    return lost_on_surface(free, pulls_of(state), contact)
+
+
+def lost_on_surface(
+    free: Iterable[Mode], pulls: Iterable[RationalMatrix], contact: str | None
+) -> Contact:
+    """Return that contact is lost where the tissue ends, or would have to pull.
+
+    Parameters
+    ----------
+    free : iterable of Mode
+        In force without contact.
+    pulls : iterable of RationalMatrix
+        Forces of what could pull.
+    contact : {"losable", "kept"} or None
+        What the spec asks for.
+    """
+    losable, loss = contact == "losable", say("contact-lost.surface")
+    return Contact(tuple(free), tuple(pulls), required=losable, loss=loss)
 
 
 def adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
@@ -115,26 +127,40 @@ def free_modes(controller: Controller, state: SharedState) -> Iterator[Mode]:
         yield Mode(corner, RationalMatrix.from_rows(rows))
 
 
-def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
+def flights_among(
+    names: Iterable[str],
+    environments: Iterable[Environment],
+    pulls: Iterable[RationalMatrix],
+    controllers: Container[str] = (),
+) -> Flights:
     """Tell which modes are free motion, where it is among them.
 
     Parameters
     ----------
-    state : SharedState
+    names : iterable of str
         Of all modes.
-    modes : iterable of Mode
-        All of them; a controller without contacts has neither a mode in contact nor a free one.
+    environments : iterable of Environment
+        All contacts.
+    pulls : iterable of RationalMatrix
+        Forces of what could pull.
+    controllers : container of str
+        Those whose modes without contact are free motion, too.
     """
-    named = [mode.name.split("/") for mode in modes]
-    touching = tuple("/".join(name) for name in named if len(name) > 1 and name[1] != FREE)
-    flying = tuple("/".join(name) for name in named if len(name) > 1 and name[1] == FREE)
-    return Flights(touching, flying, tuple(_pulls(state)))
+    known = {environment.name for environment in environments}
+    touching, flying = [], []
+    for name in names:
+        controller, where = (*name.split("/"), "")[:2]
+        if where in known:
+            touching.append(name)
+        elif where == FREE or controller in controllers:
+            flying.append(name)
+    return Flights(tuple(touching), tuple(flying), tuple(pulls))
 
 
-def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
+def pulls_of(state: SharedState) -> Iterator[RationalMatrix]:
     """Yield the forces of what could pull, at the corners of their ranges."""
-    size = len(state.names)
-    return force_rows(state.motion.output(size), state.names, could_pull(state.environments))
+    velocity = state.motion.output(len(state.names))
+    return force_rows(velocity, state.names, could_pull(state.environments))
 
 
 def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:

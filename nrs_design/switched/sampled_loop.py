@@ -18,7 +18,6 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
 from nrs_design.proof.channels import Coupling, Output
-from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
@@ -26,11 +25,16 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.coupled import AxesCoupling, among_axes
-from nrs_design.switched.free_motion import could_pull, force_rows, outputs_of
+from nrs_design.switched.free_motion import (
+    could_pull,
+    flights_among,
+    force_rows,
+    lost_on_surface,
+    outputs_of,
+)
 from nrs_design.switched.gain_box import GainBox, RangedLaw
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
@@ -96,15 +100,15 @@ def close_sampled_loop(
     motions = tuple(chain.from_iterable(parts.values()))
     velocity = coordinates(len(frame.states))[frame.states.index("omega [rad/s]")]
     pulls = tuple(force_rows(velocity, frame.states, could_pull(environments)))
-    losable = None
+    losable = flights = None
     if free:
-        flying = tuple(item.mode for item in free)
-        losable = Contact(
-            flying, pulls, required=spec.contact == "losable", loss=say("contact-lost.surface")
-        )
-    flights = None
+        losable = lost_on_surface((item.mode for item in free), pulls, spec.contact)
     if loss.startswith("anywhere"):
-        flights = _flights(frame, plant, design, motions, pulls)
+        names = (item.mode.name for item in motions)
+        # A controller without contacts takes no force: its modes are the same in contact and free,
+        # unless a force sample outlasts them.
+        resting = [c.name for c in design.controllers] if frame.remembers else ()
+        flights = flights_among(names, plant.environments, pulls, resting)
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(channels_of(spec, design.sensor.lasting, every))
@@ -146,31 +150,6 @@ def close_sampled_loop(
         axes=None if coupling is None or not channels else coupling.count,
         flights=flights,
     )
-
-
-def _flights(
-    frame: Frame,
-    plant: Plant,
-    design: ControllerDesign,
-    motions: Iterable[SampledMode],
-    pulls: tuple[RationalMatrix, ...],
-) -> Flights:
-    """Tell which modes are free motion, where it is among them.
-
-    A controller without contacts takes no force: its modes are the same in contact and free, unless
-    a force sample outlasts them.
-    """
-    known = {environment.name for environment in plant.environments}
-    controllers = {c.name for c in design.controllers}
-    touching, flying = [], []
-    for name in (item.mode.name for item in motions):
-        controller, _, rest = name.partition("/")
-        where = rest.partition("/")[0]
-        if controller in controllers and where in known:
-            touching.append(name)
-        elif controller in controllers and (where == FREE or frame.remembers):
-            flying.append(name)
-    return Flights(tuple(touching), tuple(flying), pulls)
 
 
 def _motions(

@@ -322,8 +322,6 @@ SHARED = {
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.
     *("add", "multiply", "is_stable", "read_integer", "content_id", "too_stiff"),
-    # In continuous time, and sampled.
-    "force_rows",
 }
 
 

@@ -190,7 +190,7 @@ def _assemble_continuous(
             )
         from nrs_design.switched.commanded import check_memory, with_command
 
-        check_memory(state.touched)
+        check_memory(state.environments)
         system = with_command(system, state, spec)
     if (coupling := _coupling_of(spec, plant, scale)) is not None:
         from nrs_design.switched.coupled import couple_axes

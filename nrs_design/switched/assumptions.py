@@ -87,20 +87,20 @@ def contact_texts(design: ControllerDesign) -> Iterator[Assumption]:
             yield say("contacts.controller", bound, controller=c.name, contacts=contacts)
 
 
-def ranges_text(touched: Iterable[Environment]) -> str:
+def ranges_text(environments: Iterable[Environment]) -> str:
     """Say in which ranges the parameters of environments are."""
     return "; ".join(
         f"{environment.name}: {name} in {_ends(interval)} {unit}"
-        for environment in touched
+        for environment in environments
         for (name, interval), unit in zip(
             environment.parameters.items(), environment.law.units(rotational=True), strict=True
         )
     )
 
 
-def at_once_texts(touched: Iterable[Environment]) -> Iterator[Assumption]:
+def at_once_texts(environments: Iterable[Environment]) -> Iterator[Assumption]:
     """Say what is taken for granted where several environments are touched at once."""
-    for environment in touched:
+    for environment in environments:
         if environment.parts:
             parts = " and ".join(part.name for part in environment.parts)
             how = "one-side" if environment.each_losable else "at-once"

@@ -23,10 +23,10 @@ from nrs_design.switched.assumptions import (
     ranges_text,
     rule_texts,
 )
+from nrs_design.switched.gain_box import RangedLaw
 from nrs_design.switched.joint import motor_text
 from nrs_design.switched.loop_assumptions import kept_by_laws
 from nrs_design.switched.sampled_frame import Frame
-from nrs_design.switched.sampled_gains import RangedLaw
 from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS
 
 # Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
@@ -56,7 +56,7 @@ def assume_sampled(
     gains: Mapping[str, RangedLaw],
     design: ControllerDesign,
     loss: Loss,
-    touched: Sequence[Environment],
+    environments: Sequence[Environment],
 ) -> tuple[Assumption, ...]:
     """Say what holds for the sampled loop of an interaction design.
 
@@ -76,7 +76,7 @@ def assume_sampled(
         With the contacts.
     loss : str
         Where contact is lost.
-    touched : sequence of Environment
+    environments : sequence of Environment
         All contacts.
     """
     reset = spec.idle_states is not None and spec.idle_states.reset
@@ -95,7 +95,7 @@ def assume_sampled(
         *_placed_texts(frame, design, reset=reset),
         UNCOUPLED,
         *contact_texts(design),
-        say("tissue.linear", ranges_text(touched)),
+        say("tissue.linear", ranges_text(environments)),
         *_loss_texts(loss, design, frame),
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
         *rule_texts(spec.switching, "controller"),

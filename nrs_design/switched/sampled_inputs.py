@@ -1,4 +1,4 @@
-"""What acts on a sampled loop from outside and from within, and what bounds are stated for."""
+"""Disturbances and rounding errors that act on the modes of a sampled loop."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ from fractions import Fraction
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
-from nrs_design.models.linear_form import LinearForm, coordinates, zero
-from nrs_design.proof.channels import Channel, Output, Rounding
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import DisturbancesSpec
-from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 
@@ -134,45 +133,6 @@ def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
     """
     n, named = len(frame.states), [channel.name for channel in channels]
     return [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
-
-
-def outputs_of(
-    states: Sequence[str], touched: Sequence[Environment], limit: Fraction
-) -> tuple[Output, ...]:
-    """Return the force at the corners of its ranges, with what it is meant to keep, and omega.
-
-    Parameters
-    ----------
-    states : sequence of str
-        Names of the states of all modes.
-    touched : sequence of Environment
-        What pushes.
-    limit : Fraction
-        Of the force, in N m.
-    """
-    rows = tuple(row for environment in touched for row in force_rows(states, environment))
-    speed = coordinates(len(states))[states.index("omega [rad/s]")]
-    omega = RationalMatrix.from_rows([speed])
-    force = (Output("force", "N*m", rows, limit),) if rows else ()
-    return (*force, Output("velocity", "rad/s", (omega,)))
-
-
-def force_rows(states: Sequence[str], environment: Environment) -> Iterator[RationalMatrix]:
-    """Yield the force of a spring and damper at the corners of its ranges, as a row on the state.
-
-    Parameters
-    ----------
-    states : sequence of str
-        Names of the states of all modes.
-    environment : Environment
-        What pushes.
-    """
-    size, speed = len(states), states.index("omega [rad/s]")
-    box = Box({"k": environment.stiffness, "b": damping_of(environment)})
-    for _, values in box.named_values(""):
-        row = zero(size)
-        row[speed], row[-1] = values["b"], values["k"]
-        yield RationalMatrix.from_rows([row])
 
 
 def damping_of(environment: Environment) -> Interval:

@@ -87,7 +87,7 @@ def with_saturation(
     start = Start(
         "contact force",
         "N*m",
-        tuple(_rest(system.states, state.touched, low_pass)),
+        tuple(_rest(system.states, state.environments, low_pass)),
         None if isinstance(wanted, str) else wanted.exact,
     )
     texts = (
@@ -129,7 +129,7 @@ def _drive(mode: Mode, Kp: Fraction) -> Fraction:
 
 
 def _rest(
-    states: Sequence[str], touched: Sequence[Environment], low_pass: LowPass | None
+    states: Sequence[str], environments: Sequence[Environment], low_pass: LowPass | None
 ) -> list[RationalMatrix]:
     """Return the states at rest with a unit of force, at every stiffness.
 
@@ -141,7 +141,7 @@ def _rest(
     sensed = [zero(len(states)), *([settled] if lags else [])]
     return [
         _column(combine((1 / stiffness, unit[-1]), (Fraction(1), shown)))
-        for environment in touched
+        for environment in environments
         for _, stiffness in environment.stiffness.ends
         for shown in sensed
     ]

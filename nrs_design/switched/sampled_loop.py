@@ -23,8 +23,9 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
+from nrs_design.spec.operation import Operation
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
@@ -50,7 +51,7 @@ from nrs_design.switched.sampled_motor import motor_box
 
 
 def close_sampled_loop(
-    spec: InteractionDesignSpec,
+    operation: Operation,
     sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
@@ -67,7 +68,7 @@ def close_sampled_loop(
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
+    operation : Operation
         With the name, the rules of switching and what is said of contact.
     sampling : SamplingSpec
         Its processor.
@@ -90,10 +91,10 @@ def close_sampled_loop(
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
     ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
-    frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
+    frame = _frame(operation.idle, sampling, design, [item.law for item in laws.values()], slowed)
     loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
     touched = plant.among(design.contacts)
-    loss = _loss_of_contact(spec, touched, design)
+    loss = _loss_of_contact(operation.contact, touched, design)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -103,20 +104,22 @@ def close_sampled_loop(
     if free:
         flying = tuple(item.mode for item in free)
         losable = Contact(
-            flying, pulls, required=spec.contact == "losable", loss=say("contact-lost.surface")
+            flying, pulls, required=operation.contact == "losable", loss=say("contact-lost.surface")
         )
     flights = None
     if loss.startswith("anywhere"):
         flights = _flights(frame, plant, design, motions, pulls)
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
-    channels = tuple(channels_of(spec, design.sensor.lasting, every))
-    outputs = outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else ()
+    channels = tuple(
+        channels_of(operation.disturbances, operation.largest_angle, design.sensor.lasting, every)
+    )
+    outputs = outputs_of(frame.states, touched, operation.torque) if channels else ()
     driven = None
     if coupling is None:
-        driven = motor_command(spec, frame, channels)
+        driven = motor_command(operation.largest_command, operation.command, frame, channels)
     texts: tuple[str, ...] = (
-        *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
+        *assume_sampled(operation, sampling, ranges, frame, laws, design, loss, touched),
         *at_once_texts(touched),
         *(() if driven is None else (driven.text,)),
     )
@@ -127,12 +130,12 @@ def close_sampled_loop(
             couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
         )
     return SwitchedSystem(
-        spec.name,
+        operation.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
         texts,
-        assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),
+        assemble_switching(operation.switching, groups, _resets(operation.idle, design, frame)),
         losable,
         frame.period,
         channels,
@@ -225,13 +228,13 @@ def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> Ra
 
 
 def _frame(
-    spec: InteractionDesignSpec,
+    idle: IdleStatesSpec | None,
     sampling: SamplingSpec,
     design: ControllerDesign,
     laws: Sequence[DiscreteLaw],
     ranges: ActuatorRanges,
 ) -> Frame:
-    if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
+    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
         raise AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
@@ -244,7 +247,7 @@ def _frame(
         tuple(laws),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
-        None if spec.idle_states is None else idle_share(spec.idle_states, outer),
+        None if idle is None else idle_share(idle, outer),
         _turns(sampling),
     )
 
@@ -311,15 +314,15 @@ class _Loop:
 
 
 def _loss_of_contact(
-    spec: InteractionDesignSpec, touched: Iterable[Environment], design: ControllerDesign
+    contact: str | None, touched: Iterable[Environment], design: ControllerDesign
 ) -> Loss:
     """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
     if any(c.law.commands == "position" for c in design.controllers):
         # Force control rests in the air where it does in contact: at what is commanded.
-        lost = spec.contact == "losable"
+        lost = contact == "losable"
         return "anywhere under force control" if lost else "not under force control"
     sprung = {c.law.spring != 0 for c in design.controllers}
-    if spec.contact == "kept" or (True in sprung and spec.contact is None):
+    if contact == "kept" or (True in sprung and contact is None):
         return "never"
     if any(e.preloaded or (e.parts and not e.each_losable) for e in touched):
         return "not modelled"

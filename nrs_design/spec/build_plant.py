@@ -11,7 +11,7 @@ from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.operation import Operation
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity
 
@@ -28,8 +28,8 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     return Plant(
         ranges.nominal,
         tuple(build_environments(spec)),
+        ranges,
         loop,
-        None if ranges.fixed else ranges,
         None if load is None else load.exact,
     )
 
@@ -48,12 +48,12 @@ def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
             yield touch_at_once(parts, losable=losable)
 
 
-def build_operation(spec: InteractionDesignSpec) -> Operation:
+def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
     """Take from a spec what closing its loop needs beside plant and gains."""
     limits, disturbed, goals = spec.limits, spec.disturbances, spec.goals
     angle = None if disturbed is None else disturbed.largest_angle
     wanted = None if goals is None else goals.initial_force
-    return Operation(
+    return OperatingConditions(
         spec.name,
         spec.switching,
         spec.contact,

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
     from nrs_design.spec.coupling import CouplingSpec
-    from nrs_design.spec.operation import Operation
+    from nrs_design.spec.operating import OperatingConditions
     from nrs_design.switched.coupled import AxesCoupling
     from nrs_design.switched.gain_box import GainBox
     from nrs_design.switched.shared_state import SharedState
@@ -146,15 +146,15 @@ def assemble(
         If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
-    from nrs_design.spec.build_plant import build_operation
+    from nrs_design.spec.build_plant import build_conditions
     from nrs_design.switched.gain_box import gain_boxes
 
     _check_scale(scale)
-    operation = build_operation(spec)
-    plant = plant.scaled(scale, operation.touched)
-    boxes = gain_boxes(operation.gains, design, scale)
-    coupling = _coupling_of(operation.coupling, plant, scale)
-    if operation.sampling is not None:
+    conditions = build_conditions(spec)
+    plant = plant.scaled(scale, conditions.touched)
+    boxes = gain_boxes(conditions.gains, design, scale)
+    coupling = _coupling_of(conditions.coupling, plant, scale)
+    if conditions.sampling is not None:
         if coordinates != "deflection":
             raise AssemblyError(
                 f"coordinates {coordinates!r} do not apply to the sampled loop",
@@ -162,16 +162,16 @@ def assemble(
             )
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
-        sampling = operation.sampling
-        system = close_sampled_loop(operation, sampling, plant, design, boxes, coupling)
+        sampling = conditions.sampling
+        system = close_sampled_loop(conditions, sampling, plant, design, boxes, coupling)
     elif coordinates in ("deflection", "force"):
-        state = state_of(operation, plant, design, coordinates, boxes)
-        system = _assemble_continuous(operation, plant, state, coupling)
+        state = state_of(conditions, plant, design, coordinates, boxes)
+        system = _assemble_continuous(conditions, plant, state, coupling)
     else:
         raise AssemblyError(
             f"unknown coordinates {coordinates!r}", remedy="choose deflection or force"
         )
-    period = None if operation.sampling is None else operation.sampling.outer
+    period = None if conditions.sampling is None else conditions.sampling.outer
     sensed = sensor_texts(
         design.sensor, period, disturbed=bool(system.channels) and period is not None
     )
@@ -187,12 +187,12 @@ def assemble(
 
 
 def _assemble_continuous(
-    operation: Operation, plant: Plant, state: SharedState, coupling: AxesCoupling | None
+    conditions: OperatingConditions, plant: Plant, state: SharedState, coupling: AxesCoupling | None
 ) -> SwitchedSystem:
     from nrs_design.switched.close_loop import close_loop
 
-    system = close_loop(operation.name, state, operation.switching, operation.contact)
-    if operation.disturbances is not None:
+    system = close_loop(conditions.name, state, conditions.switching, conditions.contact)
+    if conditions.disturbances is not None:
         if state.coordinates != "deflection":
             raise AssemblyError(
                 "bounds on what disturbs do not apply to force coordinates",
@@ -201,16 +201,16 @@ def _assemble_continuous(
         from nrs_design.switched.commanded import check_memory, with_command
 
         check_memory(state.touched)
-        system = with_command(system, state, operation.disturbances, operation.torque)
+        system = with_command(system, state, conditions.disturbances, conditions.torque)
     if coupling is not None:
         from nrs_design.switched.coupled import couple_axes
 
         system = couple_axes(system, coupling)
-    if operation.constant_force:
+    if conditions.constant_force:
         from nrs_design.switched.constant_force import with_constant_force
 
         system = with_constant_force(system)
-    if operation.initial_force is not None:
+    if conditions.initial_force is not None:
         if state.coordinates != "deflection":
             raise AssemblyError(
                 "decay although signals saturate is shown in deflection coordinates: a motion "
@@ -220,12 +220,12 @@ def _assemble_continuous(
             )
         from nrs_design.switched.saturation import with_saturation
 
-        system = with_saturation(system, operation, plant.actuator, state)
+        system = with_saturation(system, conditions, plant.actuator, state)
     return system
 
 
 def state_of(
-    operation: Operation,
+    conditions: OperatingConditions,
     plant: Plant,
     design: ControllerDesign,
     coordinates: str,
@@ -235,7 +235,7 @@ def state_of(
 
     Parameters
     ----------
-    operation : Operation
+    conditions : OperatingConditions
         With what idle states do, and the offset of force controllers.
     plant, design, coordinates
         As for `assemble`.
@@ -250,7 +250,7 @@ def state_of(
     from nrs_design.switched.shared_state import shared_state
 
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    idle, offset = operation.idle, operation.offset
+    idle, offset = conditions.idle, conditions.offset
     return shared_state(plant, loop, design, coordinates, idle=idle, offset=offset, boxes=boxes)
 
 

@@ -14,7 +14,7 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec.operation import Bounds
+from nrs_design.spec.operating import Bounds
 from nrs_design.switched.assumption import say
 from nrs_design.switched.free_motion import force_rows
 from nrs_design.switched.shared_state import SharedState

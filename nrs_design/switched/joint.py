@@ -27,9 +27,9 @@ class Joint:
     @classmethod
     def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
         """Return the joint of a plant, or None where its motor is a point and carries no load."""
-        if plant.actuator_ranges is None and plant.load_inertia is None:
+        ranges = plant.actuator_ranges
+        if ranges.fixed and plant.load_inertia is None:
             return None
-        ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
         return cls(motion, ranges, plant.load_inertia)
 
     @property

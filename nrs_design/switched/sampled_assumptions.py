@@ -13,7 +13,7 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.operation import Operation
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import (
@@ -50,7 +50,7 @@ _LOST: Mapping[str, str] = MappingProxyType(
 
 
 def assume_sampled(
-    operation: Operation,
+    conditions: OperatingConditions,
     sampling: SamplingSpec,
     ranges: ActuatorRanges,
     frame: Frame,
@@ -63,7 +63,7 @@ def assume_sampled(
 
     Parameters
     ----------
-    operation : Operation
+    conditions : OperatingConditions
         With the rules of switching.
     sampling : SamplingSpec
         Its processor.
@@ -80,8 +80,8 @@ def assume_sampled(
     touched : sequence of Environment
         All contacts.
     """
-    reset = operation.idle is not None and operation.idle.reset
-    disturbed = operation.disturbances is not None
+    reset = conditions.idle is not None and conditions.idle.reset
+    disturbed = conditions.disturbances is not None
     # Sentences that do not hold for the disturbances of the spec begin with that.
     but = "-disturbed" if disturbed else ""
     inputs = "sampled-position" if "under force control" in loss else "sampled"
@@ -99,13 +99,13 @@ def assume_sampled(
         say("tissue.linear", ranges_text(touched)),
         *_loss_texts(loss, design, frame),
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
-        *rule_texts(operation.switching, "controller"),
+        *rule_texts(conditions.switching, "controller"),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
         *command_texts(design.command),
         *_retuned_texts(gains),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
-        _angle_text(operation.largest_angle),
-        say(f"not-quantized.{'sensor' if operation.sensed else 'sampled'}{but}"),
+        _angle_text(conditions.largest_angle),
+        say(f"not-quantized.{'sensor' if conditions.sensed else 'sampled'}{but}"),
     )
 
 

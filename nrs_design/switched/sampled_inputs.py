@@ -13,7 +13,7 @@ from nrs_design.models.linear_form import LinearForm, coordinates, zero
 from nrs_design.proof.channels import Channel, Output, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.spec.operation import Bounds
+from nrs_design.spec.operating import Bounds
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 

@@ -183,4 +183,4 @@ def list_law(order: int, kinds: Kinds) -> ListedLaw:
 
 def own_results(law: StepLaw) -> Iterator[str]:
     """Yield the results with a rounding of their own."""
-    yield from (operation.name for operation in law.operations if operation.rounding == "own")
+    yield from (conditions.name for conditions in law.operations if conditions.rounding == "own")

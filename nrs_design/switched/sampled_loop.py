@@ -25,7 +25,7 @@ from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
-from nrs_design.spec.operation import Operation
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
@@ -51,7 +51,7 @@ from nrs_design.switched.sampled_motor import motor_box
 
 
 def close_sampled_loop(
-    operation: Operation,
+    conditions: OperatingConditions,
     sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
@@ -68,7 +68,7 @@ def close_sampled_loop(
 
     Parameters
     ----------
-    operation : Operation
+    conditions : OperatingConditions
         With the name, the rules of switching and what is said of contact.
     sampling : SamplingSpec
         Its processor.
@@ -89,12 +89,12 @@ def close_sampled_loop(
     """
     _check_periods(sampling)
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
-    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
+    ranges = plant.actuator_ranges
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
-    frame = _frame(operation.idle, sampling, design, [item.law for item in laws.values()], slowed)
+    frame = _frame(conditions.idle, sampling, design, [item.law for item in laws.values()], slowed)
     loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
     touched = plant.among(design.contacts)
-    loss = _loss_of_contact(operation.contact, touched, design)
+    loss = _loss_of_contact(conditions.contact, touched, design)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -104,7 +104,10 @@ def close_sampled_loop(
     if free:
         flying = tuple(item.mode for item in free)
         losable = Contact(
-            flying, pulls, required=operation.contact == "losable", loss=say("contact-lost.surface")
+            flying,
+            pulls,
+            required=conditions.contact == "losable",
+            loss=say("contact-lost.surface"),
         )
     flights = None
     if loss.startswith("anywhere"):
@@ -112,14 +115,14 @@ def close_sampled_loop(
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
     channels = tuple(
-        channels_of(operation.disturbances, operation.largest_angle, design.sensor.lasting, every)
+        channels_of(conditions.disturbances, conditions.largest_angle, design.sensor.lasting, every)
     )
-    outputs = outputs_of(frame.states, touched, operation.torque) if channels else ()
+    outputs = outputs_of(frame.states, touched, conditions.torque) if channels else ()
     driven = None
     if coupling is None:
-        driven = motor_command(operation.largest_command, operation.command, frame, channels)
+        driven = motor_command(conditions.largest_command, conditions.command, frame, channels)
     texts: tuple[str, ...] = (
-        *assume_sampled(operation, sampling, ranges, frame, laws, design, loss, touched),
+        *assume_sampled(conditions, sampling, ranges, frame, laws, design, loss, touched),
         *at_once_texts(touched),
         *(() if driven is None else (driven.text,)),
     )
@@ -130,12 +133,12 @@ def close_sampled_loop(
             couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
         )
     return SwitchedSystem(
-        operation.name,
+        conditions.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
         texts,
-        assemble_switching(operation.switching, groups, _resets(operation.idle, design, frame)),
+        assemble_switching(conditions.switching, groups, _resets(conditions.idle, design, frame)),
         losable,
         frame.period,
         channels,

@@ -19,7 +19,7 @@ Bounds = Mapping[str, tuple[Fraction, str]]
 
 
 @dataclass(frozen=True, slots=True)
-class Operation:
+class OperatingConditions:
     """Processor, switching, contact and bounds of a loop; numbers are exact and in SI units."""
 
     name: str  # Of the spec

@@ -11,7 +11,7 @@ from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
-from nrs_design.spec.operating import OperatingConditions
+from nrs_design.spec.operating import OperatingConditions, Preload
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity
 
@@ -71,8 +71,16 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         {name: controller.gains() for name, controller in spec.controllers.items()},
         goals is not None and goals.constant_force is not None,
         wanted.exact if isinstance(wanted, Quantity) else wanted,
+        dict(_preloads(spec)),
         spec.sensor is not None,
     )
+
+
+def _preloads(spec: InteractionDesignSpec) -> Iterator[tuple[str, Preload]]:
+    for name, environment in spec.environments.items():
+        law, ends = environment.nonlinear, environment.preload_range
+        if law is not None and ends is not None and name in spec.touched:
+            yield name, (law, ends[0].text, ends[1].text)
 
 
 def _interval(written: RangedQuantity) -> Interval:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from nrs_design.models.contact.law import AbstractNonlinearLaw
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
     from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.gain_fields import GainSpec
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 # Inputs by name: how large each gets, and its unit.
 Bounds = Mapping[str, tuple[Fraction, str]]
+# A law that is known within a range of deflections, and the ends of that as they are written.
+Preload = tuple["type[AbstractNonlinearLaw]", str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,4 +42,5 @@ class OperatingConditions:
     gains: Mapping[str, Mapping[str, GainSpec]]  # Declared, by controller and name
     constant_force: bool  # A goal is about a constant force
     initial_force: Fraction | Literal["largest"] | None  # Goal about saturation, in N m
+    preloads: Mapping[str, Preload]  # Of the environments that are touched
     sensed: bool  # The spec describes a sensor

@@ -180,7 +180,7 @@ def assemble(
         *sensed,
         *logic_texts(spec),
         *identified_texts(spec),
-        *preload_texts(spec, scale),
+        *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
     )
     return replace(system, assumptions=texts)

@@ -21,10 +21,10 @@ from nrs_design.switched.assumptions import (
     UNCOUPLED,
     command_texts,
     contact_texts,
+    motor_text,
     ranges_text,
     rule_texts,
 )
-from nrs_design.switched.joint import motor_text
 from nrs_design.switched.loop_assumptions import kept_by_laws
 from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_gains import RangedLaw

@@ -193,8 +193,3 @@ class AbstractInteractionSpec(SpecModel):
         return any(not self.environments[name].fixed for name in self.touched) or any(
             gain.ranged for c in self.controllers.values() for gain in c.gains().values()
         )
-
-    @property
-    def flies_like_a_mode(self) -> bool:
-        """Whether free motion is a mode like others, which no rule of switching is about."""
-        return self.contact == "losable" and any(c.sprung for c in self.controllers.values())

@@ -120,13 +120,6 @@ def test_a_hand_that_lets_go_is_proved(tmp_path):
     assert "contact lost and made again at any time" in result.stdout
 
 
-def test_only_for_impedance_control(tmp_path):
-    text = (ROOT / "specs/neuroboscope/force-limit.nrs.yaml").read_text()
-    (tmp_path / "force.nrs.yaml").write_text(text + "goals: {min_transparency: 0.5}\n")
-    result = run("check", "force.nrs.yaml", cwd=tmp_path, code=2)
-    assert "min_transparency is for impedance controllers" in result.stderr
-
-
 def test_a_spring_in_the_admittance(tmp_path):
     """Kt of 5 N m/rad beside a hand of 25: at rest it gives way by 25/30; the proof takes it up."""
     text = HANDS_ON.read_text().replace("{min: 0.1 kg*m^2, max: 3 kg*m^2}", "0.1 kg*m^2")

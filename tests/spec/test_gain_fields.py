@@ -54,11 +54,6 @@ def test_range_of_a_designed_gain() -> None:
     assert ends(gain) == [2, 3]
 
 
-def test_a_range_of_one_value_is_none() -> None:
-    one = "Mt: {nominal: 0.01 kg*m^2, range: [0.01 kg*m^2, 0.01 kg*m^2]}"
-    assert not insertion(spoiled(IMPEDANCE, MT, one)).Mt.ranged
-
-
 def test_listing() -> None:
     text = spoiled(spoiled(IMPEDANCE, MT, f"Mt: {HEAVY}"), BT, BT[:-1] + f", range: {RANGE}}}")
     rows = {row.name: row for row in describe.describe(interaction(text))}
@@ -109,14 +104,6 @@ def test_inertia_cannot_reach_zero(nominal: str) -> None:
     assert "one state less" in error.message
     assert "positive ends" in str(error.remedy)
     assert (error.line, error.column) == place_of(text, "0 kg*m^2, 1")
-
-
-def test_dwell_time_excludes_gains_that_move() -> None:
-    text = spoiled(IMPEDANCE, "switching: arbitrary", "switching: {dwell_time: 1 s}")
-    interaction(text)
-    error = refusal(spoiled(text, MT, f"Mt: {HEAVY}"))
-    assert "a dwell time beside the range of Mt of 'insertion'" in error.message
-    assert (error.line, error.column) == place_of(text, "1 s}")
 
 
 RANGED_GAINS = [

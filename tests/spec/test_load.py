@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 import nrs_design.spec
 from nrs_design.errors import SpecError
 from nrs_design.spec import (
-    InteractionDesignSpec,
     SwitchedSystemSpec,
     load_spec,
     parse_spec,
@@ -90,12 +89,6 @@ def test_equal_hashes_mean_equal_documents(one: object, other: object) -> None:
     same = hash_meaning(to_data(written(one))) == hash_meaning(to_data(written(other)))
     # The order of keys counts, as it does in the text.
     assert same is (json.dumps(one) == json.dumps(other))
-
-
-def test_kinds(tmp_path: Path) -> None:
-    path = tmp_path / "a.nrs.yaml"
-    path.write_text(IMPEDANCE)
-    assert isinstance(load_spec(path), InteractionDesignSpec)
 
 
 def test_error_names_the_file(tmp_path: Path) -> None:

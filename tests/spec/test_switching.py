@@ -7,7 +7,6 @@ import pytest
 from nrs_design.spec.switching import DwellTime, SwitchingSpec, parse_dwell_time
 
 from .samples import (
-    FORCE,
     IMPEDANCE,
     SWITCHED,
     interaction,
@@ -58,12 +57,6 @@ def test_arbitrary_has_no_rules() -> None:
     assert switched(SWITCHED).switching == SwitchingSpec()
     assert str(switched(SWITCHED).switching) == "arbitrary"
     assert str(switched(SAMPLE).switching) == "dwell time 2.76 s, 2 allowed transitions"
-
-
-def test_states_of_different_sizes_are_linked_by_resets() -> None:
-    spec = switched(UNEQUAL)
-    assert spec.dimension == 2
-    assert [mode.dimension for mode in spec.modes] == [2, 1]
 
 
 def test_only_allowed_switches_need_a_reset() -> None:
@@ -181,14 +174,6 @@ def test_refuses_dwell_times(text: str, said: str) -> None:
     assert said in message_of(lambda: parse_dwell_time(text))
 
 
-def test_discrete_time_counts_steps() -> None:
-    discrete = spoiled(SWITCHED, "continuous", "discrete")
-    text = spoiled(discrete, "arbitrary", "{dwell_time: 2 s}")
-    error = refusal(text)
-    assert "'2 s' is not a dwell time in discrete time, expected steps" in error.message
-    assert (error.line, error.column) == place_of(text, "2 s}")
-
-
 @pytest.mark.parametrize(
     ("old", "new", "at", "said"),
     [
@@ -214,12 +199,6 @@ def test_damping_moves_too() -> None:
     ranged = "{nominal: 0.5 N*m*s/rad, range: [0 N*m*s/rad, 1 N*m*s/rad]}"
     error = refusal(spoiled(text, "damping: 0.5 N*m*s/rad", f"damping: {ranged}"))
     assert "beside the range of environment 'hand'" in error.message
-
-
-def test_position_and_force_may_be_ordered() -> None:
-    rules = "{dwell_time: 1 s, transitions: [[position, force], [force, position]]}"
-    spec = interaction(spoiled(FORCE, "switching: arbitrary", f"switching: {rules}"))
-    assert spec.switching.transitions == (("position", "force"), ("force", "position"))
 
 
 DISCRETE = spoiled(SWITCHED, "continuous", "discrete")

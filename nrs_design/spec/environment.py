@@ -23,6 +23,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
+from nrs_design.spec.model import optional
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
@@ -66,12 +67,11 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 
     model: str
 
-    lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
-    range_covers: Coverage | None = Field(default=None, description=_COVERS)
-    linearized_about: Title | None = Field(
-        default=None,
-        description="deflections that a nonlinear law was linearized about, in words: the ranges "
-        "hold small motions there",
+    lever_arm: LeverArm | None = optional(_LEVER_ARM)
+    range_covers: Coverage | None = optional(_COVERS)
+    linearized_about: Title | None = optional(
+        "deflections that a nonlinear law was linearized about, in words: the ranges "
+        "hold small motions there"
     )
 
     def _quantities(self) -> Iterator[tuple[Location, tuple[RangedQuantity, Quantity | None]]]:

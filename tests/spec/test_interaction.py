@@ -14,7 +14,7 @@ from nrs_design.spec.describe import describe
 from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
 from tests.support import SOFT_TISSUE
 
-from .samples import FORCE, IMPEDANCE, interaction, place_of, refusal, spoiled
+from .samples import FORCE, IMPEDANCE, assert_refused, interaction, place_of, refusal, spoiled
 
 
 def test_reads_quantities_and_defaults() -> None:
@@ -255,10 +255,7 @@ def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -
     ],
 )
 def test_refuses_force_specs(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(FORCE, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(FORCE, old, new), said, at)
 
 
 def test_a_controller_is_told_its_own_keys_only() -> None:

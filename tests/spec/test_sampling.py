@@ -126,7 +126,6 @@ def test_a_wrong_key_is_told_by_the_one_that_is_meant(word, meant):
     assert f"did you mean {meant}? keys here are period, delay, " in message
 
 
-SAMPLED = "\nsampling: {period: 2 ms, delay: 0}\n"
 OUTER = "\nsampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"
 
 

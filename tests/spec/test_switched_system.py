@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from .samples import SWITCHED, numbers, place_of, refusal, spoiled, switched
+from .samples import SWITCHED, assert_refused, numbers, refusal, spoiled, switched
 
 
 def test_reads_dayawansa_and_martin_exactly() -> None:
@@ -61,10 +61,7 @@ def test_numbers_may_name_modes() -> None:
     ],
 )
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(SWITCHED, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(SWITCHED, old, new), said, at)
 
 
 @pytest.mark.parametrize("modes", ["[]", "{}", "a"])

@@ -9,6 +9,7 @@ from nrs_design.spec.switching import DwellTime, SwitchingSpec, parse_dwell_time
 from .samples import (
     IMPEDANCE,
     SWITCHED,
+    assert_refused,
     interaction,
     message_of,
     place_of,
@@ -110,10 +111,7 @@ def test_rules_of_controllers() -> None:
     ],
 )
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(SAMPLE, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(SAMPLE, old, new), said, at)
 
 
 @pytest.mark.parametrize("rules", ["{}", "slow", "Arbitrary", "[a, b]", "[]"])
@@ -132,10 +130,7 @@ def test_refuses_what_is_no_rule(rules: str) -> None:
     ],
 )
 def test_refuses_sizes_that_do_not_fit(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(UNEQUAL, old, new)
-    error = refusal(text)
-    assert said in error.message
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(UNEQUAL, old, new), said, at)
 
 
 def test_missing_reset_is_reported_at_the_transition() -> None:
@@ -182,10 +177,7 @@ def test_refuses_dwell_times(text: str, said: str) -> None:
     ],
 )
 def test_refuses_rules_of_controllers(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(PAIR, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(PAIR, old, new), said, at)
 
 
 def test_a_range_that_is_not_touched_does_not_matter() -> None:
@@ -235,10 +227,7 @@ def test_one_longest_time_for_all() -> None:
     ],
 )
 def test_refuses_times_that_cannot_be_kept(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(spoiled(DISCRETE, "arbitrary", STAYS), old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(spoiled(DISCRETE, "arbitrary", STAYS), old, new), said, at)
 
 
 def test_a_mode_alone_cannot_be_left() -> None:

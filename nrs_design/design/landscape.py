@@ -18,7 +18,7 @@ from nrs_design.design.impedance_optimum import (
     impedance_cost,
     optimize_impedance,
 )
-from nrs_design.design.polynomials import roots
+from nrs_design.design.polynomials import all_roots
 from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 
@@ -82,7 +82,7 @@ def _abscissa(requirement: Requirement, Mt: FloatArray, Bt: FloatArray) -> Float
     found = []
     for corner in requirement.nominal:
         closed = requirement.loops(corner, Mt.ravel(), Bt.ravel()).closed
-        found.append(np.nanmax(roots(closed).real, axis=-1))
+        found.append(np.nanmax(all_roots(closed).real, axis=-1))
     return np.asarray(np.max(found, axis=0).reshape(Mt.shape), dtype=np.float64)
 
 

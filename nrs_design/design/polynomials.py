@@ -89,12 +89,12 @@ def squared(polynomials: FloatArray) -> FloatArray:
 
 def frequencies(polynomials: FloatArray) -> FloatArray:
     """Return the square roots of the positive roots of polynomials in x; NaN fills the rows."""
-    found = roots(polynomials)
+    found = all_roots(polynomials)
     real = (np.abs(found.imag) <= _REAL * np.abs(found)) & (found.real > 0)
     return np.sqrt(np.where(real, found.real, np.nan))
 
 
-def roots(polynomials: FloatArray) -> ComplexArray:
+def all_roots(polynomials: FloatArray) -> ComplexArray:
     """Return all roots as eigenvalues of companion matrices; NaN fills the rows."""
     count, degree = len(polynomials), polynomials.shape[1] - 1
     found = np.full((count, degree), np.nan, dtype=np.complex128)

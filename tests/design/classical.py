@@ -21,7 +21,7 @@ def loop_margins(loop, Mt, Bt):
         to_control(tf), returnall=True
     )
     phases = [(math.radians(d), w) for d, w in zip(degrees, at_phase, strict=True) if w > 0]
-    S = 1 / (1 + frequency_response(tf, np.geomspace(1e-2, 1e5, 100_001)))
+    S = 1 / (1 + frequency_response(tf, np.geomspace(1e-2, 1e5, 400_001)))
     return SimpleNamespace(
         sensitivity_peak=max(1.0, np.abs(S).max()),
         gain_margin=min(

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from nrs_design.design.impedance import ImpedanceLoop, stabilizes
+from nrs_design.design.impedance import ImpedanceLoop
 from nrs_design.design.loop_family import LoopFamily
 from nrs_design.design.loops import Loops
 from nrs_design.design.transfer import TransferFunction, frequency_response, to_control
@@ -156,16 +156,3 @@ def test_margins_in_viscoelastic_contact(contact, Mt):
     assert margins.disk_margin == pytest.approx(1 / np.abs(S - 0.5).max(), rel=1e-6)
     # All parameters grow alike: the stiffness is the loop gain.
     assert stiffness_limit(loop, Mt, 2.15) == pytest.approx(43.0 * margins.gain_margin, rel=1e-6)
-
-
-def test_stiffness_limit_in_viscoelastic_contact_by_bisection():
-    def stable(k):
-        contact = KelvinBoltzmann(0.5 * k, k, 0.1 * k)
-        return bool(stabilizes(ImpedanceLoop(EXACT, contact), 0.01, 1.04))
-
-    low, high = 1.0, 1e4
-    for _ in range(60):
-        middle = math.sqrt(low * high)
-        low, high = (middle, high) if stable(middle) else (low, middle)
-    loop = ImpedanceLoop(EXACT, KelvinBoltzmann(1.0, 2.0, 0.2))
-    assert stiffness_limit(loop, 0.01, 1.04) == pytest.approx(low, rel=1e-6)

@@ -106,39 +106,25 @@ def test_is_frozen() -> None:
 IMPEDANCE_FAULTS = [
     ("name: sample", "name: Sample", "Sample", "not a name"),
     ("name: sample", "name: ../etc/passwd", "../etc", "not a name"),
-    ("name: sample", "name: " + "a" * 65, "aaaa", "not a name"),
     ("name: sample", "name: [a]", "[a]", "single value"),
     ("name: sample", "nane: sample", "nane", "did you mean name?"),
     ("time_constant", "tau", "tau", "did you mean time_constant? keys here are command, gain, "),
-    ("{velocity: 8", "{speed: 8", "speed", "did you mean velocity?"),
-    (" torque: 0.3", " max_torque: 0.3", "max_torque", "did you mean torque?"),
     ("damping_ratio:", "zeta:", "zeta", "did you mean damping_ratio?"),
     ("stiffness: 747", "k: 747", "k: ", "did you mean stiffness?"),
-    ("lever_arm:", "arm:", "arm:", "did you mean lever_arm?"),
     ("type: impedance", "kind: impedance", "insertion", "write type for kind"),
     ("name: sample", 'name: a\ntitle: "a\\nb"', '"a\\nb"', "one line"),
     ("name: sample", 'name: a\ntitle: "\\e[31m"', '"\\e', "printable"),
     ("name: sample", "name: a\ntitle: " + "t" * 201, "ttt", "201 characters"),
     ("  gain: 4.8417e-4 rad/s/rpm\n", "", "actuator", "`actuator.gain` is missing"),
-    ("4.8417e-4 rad/s/rpm", "4.8417e-4 rad/s", "4.8417e-4", "write '4.8417e-4 rad/s/rpm'"),
     ("4.8417e-4 rad/s/rpm", "0.145 rad/s/V", "0.145", "commands in V, and the motor takes rpm"),
     ("  gain: 4.8417e-4 rad/s/rpm\n", "  command: W\n  gain: 1 rad/s/V\n", "W", "'rpm', 'V', 'A'"),
     ("0.0351 s", "0 s", "0 s", "must be positive"),
-    ("0.0351 s", "-0.0351 s", "-0.0351", "must be positive"),
-    ("0.0351 s", "0.0351", "0.0351", "has no unit"),
     ("0.0351 s", "{value: 1 s}", "{value", "`actuator.time_constant.nominal` is missing"),
-    ("time_constant", "time_constnat", "time_constnat", "did you mean time_constant?"),
     ("0.707", "1", "1\n  settling", "between 0 and 1"),
     ("0.707", "0", "0\n  settling", "between 0 and 1"),
-    ("0.707", "true", "true", "truth value"),
-    ("0.707", "0.7 rad", "0.7 rad", "not a number"),
-    ("limits: {", "limits: [", "[velocity", "not closed"),
-    ("8 deg/s", "8 rpm", "8 rpm", "never converted"),
-    ("2 Hz", "2 1/s", "2 1/s", "write '2 Hz'"),
     ("model: elastic", "model: elastc", "elastc", "did you mean elastic?"),
     ("    model: elastic\n", "", "soft", "`environments.soft.model` is missing"),
     ("747.1461 N/m", "43 N*m/rad", "43 N*m/rad", "remove lever_arm"),
-    ("747.1461 N/m", "43 N*m", "43 N*m", "write '43 N*m/rad'"),
     ("747.1461 N/m", "0 N/m", "0 N/m", "must be positive"),
     (
         "747.1461 N/m",
@@ -146,21 +132,14 @@ IMPEDANCE_FAULTS = [
         "700 N/m",
         "outside the range",
     ),
-    ("747.1461 N/m", "{nominal: 1 N/m, range: [2 N/m, 1 N/m]}", "[2 N/m", "below its start"),
     ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m]}", "[1 N/m]", "[lowest, highest]"),
     ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N*m/rad, 2 N*m/rad]}", "[1 N*m", "one unit"),
     ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m, 2 s]}", "2 s", "not a stiffness"),
-    ("747.1461 N/m", "{nominal: 1 N/m, rang: [1 N/m, 2 N/m]}", "rang:", "did you mean range?"),
     ("747.1461 N/m", "{range: [1 N/m, 2 N/m]}", "{range", "nominal` is missing"),
-    ("747.1461 N/m", "[1 N/m]", "[1 N/m]", "expected a mapping"),
     ("    lever_arm: 0.24 m\n", "", "747.1461", "there is no lever_arm"),
-    ("0.24 m", "0.24 rad", "0.24 rad", "not a length"),
     ("    damping: 0.5 N*m*s/rad\n", "", "hand", "damping` is missing"),
-    ("0.5 N*m*s/rad", "-1 N*m*s/rad", "-1 N*m", "zero or positive"),
     ("0.5 N*m*s/rad", "5 N*s/m", "5 N*s/m", "there is no lever_arm"),
-    ("  soft:", "  1:", "1:", "not text"),
     ("  soft:", "  'so ft':", "'so ft'", "not a name"),
-    ("  hand:", "  soft:", "soft:\n    model: kelvin", "there twice"),
     ("type: impedance", "type: admittance", "admittance", "write impedance: it is called"),
     ("type: impedance", "type: [impedance]", "[impedance]", "write one of impedance"),
     ("type: impedance", "type: impedence", "impedence", "did you mean impedance?"),
@@ -187,7 +166,6 @@ IMPEDANCE_FAULTS = [
     ),
     ("    environment: soft\n", "", "insertion", "environment` is missing"),
     ("Mt: 0.01 kg*m^2", "Mt: -0.01 kg*m^2", "-0.01", "zero or positive"),
-    ("Mt: 0.01 kg*m^2", "Mt: 0.01 kg", "0.01 kg", "square of its lever arm"),
     ("Mt: 0.01 kg*m^2", "Mt: {min: 1 kg*m^2}", "{min: 1 kg", "max` is missing"),
     ("Mt: 0.01 kg*m^2", "Mt: {min: 2 kg*m^2, max: 1 kg*m^2}", "1 kg*m^2}", "below min"),
     ("min: 0.1 N*m*s/rad", "min: 0 N*m*s/rad", "0 N*m*s/rad, max", "must be positive"),
@@ -235,11 +213,7 @@ IMPEDANCE_FAULTS = [
 
 @pytest.mark.parametrize(("old", "new", "at", "said"), IMPEDANCE_FAULTS)
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(IMPEDANCE, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    if "not closed" not in said:
-        assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(IMPEDANCE, old, new), said, at)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from nrs_design.proof.channels import Channel
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.operating import Bounds
 from nrs_design.switched.assumption import say
 from nrs_design.switched.free_motion import outputs_of
 from nrs_design.switched.shared_state import SharedState
@@ -23,7 +23,7 @@ _ASSUMED = say("inputs.command")
 
 
 def with_command(
-    system: SwitchedSystem, state: SharedState, spec: InteractionDesignSpec
+    system: SwitchedSystem, state: SharedState, disturbances: Bounds, torque: Fraction
 ) -> SwitchedSystem:
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.
 
@@ -36,8 +36,10 @@ def with_command(
         The loop without inputs, in deflection coordinates.
     state : SharedState
         Of its modes.
-    spec : InteractionDesignSpec
-        With the disturbances, and the limit of the torque.
+    disturbances : mapping
+        The command, and how large it gets.
+    torque : Fraction
+        Limit of the contact force about the pivot, in N m.
 
     Raises
     ------
@@ -46,7 +48,7 @@ def with_command(
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
-    if not plain or spec.coordinates != "deflection" or not state.environments:
+    if not plain or state.coordinates != "deflection" or not state.environments:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something, in "
             "deflection coordinates",
@@ -60,8 +62,7 @@ def with_command(
             remedy="leave command out, or Kt",
             at=("controllers", sprung, "Kt"),
         )
-    assert spec.disturbances is not None  # it is asked for
-    ((name, (bound, unit)),) = spec.disturbances.bounds().items()
+    ((name, (bound, unit)),) = disturbances.items()
     free = () if system.contact is None else system.contact.free
     columns = tuple(_column(mode, state.motion) for mode in (*system.modes, *free))
     velocity = state.motion.output(system.order)
@@ -69,7 +70,7 @@ def with_command(
         system,
         assumptions=(*system.assumptions, _ASSUMED),
         channels=(Channel(name, unit, bound, columns),),
-        outputs=outputs_of(velocity, system.states, state.environments, spec.limits.torque.exact),
+        outputs=outputs_of(velocity, system.states, state.environments, torque),
     )
 
 

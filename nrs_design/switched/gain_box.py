@@ -14,7 +14,7 @@ from nrs_design.errors import AssemblyError, DesignError
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec import GainSpec
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 
@@ -89,14 +89,14 @@ def _text(end: Fraction) -> str:
 
 
 def gain_boxes(
-    spec: InteractionDesignSpec, design: ControllerDesign, scale: Fraction
+    declared: Mapping[str, Mapping[str, GainSpec]], design: ControllerDesign, scale: Fraction
 ) -> Mapping[str, GainBox]:
     """Return the box of every controller, by name.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
-        With the ranges.
+    declared : mapping
+        The gains of each controller, with their ranges.
     design : ControllerDesign
         The nominal gains, inside their ranges.
     scale : Fraction
@@ -109,8 +109,9 @@ def gain_boxes(
     """
     boxes = {}
     for controller in design.controllers:
-        declared, law = spec.controllers[controller.name].gains(), controller.law
-        ranges = {gain: gain_interval(declared[gain], law.gains[gain]) for gain in declared}
+        law = controller.law
+        gains = declared[controller.name].items()
+        ranges = {name: gain_interval(gain, law.gains[name]) for name, gain in gains}
         box = GainBox(law, {**GainBox.point(law).ranges, **ranges})
         boxes[controller.name] = box.scaled(scale, controller.name)
     return boxes

@@ -13,8 +13,7 @@ from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.sampling import DisturbancesSpec
+from nrs_design.spec.operating import Bounds
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 
@@ -58,37 +57,37 @@ class SampledMode:
 
 
 def channels_of(
-    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[SampledMode]
+    disturbances: Bounds | None,
+    largest_angle: Fraction | None,
+    off: Fraction,
+    motions: Sequence[SampledMode],
 ) -> Iterator[Channel]:
     """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
-        With the disturbances, if it declares any.
+    disturbances : mapping or None
+        What is declared to disturb, and how much.
+    largest_angle : Fraction or None
+        Of what the law holds as single-precision numbers, in rad.
     off : Fraction
         How far the force signal may be off for long, in N m.
     motions : sequence of SampledMode
         All modes, those of free motion last.
     """
-    if spec.disturbances is None:
+    if disturbances is None:
         return
-    bounds = spec.disturbances.bounds() | _angle_bounds(spec.disturbances)
+    bounds = dict(disturbances)
+    if largest_angle is not None:
+        # An angle of the law is read from a count, times a coefficient.
+        for name, n in (("rounding of the reference", 1), ("rounding of the angle", 3)):
+            bounds[name] = (rounding_share(n) * largest_angle, "rad")
     if off:
         bounds["force error"] = (off, "N*m")
     for i, name in enumerate(INPUTS):
         if name in bounds:
             bound, unit = bounds[name]
             yield Channel(name, unit, bound, tuple(motion.column(i) for motion in motions))
-
-
-def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, str]]:
-    """Return how far angles of the law are off; one is read from a count, times a coefficient."""
-    if disturbances.largest_angle is None:
-        return {}
-    largest = disturbances.largest_angle.not_below
-    counts = {"rounding of the reference": 1, "rounding of the angle": 3}
-    return {name: (rounding_share(n) * largest, "rad") for name, n in counts.items()}
 
 
 def roundings_of(

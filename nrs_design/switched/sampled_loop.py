@@ -22,8 +22,9 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import at_once_texts
 from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
@@ -51,7 +52,7 @@ from nrs_design.switched.sampled_motor import motor_box
 
 
 def close_sampled_loop(
-    spec: InteractionDesignSpec,
+    conditions: OperatingConditions,
     sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
@@ -68,7 +69,7 @@ def close_sampled_loop(
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
+    conditions : OperatingConditions
         With the name, the rules of switching and what is said of contact.
     sampling : SamplingSpec
         Its processor.
@@ -89,12 +90,12 @@ def close_sampled_loop(
     """
     _check_periods(sampling)
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
-    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
+    ranges = plant.actuator_ranges
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
-    frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
+    frame = _frame(conditions.idle, sampling, design, [item.law for item in laws.values()], slowed)
     loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
     environments = plant.among(design.contacts)
-    loss = _loss_of_contact(spec, environments, design)
+    loss = _loss_of_contact(conditions.contact, environments, design)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -102,7 +103,7 @@ def close_sampled_loop(
     pulls = tuple(force_rows(velocity, frame.states, could_pull(environments)))
     losable = flights = None
     if free:
-        losable = lost_on_surface((item.mode for item in free), pulls, spec.contact)
+        losable = lost_on_surface((item.mode for item in free), pulls, conditions.contact)
     if loss.startswith("anywhere"):
         names = (item.mode.name for item in motions)
         # A controller without contacts takes no force: its modes are the same in contact and free,
@@ -111,15 +112,17 @@ def close_sampled_loop(
         flights = flights_among(names, plant.environments, pulls, resting)
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
-    channels = tuple(channels_of(spec, design.sensor.lasting, every))
+    channels = tuple(
+        channels_of(conditions.disturbances, conditions.largest_angle, design.sensor.lasting, every)
+    )
     outputs: tuple[Output, ...] = ()
     if channels:
-        outputs = outputs_of(velocity, frame.states, environments, spec.limits.torque.exact)
+        outputs = outputs_of(velocity, frame.states, environments, conditions.torque)
     driven = None
     if coupling is None:
-        driven = motor_command(spec, frame, channels)
+        driven = motor_command(conditions.largest_command, conditions.command, frame, channels)
     texts: tuple[str, ...] = (
-        *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, environments),
+        *assume_sampled(conditions, sampling, ranges, frame, laws, design, loss, environments),
         *at_once_texts(environments),
         *(() if driven is None else (driven.text,)),
     )
@@ -130,16 +133,16 @@ def close_sampled_loop(
             couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
         )
     resets: Iterable[tuple[str, str, RationalMatrix]] = ()
-    if spec.idle_states is not None and spec.idle_states.reset:
+    if conditions.idle is not None and conditions.idle.reset:
         map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
         resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
     return SwitchedSystem(
-        spec.name,
+        conditions.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
         texts,
-        assemble_switching(spec.switching, groups, resets),
+        assemble_switching(conditions.switching, groups, resets),
         losable,
         frame.period,
         channels,
@@ -207,13 +210,13 @@ def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> Ra
 
 
 def _frame(
-    spec: InteractionDesignSpec,
+    idle: IdleStatesSpec | None,
     sampling: SamplingSpec,
     design: ControllerDesign,
     laws: Sequence[DiscreteLaw],
     ranges: ActuatorRanges,
 ) -> Frame:
-    if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
+    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
         raise AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
@@ -226,7 +229,7 @@ def _frame(
         tuple(laws),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
-        None if spec.idle_states is None else idle_share(spec.idle_states, outer),
+        None if idle is None else idle_share(idle, outer),
         _turns(sampling),
     )
 
@@ -296,15 +299,15 @@ class _Loop:
 
 
 def _loss_of_contact(
-    spec: InteractionDesignSpec, environments: Iterable[Environment], design: ControllerDesign
+    contact: str | None, environments: Iterable[Environment], design: ControllerDesign
 ) -> Loss:
     """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
     if any(c.law.commands == "position" for c in design.controllers):
         # Force control rests in the air where it does in contact: at what is commanded.
-        lost = spec.contact == "losable"
+        lost = contact == "losable"
         return "anywhere under force control" if lost else "not under force control"
     sprung = {c.law.spring != 0 for c in design.controllers}
-    if spec.contact == "kept" or (True in sprung and spec.contact is None):
+    if contact == "kept" or (True in sprung and contact is None):
         return "never"
     if any(e.preloaded or (e.parts and not e.each_losable) for e in environments):
         return "not modelled"

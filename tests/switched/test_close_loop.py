@@ -20,7 +20,7 @@ from nrs_design.controllers.laws import (
     ProportionalForce,
 )
 from nrs_design.errors import AssemblyError
-from nrs_design.models.actuator import Actuator
+from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.interval import Interval
@@ -32,6 +32,7 @@ from nrs_design.switched.shared_state import shared_state
 from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
 F = Fraction
+MOTOR = Actuator(F(1), F(1))
 
 
 def impedance(name, Mt, contacts=("soft",)):
@@ -43,7 +44,7 @@ def assembled(*controllers, coordinates="deflection", contact=None):
     hand = Environment(
         "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
     )
-    plant = Plant(Actuator(F(1), F(1)), (soft, hand))
+    plant = Plant(MOTOR, (soft, hand), ActuatorRanges.point(MOTOR))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
     return close_loop("robot", shared_state(plant, LOOP, design, coordinates), contact=contact)
 
@@ -204,7 +205,7 @@ ENVIRONMENTS = {
 
 @cache
 def viscoelastic(*contacts, Mt="0.01", coordinates="deflection", law=None):
-    plant = Plant(Actuator(F(1), F(1)), tuple(ENVIRONMENTS.values()))
+    plant = Plant(MOTOR, tuple(ENVIRONMENTS.values()), ActuatorRanges.point(MOTOR))
     law = law or Admittance(F(Mt), F(2))
     controller = Controller("in", law, contacts[0], contacts)
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
@@ -309,7 +310,7 @@ def test_things_touched_at_once():
 def touched_at_once(other, *, losable):
     soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
     both = touch_at_once((soft, other), losable=losable)
-    plant = Plant(Actuator(F(1), F(1)), (soft, other, both))
+    plant = Plant(MOTOR, (soft, other, both), ActuatorRanges.point(MOTOR))
     controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
     return close_loop("robot", shared_state(plant, LOOP, design, "deflection"))

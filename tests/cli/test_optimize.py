@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
 
 
 def test_optimum_of_the_thesis(tmp_path):
@@ -170,17 +170,6 @@ def test_table(tmp_path):
 
 def test_nothing_to_optimize(tmp_path):
     assert "no impedance controllers" in run("optimize", FORCE_LIMIT, cwd=tmp_path, code=0).stderr
-
-
-def test_given_matrices(tmp_path):
-    result = run("optimize", COMMUTING, cwd=tmp_path, code=2)
-    assert "error[NRS002]" in result.stderr
-    assert "nothing to design" in result.stderr
-    assert result.stdout == ""
-
-
-def test_missing_spec(tmp_path):
-    run("optimize", "none.nrs.yaml", cwd=tmp_path, code=2)
 
 
 def spec_with(tmp_path, goals, *replacements):

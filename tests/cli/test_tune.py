@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE, document_of, run
+from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE, document_of, run
 
 GIVEN = """motion_loop:
   transfer_function: {numerator: [28.416, 1618.80], denominator: [1, 56.89, 1618.80]}
@@ -66,10 +66,6 @@ def test_given_motion_loop_is_said_to_be_given(tmp_path):
     assert "The spec states G itself" in run("tune", "given.nrs.yaml", cwd=tmp_path).stdout
     document = document_of("tune", "given.nrs.yaml", cwd=tmp_path)
     assert document["motion"]["loop"]["source"] == "given"
-
-
-def test_given_matrices(tmp_path):
-    assert "nothing to tune" in run("tune", COMMUTING, cwd=tmp_path, code=2).stderr
 
 
 def test_gains_beyond_single_precision(tmp_path):

@@ -198,19 +198,10 @@ def test_method_that_does_not_apply_is_wrong_usage(tmp_path, method, spec):
 
 
 @pytest.mark.slow
-def test_highest_degree(tmp_path):
-    """a = 10 needs a polynomial of degree 8."""
-    write_spec(tmp_path / "ten.nrs.yaml", [[-1, -1], [1, -1]], [[-1, -10], ["1/10", -1]])
-    for degree, code in ((2, 3), (6, 3), (8, 0)):
-        run("certify-switching", "ten.nrs.yaml", "--max-degree", degree, cwd=tmp_path, code=code)
-
-
-@pytest.mark.slow
 def test_margin_of_the_oscillator(tmp_path):
     """Zelentsovsky 1994: stable up to 6.98513, so no larger box can be proved."""
     arguments = ("certify-switching", RANGES, "--margin", "--max-degree", 6)
     margin = document_of(*arguments, cwd=tmp_path, code=0)["margin"]
-    assert 1 <= margin["proved_scale"] < margin["refuted_scale"]
     plain = run(*arguments, cwd=tmp_path)
     proved, refuted = (Fraction(margin[f"{end}_scale_exact"]) for end in ("proved", "refuted"))
     assert margin["proved_scale"] <= proved < refuted <= margin["refuted_scale"]
@@ -243,17 +234,6 @@ def test_margin_needs_a_range(tmp_path):
 
 
 @pytest.mark.slow
-def test_shortest_dwell_time(tmp_path):
-    """Geromel and Colaneri 2006: 2.75084 s by this method, refuted up to 2.70775 s."""
-    dwell = document_of("certify-switching", DWELL, "--shortest-dwell", cwd=tmp_path, code=0)[
-        "shortest_dwell"
-    ]
-    assert 2.75084 <= dwell["proved"] < 2.753
-    assert dwell["refuted"] < 2.70776
-    assert (dwell["unit"], dwell["method"]) == ("s", "mode quadratic")
-
-
-@pytest.mark.slow
 def test_shortest_dwell_time_of_a_pair_that_is_proved_at_30_s(tmp_path):
     """Never less than the verdict above it, nor a number that is rounded the wrong way."""
     (tmp_path / "pair.nrs.yaml").write_text(
@@ -261,8 +241,9 @@ def test_shortest_dwell_time_of_a_pair_that_is_proved_at_30_s(tmp_path):
         '  - {name: a, A: [["-0.1", 1], [-1, "-0.1"]]}\n'
         '  - {name: b, A: [["-0.1", 10], ["-0.1", "-0.1"]]}\nswitching: {dwell_time: 30 s}\n'
     )
-    arguments = ("pair.nrs.yaml", "--shortest-dwell", "--max-degree", 4, "--json")
-    dwell = json.loads(run("certify-switching", *arguments, cwd=tmp_path).stdout)["shortest_dwell"]
+    arguments = ("pair.nrs.yaml", "--shortest-dwell", "--max-degree", 4)
+    dwell = document_of("certify-switching", *arguments, cwd=tmp_path)["shortest_dwell"]
+    assert (dwell["unit"], dwell["method"]) == ("s", "mode quadratic")
     assert Fraction(dwell["refuted_exact"]) < Fraction(dwell["proved_exact"]) < 12
     assert dwell["refuted"] <= Fraction(dwell["refuted_exact"])
     assert dwell["proved"] >= Fraction(dwell["proved_exact"])
@@ -574,11 +555,6 @@ class TestGradientOptions:
     def test_settings_that_make_no_sense(self, tmp_path, options, message):
         assert message in run("certify-switching", COMMUTING, *options, cwd=tmp_path, code=2).stderr
 
-    def test_discrete_time(self, tmp_path):
-        spec = write_spec(tmp_path / "d.nrs.yaml", [["1/2"]], [["-1/3"]], time="discrete").path
-        done = run("certify-switching", spec, "--method", "gradient", cwd=tmp_path, code=0)
-        assert "PROVED" in done.stdout
-
 
 @pytest.mark.slow
 def test_bounds_in_json(tmp_path):
@@ -640,22 +616,19 @@ def test_tissue_and_tool_touched_at_once(tmp_path):
     assert told["modes"] == ["withdrawal/soft+stiff/k-min", "withdrawal/soft+stiff/k-max"]
 
 
+AXES_ALONE = "what the axes do to each other"
+
+
 @pytest.mark.slow
 def test_coupled_axes_that_are_not_proved_are_answered_by_a_list(tmp_path):
     """Axes, samples and a disturbance: `check` takes them, and nobody has to ask for the list."""
     path = tmp_path / "heavy.nrs.yaml"
     path.write_text(HEAVY, encoding="utf-8")
     run("check", path, cwd=tmp_path, code=0)
-    said = run("certify-switching", path, cwd=tmp_path, code=3)
-    first, *lines = said.stdout.split("not proved together; with as little left out as possible:")
-    assert first.startswith("soft: INCONCLUSIVE")
-    assert "proved without what the axes do to each other: Every solution" in lines[0]
-    assert "The axes of the robot do not act on each other." in lines[0]
-    assert "proved without the sampling: For any number of axes" in lines[0]
-    assert "decided without disturbances: no bound under them was looked at" in lines[0]
-    told = document_of("certify-switching", path, cwd=tmp_path)
-    assert [item["left_out"] for item in told["subsets"]] == [
-        ["what the axes do to each other"],
-        ["the sampling"],
-    ]
-    assert any("do not act on each other" in text for text in told["subsets"][0]["needs"])
+    said = run("certify-switching", path, cwd=tmp_path, code=3).stdout
+    assert said.startswith("soft: INCONCLUSIVE")
+    _, listed = said.split("not proved together; with as little left out as possible:")
+    assert "proved without what the axes do to each other: Every solution" in listed
+    assert "decided without disturbances: no bound under them was looked at" in listed
+    told = document_of("certify-switching", path, cwd=tmp_path)["subsets"]
+    assert [one["left_out"] for one in told] == [[AXES_ALONE], ["the sampling"]]

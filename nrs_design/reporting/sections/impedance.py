@@ -358,6 +358,4 @@ def _finish(axes: Axes, items: Sequence[ImpedanceAnalysis], ylabel: str) -> None
     bandwidth = items[0].problem.bandwidth
     label = f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz"
     axes.axvline(bandwidth, color=MUTED, linewidth=1.4, linestyle=":", label=label)
-    axes.set_xlabel("Frequency [rad/s]")
-    axes.set_ylabel(ylabel)
-    axes.set_xlim(bandwidth / 100, None)
+    axes.set(xlabel="Frequency [rad/s]", ylabel=ylabel, xlim=(bandwidth / 100, None))

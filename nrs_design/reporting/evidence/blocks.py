@@ -71,10 +71,7 @@ class BlocksPage(AbstractPage):
 
     page_of: Callable[[SwitchedSystem, AbstractEvidence], AbstractPage]  # of what a block shows
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "blocks of its own"
+    name = "blocks of its own"
 
     def meaning(self) -> tuple[str, ...]:
         """Say what follows for the family from its blocks."""

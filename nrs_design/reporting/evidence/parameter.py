@@ -44,10 +44,7 @@ _CURVES = (
 class ParameterPage(AbstractPage):
     """Q at both ends of the parameter, and the rate of every mode over it."""
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "quadratic function of a constant parameter"
+    name = "quadratic function of a constant parameter"
 
     def meaning(self) -> tuple[str, ...]:
         """Say that the parameter must be constant, and that switching is free."""

@@ -44,6 +44,10 @@ def files():
     return sorted(str(path) for path in Path().rglob("*") if path.is_file())
 
 
+def contents():
+    return {name: Path(name).read_bytes() for name in files()}
+
+
 @pytest.mark.parametrize(
     ("out", "where", "proof"),
     [
@@ -70,12 +74,12 @@ def test_the_files_of_another_spec_are_not_overwritten(export, capsys, certifica
         Path(name).write_bytes(SPEC.read_bytes())
     Path("mine.json").write_text(certificate)
     assert export("a.nrs.yaml") == 0
-    before = {name: Path(name).read_bytes() for name in files()}
+    before = contents()
     assert export("b.nrs.yaml") == 2
     assert export("b.nrs.yaml", "--certificate", "mine.json") == 2
     assert "belongs to a.nrs.yaml" in capsys.readouterr().err
     assert export("a.nrs.yaml", "--out", "a.nrs.yaml") == 2
-    assert {name: Path(name).read_bytes() for name in files()} == before
+    assert contents() == before
 
 
 def test_given_certificate_is_used_and_not_written_again(export, certificate):
@@ -241,14 +245,14 @@ def test_programs_with_a_proof_of_the_sampled_loop(export, capsys):
     assert "every-2-ms: PROVED" in capsys.readouterr().out
     proved = (spec, "--out", "out", "--certificate", "out/every-2-ms.cert.json")
     assert export(*proved, "--format", "vectors", "--quiet") == 0
-    before = {name: Path(name).read_bytes() for name in files()}
+    before = contents()
     assert export(*proved, "--format", "c") == 0
     assert export(*proved, "--format", "vectors") == 0
-    assert {name: Path(name).read_bytes() for name in files()} == before
+    assert contents() == before
     Path("out/every-2-ms.c").write_text("int main(void) { return 0; }")
-    before = {name: Path(name).read_bytes() for name in files()}
+    before = contents()
     assert export(*proved, "--format", "c") == 2
-    assert {name: Path(name).read_bytes() for name in files()} == before
+    assert contents() == before
 
 
 @pytest.mark.parametrize("name", ["c", "json", "mat", "vectors", "fmu"])
@@ -260,11 +264,11 @@ def test_the_export_of_another_spec_is_not_overwritten(export, capsys, sampled, 
     for path in [*Path("out").iterdir()]:
         # An older text of the same spec is replaced, one of another spec stays.
         path.write_bytes(path.read_bytes().replace(b"every-2-ms", b"each-2-ms-"))
-    before = {file: Path(file).read_bytes() for file in files()}
+    before = contents()
     capsys.readouterr()
     assert export(spec, *options) == 2
     assert "was exported for the spec each-2-ms-" in capsys.readouterr().err
-    assert {file: Path(file).read_bytes() for file in files()} == before
+    assert contents() == before
 
 
 @pytest.mark.slow

@@ -1,6 +1,5 @@
 """`nrs-design simulate`, as a user types it."""
 
-import json
 import shutil
 import sys
 
@@ -138,10 +137,8 @@ def test_a_bound_stands_beside_the_peak(spec, tmp_path):
     assert rate["uncovered"] == ["the command does not come to an end before the run does"]
     told = run("simulate", path, cwd=tmp_path).stdout
     assert "certified decay once nothing is commanded: " in told
-    assert (
-        document_of("simulate", path, "--no-bound", cwd=tmp_path)["runs"][0]["certified_bounds"]
-        == []
-    )
+    (unbound,) = document_of("simulate", path, "--no-bound", cwd=tmp_path)["runs"]
+    assert unbound["certified_bounds"] == []
     run("certify-switching", path, "--out", "a.cert.json", cwd=tmp_path, code=0)
     shown = run("simulate", path, "--certificate", "a.cert.json", "--period", "0.002", cwd=tmp_path)
     assert "certified bound on the force" in shown.stdout
@@ -175,14 +172,14 @@ def test_wrong_usage(spec, tmp_path, given, arguments, message):
 def test_an_outer_period_as_an_option_is_that_of_the_spec(spec, tmp_path):
     """And it is refused where it is not modelled."""
     written = spec(more="sampling: {period: 2 ms, outer_period: 1 ms, delay: 1}\n")
-    given = ("--scenario", "run", "--json")
-    wanted = json.loads(run("simulate", written, *given, cwd=tmp_path).stdout)["runs"][0]
-    plain = spec(more=SAMPLED)
-    option = ("--outer-period", "0.001")
-    found = json.loads(run("simulate", plain, *given, *option, cwd=tmp_path).stdout)["runs"][0]
-    assert found["metrics"] == wanted["metrics"]
-    usual = json.loads(run("simulate", plain, *given, cwd=tmp_path).stdout)["runs"][0]
-    assert found["metrics"] != usual["metrics"]
+
+    def metrics(path, *options):
+        document = document_of("simulate", path, "--scenario", "run", *options, cwd=tmp_path)
+        return document["runs"][0]["metrics"]
+
+    wanted, plain, option = metrics(written), spec(more=SAMPLED), ("--outer-period", "0.001")
+    # Both are the same file, so the first has run before the second is written.
+    assert metrics(plain, *option) == wanted != metrics(plain)
     force = spec(controllers=PLACED, more=SAMPLED)
     result = run("simulate", force, *option, cwd=tmp_path, code=2)
     assert "for impedance controllers alone" in result.stderr
@@ -387,8 +384,8 @@ def test_the_shipped_spec_of_three_axes(tmp_path):
     pytest.importorskip("mujoco", reason="MuJoCo is not installed")
     axes = ROOT / "specs/neuroboscope/soft-tissue-axes.nrs.yaml"
     # Into the tissue; not all of the 7.5 s.
-    given = ("--scenario", "all-axes", "--engine", "mujoco", "--json", "--max-steps", "1200")
-    document = json.loads(run("simulate", axes, *given, cwd=tmp_path).stdout)
+    given = ("--scenario", "all-axes", "--engine", "mujoco", "--max-steps", "1200")
+    document = document_of("simulate", axes, *given, cwd=tmp_path)
     assert [one["scenario"] for one in document["runs"]] == [
         f"all-axes.theta{i}" for i in (1, 2, 3)
     ]
@@ -396,10 +393,8 @@ def test_the_shipped_spec_of_three_axes(tmp_path):
         assert one["steps"] == 1200
         assert one["deviation_from_sampled"]["angle"] < 1e-5
         assert 0.1 < one["metrics"]["peak_torque"] < 0.3
-    assert [
-        r["scenario"]
-        for r in document_of("simulate", axes, "--engine", "exact", cwd=tmp_path)["runs"]
-    ] == ["insertion-and-withdrawal"]
+    (one,) = document_of("simulate", axes, "--engine", "exact", cwd=tmp_path)["runs"]
+    assert one["scenario"] == "insertion-and-withdrawal"
 
 
 def test_a_bound_far_away_is_named_not_drawn():

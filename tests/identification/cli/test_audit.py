@@ -132,22 +132,6 @@ def test_a_foreign_certificate_is_rejected(tmp_path, proof):
 
 
 @pytest.mark.parametrize(
-    ("ending", "stiffness", "code"),
-    [
-        ("html", 43.0, 3),
-        ("pdf", 60.0, 1),
-        pytest.param("pdf", 43.0, 3, marks=pytest.mark.slow),
-        pytest.param("html", 60.0, 1, marks=pytest.mark.slow),
-    ],
-)
-def test_report(tmp_path, ending, stiffness, code):
-    page = tmp_path / f"page.{ending}"
-    log = write(tmp_path, stiffness=stiffness)
-    run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path, code=code)
-    assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
-
-
-@pytest.mark.parametrize(
     ("limit", "said"),
     [
         ("3000 rpm", "below 3000 rpm"),

@@ -270,10 +270,6 @@ def test_stamps_are_nanoseconds(text):
     assert read_stamp(text) == Name("time", "ns")
 
 
-def test_a_word_that_ends_like_a_stamp_is_none():
-    assert read_stamp("restamp") is None
-
-
 def test_a_mapped_quantity_is_the_mapped_column(tmp_path):
     path = tmp_path / "record.csv"
     text = "time_s,deflection_m,force_raw,force_N\n" + rows(",").replace("\n", ",1\n")

@@ -59,18 +59,8 @@ def test_rounding_that_moves_a_damping_by_half_its_error(parts, said):
     assert ("of the power of the velocity is rounding" in text) is said
 
 
-def test_coarse_encoder():
-    said = doubts(KelvinVoigt, KelvinVoigt(750.0, 30.0), quick(), 0.1, synthetic.COUNT)
-    assert "is rounding of the deflection" in said
-
-
 def test_exponent_at_its_bound():
     assert "phi is at the lower end" in doubts(HuntCrossley, Elastic(0.5), slow())
-
-
-def test_fast_relaxation():
-    said = doubts(KelvinBoltzmann, KelvinBoltzmann(0.3, 0.9, 0.0012), slow(), 1e-3)
-    assert "below the step of the record" in said or "relative standard error" in said
 
 
 def test_loaded_start():

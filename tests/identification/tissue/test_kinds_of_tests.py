@@ -3,11 +3,10 @@
 import math
 
 import numpy as np
-import pytest
 
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import fit_record, identify_tissue
-from nrs_design.models.contact import KelvinBoltzmann, KelvinVoigt, Motion
+from nrs_design.identification.tissue import fit_record
+from nrs_design.models.contact import KelvinBoltzmann, Motion
 from tests.identification.support import source
 
 LAW = KelvinBoltzmann(400.0, 900.0, 2000.0)
@@ -43,16 +42,3 @@ def test_creep():
     motion = Motion(TIME, force / LAW.k2 + np.array(damper))
     fit = fit_record(KelvinBoltzmann, measured(motion, force, 0.01, 2))
     assert covered(fit, LAW) == [True] * 3
-
-
-@pytest.mark.slow
-def test_ramps_at_several_speeds():
-    law = KelvinVoigt(400.0, 20.0)
-    data = []
-    for seed, speed in enumerate((0.0005, 0.002, 0.008)):
-        time = np.linspace(0, 0.016 / speed, 800)
-        motion = Motion(time, 0.008 - np.abs(0.008 - speed * time))
-        data.append(measured(motion, law.simulate(motion), 0.02, seed))
-    found = identify_tissue(data)
-    assert found.chosen.law.name == "kelvin-voigt"
-    assert all(e.covers(v) for e, v in zip(found.chosen.ranges, law.values, strict=True))

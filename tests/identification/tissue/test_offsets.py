@@ -58,17 +58,6 @@ def test_the_power_law_finds_its_zero():
     assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
 
 
-@pytest.mark.slow
-def test_what_is_given_is_kept_and_narrows_the_interval():
-    _, free, _ = chosen(shifted(0.1))
-    _, fit, offsets = chosen(shifted(0.1), zero=0.1, tare=0.0)
-    assert not offsets["zero"].fitted
-    assert offsets["zero"].estimate.value == 0.1
-    (wide, _), (narrow, _) = free.estimates, fit.estimates
-    assert narrow.value == pytest.approx(400.0, rel=0.003)
-    assert narrow.high - narrow.low < wide.high - wide.low
-
-
 def test_a_wrong_offset_is_doubted():
     found, _, _ = chosen(shifted(0.1, -1.3), zero=0.1, tare=0.0)
     assert found.caveats

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue, prepare
 from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
@@ -32,18 +31,6 @@ def test_a_record_cut_while_the_tissue_relaxes(law):
     assert fit.uncertainty.whiteness > 0.01
     assert trial.unrested
     assert not prepare(trial.record, Preparation(start=0.0)).unrested
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"start": 14.9}, "lie between --from and --to"),
-        ({"skip_cycles": 3}, "3 cycles are to be set apart, and there are 3"),
-    ],
-)
-def test_too_little_left(options, message):
-    with pytest.raises(DataError, match=message):
-        prepare(DATA, Preparation(**options))
 
 
 def conditioned():

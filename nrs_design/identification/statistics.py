@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array, Rows
 
 CONFIDENCE = 0.95
 _DIGITS = 5
@@ -262,7 +261,7 @@ def _rounded(value: float, digits: int, rounding: str) -> float:
     return float(Context(prec=digits, rounding=rounding).create_decimal(Decimal(value)))
 
 
-def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:
+def _jackknife(J: Array, residuals: Array, edges: Rows, bread: Array) -> Array:
     """Return the scatter of the parameters when each batch in turn is left out (first order)."""
     count, p = len(edges), J.shape[1]
     shifts = []

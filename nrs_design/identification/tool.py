@@ -11,15 +11,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import PoseRecord, Source
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import Estimate, student_quantile
 from nrs_design.identification.tool_causes import likely_cause
 from nrs_design.spec.plausible import doubt_size
-
-Array = NDArray[np.float64]
 
 # Three poses determine all; from so many on, an error of one of them shows.
 _FEWEST, _ENOUGH = 3, 6

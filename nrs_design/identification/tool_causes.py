@@ -10,11 +10,9 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import PoseRecord
-
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array
 
 # So few poses fit with many causes.
 _ENOUGH = 6

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.doubts import find_doubts
@@ -17,15 +16,13 @@ from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
 from nrs_design.identification.datasets.checks import doubt_step
+from nrs_design.identification.numeric import Array, Complex
 from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.progress import Progress, silent
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # A fit that misses more than this part of the output, in errors that are not white, has failed.
 _MISSED = 0.01

@@ -19,8 +19,8 @@ from nrs_design.identification.datasets.checks import (
     pauses_text,
     stretches_in,
 )
+from nrs_design.identification.numeric import Array, Complex, usual_step
 from nrs_design.identification.tables.table import (
-    Array,
     MeasurementTable,
     Progress,
     Source,
@@ -90,7 +90,7 @@ class ActuatorRecord:
     @cached_property
     def step(self) -> float:
         """Usual time between samples in s."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +100,7 @@ class FrequencyResponse:
     source: Source  # The file
     frequency: Array  # Shape (m,). In rad/s.
     # Shape (m,). In rad/s for each unit of the command.
-    response: np.ndarray[tuple[int], np.dtype[np.complex128]]
+    response: Complex
     unit: str = "rpm"  # Of the command, which no column says: that of the motor of the thesis
 
 
@@ -173,7 +173,7 @@ class SignalRecord:
     @cached_property
     def step(self) -> float:
         """Usual time between samples in s."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
     @cached_property
     def stretches(self) -> tuple[slice, ...]:

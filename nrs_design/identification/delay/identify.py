@@ -9,7 +9,6 @@ from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import SignalRecord, Source
@@ -28,6 +27,7 @@ from nrs_design.identification.delay.models import (
     SecondOrder,
     SmoothCopy,
 )
+from nrs_design.identification.numeric import Array, Rows
 from nrs_design.identification.statistics import (
     WHITE,
     Estimate,
@@ -36,8 +36,6 @@ from nrs_design.identification.statistics import (
     student_quantile,
 )
 from nrs_design.spec.plausible import doubt_size
-
-Array = NDArray[np.float64]
 
 # Largest delay that is looked for, as a part of the record.
 _LONGEST = 0.1
@@ -260,7 +258,7 @@ def is_smooth(record: SignalRecord) -> bool:
     return missed <= _SMOOTH**2 * moved
 
 
-def _reached(record: SignalRecord, lag: float) -> NDArray[np.int64]:
+def _reached(record: SignalRecord, lag: float) -> Rows:
     """Return the rows that no command from before the record, or a pause of it, can reach."""
     skipped = max(lag, 0.0) + _AFTER * record.step
     kept = []
@@ -301,7 +299,7 @@ def _unknown(fit: DelayFit) -> float:
 
 
 def _held_interval(
-    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], near: int, confidence: float
+    record: SignalRecord, fit: DelayFit, rows: Rows, near: int, confidence: float
 ) -> Estimate:
     """Return the best whole number of samples, and all delays that the rows do not reject.
 
@@ -358,14 +356,14 @@ def _peak(record: SignalRecord, *, difference: bool) -> tuple[float, float]:
     return float(lags[best]) * float(even[1] - even[0]), float(alike[best])
 
 
-def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
+def _correlations(u: Array, y: Array, lags: Rows) -> Array:
     """Return the correlation of ``u[i]`` with ``y[i + lag]`` where both are there."""
     size = 1 << (2 * len(u) - 1).bit_length()
     cross = np.fft.irfft(np.conj(np.fft.rfft(u, size)) * np.fft.rfft(y, size), size)[lags]
     counts = len(u) - np.abs(lags)
     first = np.maximum(lags, 0)
 
-    def sums(values: Array, begin: NDArray[np.int64]) -> Array:
+    def sums(values: Array, begin: Rows) -> Array:
         total = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(total[begin + counts] - total[begin])
 
@@ -377,7 +375,7 @@ def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
 
 
 def _starts(
-    record: SignalRecord, lag: float, rows: NDArray[np.int64]
+    record: SignalRecord, lag: float, rows: Rows
 ) -> Iterator[tuple[AbstractFollower, float]]:
     """Yield each model but a copy with the best of some delays and time constants."""
     step = record.step
@@ -403,9 +401,7 @@ def _beginning(record: SignalRecord) -> SignalRecord:
     return SignalRecord(record.source, time, sent, seen, record.names)
 
 
-def _missed(
-    record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
-) -> float:
+def _missed(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> float:
     columns = follower.columns(record, delay)[rows]
     solution = solve(columns, record.seen[rows])
     return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
@@ -434,7 +430,7 @@ def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[
 
 
 def _own_delay(
-    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], value: float
+    record: SignalRecord, fit: DelayFit, rows: Rows, value: float
 ) -> tuple[float, float]:
     """Return the delay in samples that fits some rows best, and how much they tell about it."""
     own, power = value, 0.0

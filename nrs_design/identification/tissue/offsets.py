@@ -13,13 +13,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import Estimate, Uncertainty, quotients, student_quantile
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Motion
-
-Array = NDArray[np.float64]
 
 TARE, CONTACT, DRIFT = "tare", "contact", "drift"
 # In words, and with the units of a linear motion and of a rotation.

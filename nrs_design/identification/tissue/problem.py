@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Flags, beyond
 from nrs_design.identification.tissue.offsets import (
     fits_zero,
     measured_force,
@@ -24,9 +24,6 @@ from nrs_design.identification.tissue.offsets import (
 from nrs_design.identification.tissue.starts import scan
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import LINEAR_LAWS, AbstractContactLaw, AbstractNonlinearLaw, Motion
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # Of a difference in the logarithm of a parameter.
 _STEP = 1e-6
@@ -211,8 +208,7 @@ class Point:
         return self._less_constants(self._rest)
 
     def _less_constants(self, values: Array) -> Array:
-        basis = self._factors[0]
-        return np.asarray(values - basis @ (basis.T @ values))
+        return beyond(self._factors[0], values)
 
     @cached_property
     def cost(self) -> float:

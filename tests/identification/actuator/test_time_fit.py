@@ -100,10 +100,10 @@ def test_other_units_of_the_command():
 
 def test_derivatives_of_the_dead_time():
     record = motors.record("chirp", 1)
-    J, _ = TRUE.linearize(record)
+    J = TRUE.derivatives(record)
     h = 1e-5
     ahead, behind = (replace(TRUE, delay=TRUE.delay + s).simulate(record) for s in (h, -h))
-    # Initial states are fitted anew in `simulate`, and taken out in `linearize`.
+    # Initial states are fitted anew in `simulate`, and taken out in `derivatives`.
     free, _ = np.linalg.qr(TRUE.free(record))
     slope = (ahead - behind) / (2 * h)
     slope -= free @ (free.T @ slope)

@@ -57,14 +57,7 @@ def tool(
     records = read_all(data, read_poses, columns or [])
     with progress("fitting"):
         found = identify_tool(records, gravity)
-    return deliver(
-        outputs,
-        found,
-        lambda: _facts(found),
-        lambda: _print(found),
-        lambda: tool_report(found),
-        lambda spec: merge_tool(spec, found),
-    )
+    return deliver(outputs, found, _facts, _print, tool_report, merge_tool)
 
 
 def _print(found: ToolIdentification) -> None:

@@ -301,16 +301,6 @@ def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
 
 
 @pytest.mark.slow
-def test_what_the_range_holds_is_noted():
-    data = [record(Elastic(k), quick(i), 0.1, i) for i, (k, _) in enumerate(synthetic.SOFT)]
-    found = identify_tissue(data, "elastic", coverage="tolerance")
-    soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
-    assert soft.range_covers == "tolerance"
-    assert soft.range_id == soft.values_id()
-    assert "95 % of all such specimens" in found.covers
-
-
-@pytest.mark.slow
 def test_a_motor_of_second_order_has_no_place():
     found = identify_actuator([motors.record("PRBS", 1, second=0.02)], MOTOR)
     with pytest.raises(DataError, match="has no place for a motor of second order"):

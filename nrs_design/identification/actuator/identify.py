@@ -35,8 +35,6 @@ class ActuatorIdentification:
     """Fits of one actuator."""
 
     sources: tuple[Source, ...]  # The files
-    records: tuple[ActuatorRecord, ...]  # None for a ready response
-    phasors: tuple[Phasors, ...]  # One for each record, where all are sinusoids
     fits: tuple[ActuatorFit, ...]  # Every method that the data allow
     chosen: ActuatorFit  # One of them
     reason: str  # Why that one
@@ -46,11 +44,12 @@ class ActuatorIdentification:
     # Shape (m,). Velocity over command without friction, in rad/s per unit of the command; empty
     # where records are no sinusoids.
     response: Complex
-    doubts: tuple[str, ...] = ()  # What the model misses, and what that looks like
+    doubts: tuple[str, ...]  # What the model misses, and what that looks like
+    ranges: tuple[Estimate, ...]  # Of gain and time constant, for a spec
+    records: tuple[ActuatorRecord, ...] = ()  # None for a ready response
     unit: str = "rpm"  # Of the command
     step: float | None = None  # Usual time between samples in s; None for a ready response
     coverage: Coverage = "confidence"  # What the ranges hold
-    ranges: tuple[Estimate, ...] = ()  # Of gain and time constant, for a spec
 
     @property
     def covers(self) -> str:
@@ -162,8 +161,6 @@ def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorId
     fit = fit_response(data)
     return ActuatorIdentification(
         sources=(data.source,),
-        records=(),
-        phasors=(),
         fits=(fit,),
         chosen=fit,
         reason="A ready response allows nothing else; friction cannot be told from it.",
@@ -193,7 +190,6 @@ def _from_records(
     return ActuatorIdentification(
         sources=tuple({record.source.sha256: record.source for record in records}.values()),
         records=tuple(records),
-        phasors=phasors,
         fits=tuple(fits),
         chosen=chosen,
         reason=reason,

@@ -259,20 +259,15 @@ def read_poses(
         roll, pitch = columns["roll"], columns["pitch"]
         down = [np.sin(pitch), -np.cos(pitch) * np.sin(roll), -np.cos(pitch) * np.cos(roll)]
         return PoseRecord(table.source, np.column_stack(down), force, torque)
-    w, x, y, z = (columns[f"q{axis}"] for axis in "wxyz")
-    size = np.sqrt(w**2 + x**2 + y**2 + z**2)
+    from scipy.spatial.transform import Rotation
+
+    quaternions = np.column_stack([columns[f"q{axis}"] for axis in "xyzw"])
+    size = np.linalg.norm(quaternions, axis=1)
     bad = np.flatnonzero(np.abs(size - 1) > _ROTATION)
     if len(bad):
         remedy = "write qw, qx, qy, qz of length 1"
         table.fail(f"the quaternion has the length {size[bad[0]]:.4g}", int(bad[0]), remedy)
-    turns = np.array(
-        [
-            [w**2 + x**2 - y**2 - z**2, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), w**2 - x**2 + y**2 - z**2, 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), w**2 - x**2 - y**2 + z**2],
-        ]
-    ).transpose(2, 0, 1)
-    turns = turns / size[:, None, None] ** 2
+    turns = np.asarray(Rotation.from_quat(quaternions).as_matrix(), float)
     return PoseRecord(table.source, -turns[:, 2, :], force, torque, turns)
 
 

@@ -12,9 +12,8 @@ import numpy as np
 
 from nrs_design.identification.numeric import TINY, Array, beyond, column_sizes
 from nrs_design.identification.tissue.offsets import measured_force, offset_columns, offset_names
-from nrs_design.identification.tissue.starts import reduce_series
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import Elastic
+from nrs_design.models.contact import Elastic, KelvinBoltzmann
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.contact.relaxation import Relaxation
 
@@ -78,8 +77,21 @@ def fit_series(trial: Trial) -> Series:
         tuple(times.tolist()),
         best.rmse,
         tuple(fit.bic for fit in fits),
-        reduce_series(rest, arms, times),
+        _reduced(rest, arms, times),
     )
+
+
+def _reduced(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None:
+    """Return the one relaxation that stands for several; None if the arms vanish.
+
+    It keeps the stiffness at rest, the stiffness that a sudden motion meets, and the impulse that
+    the relaxation takes up, ``sum E_i tau_i``.
+    """
+    total = float(arms.sum())
+    if not total > 0 or not rest > 0:
+        return None
+    tau = float(arms @ times) / total
+    return KelvinBoltzmann.from_eta(rest, (rest + total) * tau, tau)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

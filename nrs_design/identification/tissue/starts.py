@@ -14,7 +14,6 @@ from nrs_design.identification.numeric import Array, beyond, column_sizes
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import (
     AbstractContactLaw,
-    AbstractLinearLaw,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
@@ -118,26 +117,6 @@ def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     }
     low, high = np.log([bounds[kind] for kind in kind.kinds]).T
     return low, high
-
-
-def reduce_series(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None:
-    """Return the one relaxation that stands for several; None if the arms vanish.
-
-    It keeps the stiffness at rest, the stiffness that a sudden motion meets, and the impulse that
-    the relaxation takes up, ``sum E_i tau_i``.
-
-    Parameters
-    ----------
-    rest : float
-        Stiffness at rest.
-    arms, times : ndarray, shape (m,)
-        Stiffness and relaxation time of each arm.
-    """
-    total = float(arms.sum())
-    if not total > 0 or not rest > 0:
-        return None
-    tau = float(arms @ times) / total
-    return KelvinBoltzmann.from_eta(rest, (rest + total) * tau, tau)
 
 
 def _time_constants(trial: Trial) -> list[float]:

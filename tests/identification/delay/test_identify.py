@@ -144,10 +144,8 @@ def test_columns_without_relation():
         (0.5, 0.25, 0.01),
         (2.0, 0.0, 0.0),
         *(
-            pytest.param(delay, begins, noise, marks=pytest.mark.slow)
-            for delay in (0.0, 0.5, 1.0, 1.4, 2.999, 3.0, 4.6)
-            for begins in (0.0, 0.3, 0.5)
-            for noise in (0.0, 0.1)
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in ((0.0, 0.3, 0.1), (1.4, 0.5, 0.0), (2.999, 0.5, 0.1), (4.6, 0.0, 0.1))
         ),
     ],
 )

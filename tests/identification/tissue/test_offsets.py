@@ -1,13 +1,11 @@
 """Position of contact and tare: the true stiffness comes back whatever they are."""
 
-import numpy as np
 import pytest
 
 from nrs_design.identification.datasets import TissueRecord
-from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue, prepare
+from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Motion
-from tests.identification import synthetic
-from tests.identification.support import quick, record, slow, source
+from tests.identification.support import quick, record, source
 from tests.identification.unilateral import robot_record
 
 # As a robot records: 400 N/m and 3 N s/m behind 0.1 m.
@@ -71,18 +69,6 @@ def test_opposite_signs_are_named():
     found, fit, _ = chosen(shifted(sign=-1), negate=True)
     assert found.caveats == ()
     assert fit.estimates[0].covers(400.0)
-
-
-def test_a_loaded_start_of_a_relaxing_tissue():
-    """The state at the start is fitted, so that a record may begin in the middle of a hold."""
-    law = synthetic.CONCHA
-    whole = record(law, slow(4), 0.005, 4)
-    motion = Motion(whole.motion.time[200:], whole.motion.deflection[200:])
-    fit = fit_record(
-        type(law), prepare(TissueRecord(source("late"), motion, whole.force[200:], True))
-    )
-    assert motion.deflection[0] > 0.3 * motion.deflection.max()
-    assert np.mean([e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True)]) == 1
 
 
 def test_elastic_tissue_in_air_has_no_memory():

@@ -35,11 +35,6 @@ from nrs_design.search.margin import find_margin
 MARGIN_BUDGET = 2.0
 # Of the ends of a range that was looked for.
 DIGITS = 3
-_STATUS = {
-    "proved": Status.PROVED,
-    "refuted": Status.REFUTED,
-    "inconclusive": Status.INCONCLUSIVE,
-}
 # The worst first: what a file is called where its axes differ.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
 
@@ -106,7 +101,7 @@ class _Asker:
     ) -> tuple[Status, str]:
         system = close_axis(law, axis, around)
         found = certify(system, limits=self.limits)
-        status = _STATUS[str(found.verdict)]
+        status = Status(str(found.verdict))
         unit = "N*m/rad" if axis.rotates else "N/m"
         where = "by itself (no force acts on it)" if not axis.selected else _range(met, unit)
         evidence = found.evidence

@@ -10,7 +10,7 @@ from nrs_design.identification.tissue import fit_model, fit_record
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.coverage import OPTIONS, SEEDS, TISSUES, rates
-from tests.identification.support import quick, record, slow
+from tests.identification.support import holds, quick, record, slow
 from tests.support import ROOT
 
 
@@ -30,10 +30,6 @@ SINGLE = [
     (synthetic.CONCHA, slow, 0.0085, 1e-4),
     (HuntCrossley(0.28, 15.328, 1.2), slow, 0.0096, 0.0),
 ]
-
-
-def holds(estimates, values):
-    return [e.covers(v) for e, v in zip(estimates, values, strict=True)]
 
 
 def shares_of(law, motion, noise, q, seeds=SEEDS):

@@ -12,6 +12,7 @@ from nrs_design.identification.datasets import PoseRecord, read_poses
 from nrs_design.identification.tables.table import Source
 from nrs_design.identification.tool import identify_tool
 from tests.identification import synthetic
+from tests.identification.support import holds
 
 MASS, CENTER = synthetic.TOOL_MASS, np.array(synthetic.TOOL_CENTER)
 TRUTH = (MASS, *CENTER, *synthetic.FORCE_BIAS, *synthetic.TORQUE_BIAS)
@@ -48,7 +49,7 @@ def test_intervals_hold_the_truth():
     hits = []
     for seed in range(SEEDS):
         found = identify_tool([poses(anywhere(8, seed), (0.02, 0.002), seed)], 9.81)
-        hits.append([e.covers(v) for e, v in zip(estimates(found), TRUTH, strict=True)])
+        hits.append(holds(estimates(found), TRUTH))
     rates = np.mean(hits, axis=0)
     assert (rates >= 0.90).all(), rates
     assert (rates <= 0.99).all(), rates

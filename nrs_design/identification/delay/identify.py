@@ -18,7 +18,7 @@ from nrs_design.identification.datasets.checks import (
     gaps_in,
     pauses_text,
 )
-from nrs_design.identification.delay.fit import DelayFit, fit_delay, fit_held, solve
+from nrs_design.identification.delay.fit import DelayFit, errors_of, fit_delay, fit_held
 from nrs_design.identification.delay.models import (
     AbstractFollower,
     FirstOrder,
@@ -81,8 +81,7 @@ class DelayIdentification:
     record: SignalRecord  # The data
     fits: tuple[DelayFit, ...]  # One for each model
     chosen: DelayFit  # The simplest of those whose BIC none clearly beats
-    delay: Estimate  # In s, with a 95 % interval
-    samples: Estimate  # The same in samples of the record
+    samples: Estimate  # The delay in samples of the record, with a 95 % interval
     # Lag in s at which both columns are most alike, lag of the dynamics included, and their
     # correlation there.
     peak: tuple[float, float]
@@ -98,6 +97,11 @@ class DelayIdentification:
     # command of one frequency, they hold all from zero to those of a copy.
     held: tuple[float, float]
     doubts: tuple[str, ...]  # What speaks against it
+
+    @property
+    def delay(self) -> Estimate:
+        """In s, with a 95 % interval."""
+        return self.samples.scaled(self.record.step)
 
     @property
     def whole_samples(self) -> tuple[int, int]:
@@ -201,7 +205,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
         held += [part for _, part in _parts(record, copy, copy.delay / step)]
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
-        record, fits, chosen, samples.scaled(step), samples, peak, parts, smooth, ends,
+        record, fits, chosen, samples, peak, parts, smooth, ends,
         (
             *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
             *_doubts(record, chosen, value, half, peak[0], parts, _untold(record, samples)),
@@ -391,7 +395,7 @@ def _starts(
     inside = rows[rows < len(part.time)]
     for family in families:
         pairs = [(follower, delay) for follower in family for delay in delays]
-        yield min(pairs, key=lambda pair: _missed(part, pair[0], pair[1], inside))
+        yield min(pairs, key=lambda pair: _missed(part, *pair, inside))
 
 
 def _beginning(record: SignalRecord) -> SignalRecord:
@@ -402,9 +406,8 @@ def _beginning(record: SignalRecord) -> SignalRecord:
 
 
 def _missed(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> float:
-    columns = follower.columns(record, delay)[rows]
-    solution = solve(columns, record.seen[rows])
-    return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
+    error = errors_of(record, follower, delay, rows)
+    return float(error @ error)
 
 
 def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[float, Estimate]]:

@@ -23,7 +23,12 @@ from nrs_design.identification.tissue.offsets import (
 )
 from nrs_design.identification.tissue.starts import scan
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import LINEAR_LAWS, AbstractContactLaw, AbstractNonlinearLaw, Motion
+from nrs_design.models.contact import (
+    AbstractContactLaw,
+    AbstractLinearLaw,
+    AbstractNonlinearLaw,
+    Motion,
+)
 
 # Of a difference in the logarithm of a parameter.
 _STEP = 1e-6
@@ -60,7 +65,7 @@ class LeastSquaresProblem:
     @cached_property
     def begins(self) -> tuple[slice, ...]:
         """Stretches that do not begin at rest, for a law that remembers."""
-        remembers = any(law is self.kind and law.remembers for law in LINEAR_LAWS.values())
+        remembers = issubclass(self.kind, AbstractLinearLaw) and self.kind.remembers
         return self.trial.unrested if remembers else ()
 
     @cached_property

@@ -239,18 +239,24 @@ def test_mega_is_not_milli():
     assert not read_name("force_MN").known
 
 
-def test_factors():
+@pytest.mark.parametrize(
+    ("name", "factor", "unit"),
+    [
+        ("force_kgf", 9.80665, "N"),
+        ("force_gf", 9.80665e-3, "N"),
+        ("force_lbf", 4.4482216152605, "N"),
+        ("deflection_in", 0.0254, "m"),
+        ("velocity_rpm", 2 * np.pi / 60, "rad_s"),
+        ("command_rpm", 1.0, "rpm"),
+        ("command_deg_s", 60 / 360, "rpm"),
+        ("command_rad_s", 60 / (2 * np.pi), "rpm"),
+        ("command_mV", 1e-3, "V"),
+    ],
+)
+def test_factors(name, factor, unit):
     """1 kgf = 9.80665 N by definition; 1 rpm = 2 pi/60 rad/s, but a command in rpm is a number."""
-    assert read_name("force_kgf").factor == 9.80665
-    assert read_name("force_gf").factor == pytest.approx(9.80665e-3)
-    assert read_name("force_lbf").factor == pytest.approx(4.4482216152605, rel=1e-15)
-    assert read_name("deflection_in").factor == 0.0254
-    assert read_name("velocity_rpm").factor == pytest.approx(2 * np.pi / 60)
-    assert (read_name("command_rpm").factor, read_name("command_rpm").read_as) == (1.0, "rpm")
-    assert read_name("command_deg_s").factor == pytest.approx(60 / 360)
-    assert read_name("command_rad_s").factor == pytest.approx(60 / (2 * np.pi))
-    assert read_name("command_deg_s").read_as == read_name("command_rad_s").read_as == "rpm"
-    assert (read_name("command_mV").factor, read_name("command_mV").read_as) == (1e-3, "V")
+    found = read_name(name)
+    assert (found.factor, found.read_as) == (pytest.approx(factor, rel=1e-15), unit)
 
 
 @pytest.mark.parametrize("text", ["%time", "field.header.stamp", "/ft/header/stamp", "stamp"])

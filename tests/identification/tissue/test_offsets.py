@@ -5,7 +5,7 @@ import pytest
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.tissue import Preparation, fit_record, identify_tissue
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Motion
-from tests.identification.support import quick, record, source
+from tests.identification.support import holds, quick, record, source
 from tests.identification.unilateral import robot_record
 
 # As a robot records: 400 N/m and 3 N s/m behind 0.1 m.
@@ -28,7 +28,7 @@ def chosen(data, **options):
 def test_offsets_do_not_touch_the_stiffness(zero, tare):
     found, fit, offsets = chosen(shifted(zero, tare))
     assert found.chosen.law.name == "kelvin-voigt"
-    assert [e.covers(v) for e, v in zip(fit.estimates, VOIGT.values, strict=True)] == [True, True]
+    assert holds(fit.estimates, VOIGT.values) == [True, True]
     assert found.caveats == ()
     # Without air, the record tells the position of contact only if the tare is known.
     assert offsets["zero"].provided == "if the tare is 0"
@@ -39,7 +39,7 @@ def test_offsets_do_not_touch_the_stiffness(zero, tare):
 def test_air_before_contact_tells_both(side):
     data = robot_record(VOIGT, quick(2), 0.05, 2, air=0.57, zero=0.1, tare=-1.3, side=side)
     found, fit, offsets = chosen(data)
-    assert [e.covers(v) for e, v in zip(fit.estimates, VOIGT.values, strict=True)] == [True, True]
+    assert holds(fit.estimates, VOIGT.values) == [True, True]
     assert found.caveats == ()
     assert offsets["zero"].estimate.value == pytest.approx(0.1, abs=1e-4)
     assert offsets["tare"].estimate.value == pytest.approx(-1.3, abs=0.02)
@@ -53,7 +53,7 @@ def test_the_power_law_finds_its_zero():
     fit = fit_record(HuntCrossley, robot_record(law, quick(3), 0.01, 3, zero=0.2))
     offsets = {offset.name: offset.estimate for offset in fit.offsets}
     assert offsets["zero"].covers(0.2)
-    assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
+    assert all(holds(fit.estimates, law.values))
 
 
 def test_a_wrong_offset_is_doubted():

@@ -15,7 +15,7 @@ from nrs_design.models.contact import (
     Motion,
 )
 from tests.identification import synthetic
-from tests.identification.support import quick, record, slow
+from tests.identification.support import holds, quick, record, slow
 from tests.identification.unilateral import robot_record
 
 # Thesis 6.1, and tables 2.4 and 2.5 (a Maxwell law that relaxes within the record).
@@ -33,7 +33,7 @@ KNOWN = [
 @pytest.mark.parametrize(("law", "motion", "noise", "resolution"), KNOWN)
 def test_parameters_of_the_thesis_are_in_their_intervals(law, motion, noise, resolution):
     fit = fit_record(type(law), record(law, motion, noise, 11, resolution))
-    assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
+    assert all(holds(fit.estimates, law.values))
     assert fit.law.values == pytest.approx(law.values, rel=0.12)
     # Rounding of the deflection adds to the noise: at most k q / sqrt(12).
     assert noise * 0.9 < fit.rmse < 1.15 * noise + resolution * law.values[0] / 3

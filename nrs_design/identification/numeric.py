@@ -13,6 +13,8 @@ Flags = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 TINY = float(np.finfo(float).tiny)
+# A column below this has faded to denormal numbers, whose digits say nothing.
+_FADED = 1e-300
 
 
 def usual_step(time: Array) -> float:
@@ -22,7 +24,7 @@ def usual_step(time: Array) -> float:
 
 def column_sizes(X: Array) -> Array:
     """Return the norm of each column, never 0."""
-    return np.asarray(np.maximum(np.linalg.norm(X, axis=0), TINY))
+    return np.asarray(np.maximum(np.linalg.norm(X, axis=0), _FADED))
 
 
 def beyond(basis: Array, values: Array) -> Array:

@@ -97,7 +97,7 @@ def fit_delay(
     J = _sensitivities(record, follower, x, rows)
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
     columns = shaped.columns(record, float(x[0]) * record.step)
-    solution = _solve(columns[rows], record.seen[rows])
+    solution = solve(columns[rows], record.seen[rows])
     return DelayFit(
         shaped, float(x[0]) * record.step, uncertainty(J, error), J[:, 0], error, rows,
         columns @ solution, solution,
@@ -120,11 +120,11 @@ def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
         return follower.columns(record, late * record.step)
 
     def missed(late: int) -> float:
-        error = errors_of(record, follower, late * record.step, rows)
+        error = _errors_at(record, follower, late * record.step, rows)
         return float(error @ error)
 
     best = min(range(near - _AROUND, near + _AROUND + 1), key=lambda k: (missed(k), abs(k - near)))
-    solution = _solve(columns(best)[rows], record.seen[rows])
+    solution = solve(columns(best)[rows], record.seen[rows])
     fitted = columns(best) @ solution
     slope = (columns(best + 1) - columns(best - 1))[rows] @ solution / 2
     error = record.seen[rows] - fitted[rows]
@@ -132,23 +132,15 @@ def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     return DelayFit(follower, best * record.step, known, slope, error, rows, fitted, solution)
 
 
-def _solve(columns: Array, seen: Array) -> Array:
+def solve(columns: Array, seen: Array) -> Array:
     """Return the factors of the columns, shape (p,), that fit best, whatever their units."""
     sizes = column_sizes(columns)
     found = np.linalg.lstsq(columns / sizes, seen, rcond=None)[0]
     return np.asarray(found / sizes, float)
 
 
-def errors_of(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
-    """Return measured less fitted output of some rows, with the best gain, offset and start.
-
-    Parameters
-    ----------
-    record, follower, rows
-        As for `fit_delay`.
-    delay : float
-        In s.
-    """
+def _errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
+    """Return measured less fitted output, with the best gain, offset and start."""
     columns = follower.columns(record, delay)[rows]
     basis, _ = np.linalg.qr(columns / column_sizes(columns))
     return beyond(basis, record.seen[rows])
@@ -156,7 +148,7 @@ def errors_of(record: SignalRecord, follower: AbstractFollower, delay: float, ro
 
 def _errors(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
-    return errors_of(record, shaped, float(x[0]) * record.step, rows)
+    return _errors_at(record, shaped, float(x[0]) * record.step, rows)
 
 
 def _sensitivities(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:

@@ -18,7 +18,7 @@ from nrs_design.identification.datasets.checks import (
     gaps_in,
     pauses_text,
 )
-from nrs_design.identification.delay.fit import DelayFit, errors_of, fit_delay, fit_held
+from nrs_design.identification.delay.fit import DelayFit, fit_delay, fit_held, solve
 from nrs_design.identification.delay.models import (
     AbstractFollower,
     FirstOrder,
@@ -406,8 +406,9 @@ def _beginning(record: SignalRecord) -> SignalRecord:
 
 
 def _missed(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> float:
-    error = errors_of(record, follower, delay, rows)
-    return float(error @ error)
+    columns = follower.columns(record, delay)[rows]
+    solution = solve(columns, record.seen[rows])
+    return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
 
 
 def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[float, Estimate]]:

@@ -276,9 +276,9 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
         document.drop(node, "range_covers")
         document.put(node, "intervals", intervals)
     _put_origin(document, node, found)
-    written = _rewritten(document, node)
+    rewritten = _rewritten(document, node)
     if covered:
-        document.put(node, "range_id", written.actuator.values_id())
+        document.put(node, "range_id", rewritten.actuator.values_id())
     return document.text()
 
 

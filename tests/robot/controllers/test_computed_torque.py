@@ -18,8 +18,8 @@ def law(spec, load):
 
 
 @pytest.fixture(scope="module")
-def angle(robot):
-    return 5 * inverse_kinematics(robot, POSE)
+def angle(tilted):
+    return 5 * inverse_kinematics(tilted, POSE)
 
 
 def test_equation_4_18_with_acceleration_and_error_of_the_encoders(law, load, angle):

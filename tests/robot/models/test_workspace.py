@@ -23,27 +23,12 @@ def test_grids(robot):
     assert grid[-1, -1, -1] == pytest.approx([*np.radians([15, 20]), 0.25])
 
 
-def test_crank_range_gives_the_unprinted_lengths(robot):
-    # Thesis 4.4: -64.11 to 89.63 deg for psi within 20 deg and d = 150 to 250 mm.
-    survey = survey_workspace(robot)
-    assert np.degrees(survey.joint_low[2]) == pytest.approx(-64.11, abs=0.01)
-    assert np.degrees(survey.joint_high[2]) == pytest.approx(89.63, abs=0.01)
-    others = replace(robot, legs=tuple(replace(leg, l0=0.18) for leg in robot.legs))
-    assert np.degrees(survey_workspace(others).joint_low[2]) != pytest.approx(-64.11, abs=0.5)
-
-
 def test_corners(robot):
     survey = survey_workspace(robot)
     deepest = {(round(phi, 3), round(psi, 3)): d for phi, psi, d in survey.deepest}
     assert deepest[0.262, -0.349] == deepest[-0.262, -0.349] == pytest.approx(0.2445, abs=1e-4)
     assert deepest[0.262, 0.349] == pytest.approx(0.25)
     assert 0.999 < survey.reachable < 1
-
-
-def test_true_joint_speeds(robot):
-    # The thesis prints 2.0094 rad/s for all, the least speed of theta3 over d.
-    peaks = joint_peaks(robot, thesis_grid())
-    assert peaks.velocity == pytest.approx([1.435, 1.435, 5.13], abs=2e-3)
 
 
 def test_peaks_are_reached_and_not_exceeded(robot):

@@ -19,26 +19,6 @@ def test_what_is_printed_differently_names_its_error(rows):
     assert [row.name for row in wrong if not row.errata] == []
 
 
-def test_ids_are_distinct():
-    names = [one.id for one in errata()]
-    assert len(set(names)) == len(names)
-
-
-# Equations whose error is in a formula, not in a number.
-FORMULAS = (
-    "2.17", "3.18", "3.26", "4.1", "4.16", "4.18", "4.24", "4.25", "4.32", "4.36", "5.18", "5.19",
-    "5.24", "6.21",
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("equation", FORMULAS)
-def test_errata_without_a_number_have_one_row(equation):
-    found = [row for row in formulas.rows() if equation in row.section.split(", ")]
-    assert len(found) == 1
-    assert found[0].verdict == "printed differently"
-    assert found[0].printed != found[0].value
-
-
 def test_one_error_counts_once_with_its_rows():
     """The sign of +1618.80 is in six rows."""
     found = printed_errors((*modes.rows(), *switching.rows()))

@@ -85,8 +85,3 @@ def test_printed_numbers_are_those_of_the_text(counterparts):
         "6.34": "6.7 31.7 37.8 0.5333 0.17",
     }.items():
         assert set(numbers.split()) <= set(re.findall(r"\d+(?:\.\d+)?", said[figure])), figure
-
-
-def test_progress_names_the_figures(monkeypatch):
-    monkeypatch.setattr(figures, "read_data", lambda _: [])
-    assert draw_counterparts() == ()

@@ -31,7 +31,7 @@ def test_motions_of_the_thesis(tilted, controllers, moved, times, values, durati
         swing = np.zeros((len(times), 3))
         swing[:, COORDINATE[moved]] = values if moved == "d" else np.radians(values)
         pose = one.motion(np.array(times))[0]
-        assert pose == pytest.approx(swing + (0, 0, depth), abs=1e-12)
+        assert pose == pytest.approx(np.add(swing, (0, 0, depth)), abs=1e-12)
         assert one.duration == pytest.approx(duration, abs=0.01)
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from nrs_design.robot.models import neuroboscope
 from nrs_design.thesis import (
+    actuator,
     hands_on,
     impedance,
     modes,
@@ -18,7 +19,7 @@ from nrs_design.thesis import (
     thesis,
 )
 from nrs_design.thesis.comparison import PrintVerdict, meets_standard
-from nrs_design.thesis.table import TOPICS, count_verdicts, reproduce
+from nrs_design.thesis.table import count_verdicts, reproduce, rows_of
 
 
 @pytest.fixture(scope="module")
@@ -158,32 +159,32 @@ def test_nothing_says_that_an_iteration_never_ends(rows):
 def test_a_changed_computation_becomes_a_drift(monkeypatch):
     biased = SimpleNamespace(Mt=0.01, Bt=2.16)
     monkeypatch.setattr(impedance, "optimize_impedance", lambda problem: biased)
-    drifts = {row.name for row in impedance.rows() if row.verdict is PrintVerdict.DRIFT}
+    drifts = {row.name for row in rows_of(impedance) if row.verdict is PrintVerdict.DRIFT}
     assert "Mt, Bt: soft, Mt >= 0.01; G exact" in drifts
     assert "k_soft" not in drifts
 
 
 def test_a_sign_that_comes_out_right_becomes_a_drift(monkeypatch):
     monkeypatch.setattr(modes, "printed_rows", lambda damping, force: [[-1]])
-    drifts = {row.name for row in modes.rows() if row.verdict is PrintVerdict.DRIFT}
+    drifts = {row.name for row in rows_of(modes) if row.verdict is PrintVerdict.DRIFT}
     assert drifts == {"eigenvalues of A1 as printed", "eigenvalues of A2 as printed"}
 
 
 def test_a_topic_is_added_in_one_place(monkeypatch):
-    topic = SimpleNamespace(__name__="nrs_design.thesis.new", rows=TOPICS[0].rows)
+    topic = SimpleNamespace(__name__="nrs_design.thesis.actuator", results=actuator.results)
     monkeypatch.setattr(table, "TOPICS", (topic,))
     names: list[str] = []
-    assert reproduce(names.append) == TOPICS[0].rows()
-    assert names == ["new"]
+    assert reproduce(names.append) == rows_of(actuator)
+    assert names == ["actuator"]
 
 
 def test_another_robot_drifts(monkeypatch):
     heavy = replace(neuroboscope.robot(), base_tilt=-0.2)
     monkeypatch.setattr(robot_dynamics, "robot", lambda: heavy)
-    assert PrintVerdict.DRIFT in {row.verdict for row in robot_dynamics.rows()}
+    assert PrintVerdict.DRIFT in {row.verdict for row in rows_of(robot_dynamics)}
     longer = replace(heavy, legs=tuple(replace(leg, l0=0.21) for leg in heavy.legs))
     monkeypatch.setattr(robot_kinematics, "robot", lambda: longer)
-    drifts = [row for row in robot_kinematics.rows() if row.verdict is PrintVerdict.DRIFT]
+    drifts = [row for row in rows_of(robot_kinematics) if row.verdict is PrintVerdict.DRIFT]
     assert len(drifts) >= 3
 
 

@@ -3,6 +3,7 @@
 import pytest
 
 from nrs_design.thesis import specimens, tissue
+from nrs_design.thesis.table import rows_of
 
 
 def find(rows, name):
@@ -23,17 +24,17 @@ def find(rows, name):
     ],
 )
 def test_tissue(name, value, verdict):
-    row = find(tissue.rows(), name)
+    row = find(rows_of(tissue), name)
     assert (row.value, row.verdict) == (value, verdict)
 
 
 def test_maxwell_is_best_on_the_nose():
-    note = find(tissue.rows(), "law with the largest mean RMSE, nose").note
+    note = find(rows_of(tissue), "law with the largest mean RMSE, nose").note
     assert "Maxwell (0.0130 N m)" in note
 
 
 def test_printed_coefficients_without_elements():
-    rows = specimens.rows()
+    rows = rows_of(specimens)
     assert {row.verdict for row in rows} == {
         "reproduced",
         "printed differently",

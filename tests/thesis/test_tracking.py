@@ -10,7 +10,8 @@ from nrs_design.robot.simulation.tracking import thesis_experiments
 from nrs_design.robot.simulation.tracking.measured import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
-from nrs_design.thesis.tracking import rows
+from nrs_design.thesis import tracking
+from nrs_design.thesis.table import rows_of
 
 TEXT = TEMPLATES["robot"]
 TILTED = robot().tilted(robot_spec().balance.tilt.si)
@@ -33,7 +34,7 @@ def test_printed_beside_simulated(controller, moved, print):
 
 
 def test_measurements_stay_hardware_only():
-    assert [row.verdict for row in rows()] == ["derived"] + ["not reproducible"] * 9
+    assert [row.verdict for row in rows_of(tracking)] == ["derived"] + ["not reproducible"] * 9
 
 
 @pytest.mark.parametrize(

@@ -70,11 +70,11 @@ def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
     table: list[ReproducedValue] = []
     for topic in TOPICS:
         progress(topic.__name__.rpartition(".")[2].replace("_", " "))
-        table.extend(rows_of(topic))
+        table.extend(topic_rows(topic))
     return tuple(table)
 
 
-def rows_of(topic: ModuleType) -> tuple[ReproducedValue, ...]:
+def topic_rows(topic: ModuleType) -> tuple[ReproducedValue, ...]:
     """Return the rows of a topic: those of `rows.yaml`, and what was measured on the robot."""
     rows = compare_topic(topic.__name__.rpartition(".")[2], topic.results())
     return (*rows, *tracking.measured()) if topic is tracking else rows

@@ -6,7 +6,7 @@ from nrs_design.thesis import formulas, modes, switching
 from nrs_design.thesis.comparison import PrintVerdict
 from nrs_design.thesis.errata import errata
 from nrs_design.thesis.formulas import CHECKS
-from nrs_design.thesis.table import printed_errors, rows_of
+from nrs_design.thesis.table import printed_errors, topic_rows
 
 
 def test_every_erratum_has_a_row_and_every_row_a_known_erratum(rows):
@@ -21,7 +21,7 @@ def test_what_is_printed_differently_names_its_error(rows):
 
 def test_one_error_counts_once_with_its_rows():
     """The sign of +1618.80 is in six rows."""
-    found = printed_errors((*rows_of(modes), *rows_of(switching)))
+    found = printed_errors((*topic_rows(modes), *topic_rows(switching)))
     counts = {error.id: len(touched) for error, touched in found}
     assert counts["A(2,1)"] == 6
     assert len(found) == len(counts) == 5
@@ -30,7 +30,7 @@ def test_one_error_counts_once_with_its_rows():
 @pytest.mark.parametrize("name", CHECKS)
 def test_a_formula_that_no_longer_holds_is_a_drift(name, monkeypatch):
     monkeypatch.setattr(formulas, "CHECKS", {**CHECKS, name: lambda: False})
-    drifts = [row for row in rows_of(formulas) if row.verdict is PrintVerdict.DRIFT]
+    drifts = [row for row in topic_rows(formulas) if row.verdict is PrintVerdict.DRIFT]
     assert len(drifts) == 1
     assert name in drifts[0].section
 

@@ -19,7 +19,7 @@ from nrs_design.thesis import (
     thesis,
 )
 from nrs_design.thesis.comparison import PrintVerdict, meets_standard
-from nrs_design.thesis.table import count_verdicts, reproduce, rows_of
+from nrs_design.thesis.table import count_verdicts, reproduce, topic_rows
 
 
 @pytest.fixture(scope="module")
@@ -159,14 +159,14 @@ def test_nothing_says_that_an_iteration_never_ends(rows):
 def test_a_changed_computation_becomes_a_drift(monkeypatch):
     biased = SimpleNamespace(Mt=0.01, Bt=2.16)
     monkeypatch.setattr(impedance, "optimize_impedance", lambda problem: biased)
-    drifts = {row.name for row in rows_of(impedance) if row.verdict is PrintVerdict.DRIFT}
+    drifts = {row.name for row in topic_rows(impedance) if row.verdict is PrintVerdict.DRIFT}
     assert "Mt, Bt: soft, Mt >= 0.01; G exact" in drifts
     assert "k_soft" not in drifts
 
 
 def test_a_sign_that_comes_out_right_becomes_a_drift(monkeypatch):
     monkeypatch.setattr(modes, "printed_rows", lambda damping, force: [[-1]])
-    drifts = {row.name for row in rows_of(modes) if row.verdict is PrintVerdict.DRIFT}
+    drifts = {row.name for row in topic_rows(modes) if row.verdict is PrintVerdict.DRIFT}
     assert drifts == {"eigenvalues of A1 as printed", "eigenvalues of A2 as printed"}
 
 
@@ -174,17 +174,17 @@ def test_a_topic_is_added_in_one_place(monkeypatch):
     topic = SimpleNamespace(__name__="nrs_design.thesis.actuator", results=actuator.results)
     monkeypatch.setattr(table, "TOPICS", (topic,))
     names: list[str] = []
-    assert reproduce(names.append) == rows_of(actuator)
+    assert reproduce(names.append) == topic_rows(actuator)
     assert names == ["actuator"]
 
 
 def test_another_robot_drifts(monkeypatch):
     heavy = replace(neuroboscope.robot(), base_tilt=-0.2)
     monkeypatch.setattr(robot_dynamics, "robot", lambda: heavy)
-    assert PrintVerdict.DRIFT in {row.verdict for row in rows_of(robot_dynamics)}
+    assert PrintVerdict.DRIFT in {row.verdict for row in topic_rows(robot_dynamics)}
     longer = replace(heavy, legs=tuple(replace(leg, l0=0.21) for leg in heavy.legs))
     monkeypatch.setattr(robot_kinematics, "robot", lambda: longer)
-    drifts = [row for row in rows_of(robot_kinematics) if row.verdict is PrintVerdict.DRIFT]
+    drifts = [row for row in topic_rows(robot_kinematics) if row.verdict is PrintVerdict.DRIFT]
     assert len(drifts) >= 3
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from nrs_design.thesis import specimens, tissue
-from nrs_design.thesis.table import rows_of
+from nrs_design.thesis.table import topic_rows
 
 
 def find(rows, name):
@@ -24,17 +24,17 @@ def find(rows, name):
     ],
 )
 def test_tissue(name, value, verdict):
-    row = find(rows_of(tissue), name)
+    row = find(topic_rows(tissue), name)
     assert (row.value, row.verdict) == (value, verdict)
 
 
 def test_maxwell_is_best_on_the_nose():
-    note = find(rows_of(tissue), "law with the largest mean RMSE, nose").note
+    note = find(topic_rows(tissue), "law with the largest mean RMSE, nose").note
     assert "Maxwell (0.0130 N m)" in note
 
 
 def test_printed_coefficients_without_elements():
-    rows = rows_of(specimens)
+    rows = topic_rows(specimens)
     assert {row.verdict for row in rows} == {
         "reproduced",
         "printed differently",

@@ -11,7 +11,7 @@ from nrs_design.robot.simulation.tracking.measured import measured_rmse
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 from nrs_design.thesis import tracking
-from nrs_design.thesis.table import rows_of
+from nrs_design.thesis.table import topic_rows
 
 TEXT = TEMPLATES["robot"]
 TILTED = robot().tilted(robot_spec().balance.tilt.si)
@@ -34,7 +34,7 @@ def test_printed_beside_simulated(controller, moved, print):
 
 
 def test_measurements_stay_hardware_only():
-    assert [row.verdict for row in rows_of(tracking)] == ["derived"] + ["not reproducible"] * 9
+    assert [row.verdict for row in topic_rows(tracking)] == ["derived"] + ["not reproducible"] * 9
 
 
 @pytest.mark.parametrize(

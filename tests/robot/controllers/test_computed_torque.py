@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState
 from nrs_design.robot.design.motion_control import design_computed_torque
 from nrs_design.robot.models import inverse_kinematics
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState
 from nrs_design.robot.design.motion_control import design_independent_joint
 from nrs_design.robot.models import inverse_kinematics, simplified_dynamics
 

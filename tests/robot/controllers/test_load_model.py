@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers import LoadModel
+from nrs_design.robot.controllers.motion_laws import LoadModel
 from nrs_design.robot.models import (
     gravity_torque,
     inverse_kinematics,

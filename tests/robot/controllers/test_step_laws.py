@@ -10,8 +10,7 @@ import pytest
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.controllers.replica import step
 from nrs_design.errors import PoseError
-from nrs_design.robot.controllers import JointReference, LoadModel
-from nrs_design.robot.controllers.state import LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState, LoadModel
 from nrs_design.robot.controllers.step_laws import (
     Joints,
     build_base,

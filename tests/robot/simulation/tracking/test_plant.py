@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from nrs_design.robot.controllers import JointReference, LawState, LoadModel
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState, LoadModel
 from nrs_design.robot.design.motion_control import design_independent_joint
 from nrs_design.robot.models import (
     design_balance,

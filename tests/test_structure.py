@@ -317,7 +317,7 @@ def test_only_the_pipeline_calls_the_stages():
 SHARED = {
     # Modules of a table offer them all.
     *("render", "header_text", "source_text"),
-    *("rows", "choose", "analyze"),
+    *("results", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.

@@ -67,12 +67,12 @@ from tests.proof.systems import (
     two_ways,
 )
 from tests.proof.truth import (
-    combine,
+    edge_form,
+    edges_at,
     exponential,
     holds,
     is_in_other_units,
-    times,
-    transpose,
+    moves,
 )
 from tests.search.support import found as accepted
 from tests.support import broken, ends_soon, is_definite_by_ldl
@@ -1269,67 +1269,6 @@ def three_states(time: Time, *, pulled: bool = True, disturbed: bool = True) -> 
     )
 
 
-def steps_by_hand(system: SwitchedSystem):
-    """Yield where, mode, places, how many rows there are after it, and names of the crossings."""
-    flows, pulls = system.time is Time.CONTINUOUS, system.contact.pulls
-    for k, mode in enumerate(system.modes):
-        yield f"in mode {mode.name}", k, ("modes", "modes"), 3, {}
-        if not flows:
-            where = f"where contact is lost in mode {mode.name}"
-            yield where, k, ("modes", "free"), 2, {"lost": None}
-    for k, mode in enumerate(system.contact.free, len(system.modes)):
-        yield f"in free motion, mode {mode.name}", k, ("free", "free"), 2, {}
-        if not flows:
-            yield f"where contact is made, mode {mode.name}", k, ("free", "modes"), 3, {}
-            where = f"where contact is made at the surface, mode {mode.name}"
-            yield where, k, ("free", "modes"), 2, {}
-        for i, q in enumerate(pulls, 1):
-            # In steps, the numerators of a force are as good as the force.
-            (force,) = q.fractions() if flows else q.numerators
-            own = {f"pull {i} {mode.name}" if flows else f"pull {i}": force}
-            yield f"while the environment lags, mode {mode.name}", k, ("modes", "modes"), 3, own
-            if not flows:
-                both = {f"pull {i} lost": force, f"lost pull {i}": None}
-                where = f"where a lagging environment is left, mode {mode.name}"
-                yield where, k, ("modes", "free"), 2, both
-
-
-def form_by_hand(system, evidence, a, b, k, rows, crossings):
-    """The inequality of an edge, as the class states it."""
-    n = 2 if evidence.nodes[a].place == "free" else 3
-    M = [list(row) for row in system.every_mode[k].A.fractions()]
-    names = {m.fact: m.value for m in evidence.multipliers if m.target in (None, b)}
-    parts = [*zip(("rounding 1",), system.roundings, strict=False)]
-    parts += [*zip(("coupling 1",), system.couplings, strict=False)]
-    for _, part in parts:
-        for row, (entry,) in zip(M, part.columns[k].fractions(), strict=True):
-            row.append(entry)
-    sizes = [[*part.rows[k].fractions()[0], *[Fraction(0)] * 2] for _, part in parts]
-    sizes = [row[: 3 + len(parts)] for row in sizes]
-    whole = M[2]
-    if n == 2:
-        M, sizes = ([[*row[:2], *row[3:]] for row in part] for part in (M, sizes))
-    M, width = M[:rows], len(M[0])
-    F = [[Fraction(0)] * width for _ in range(width)]
-    for i, j in product(range(n), repeat=2):
-        F[i][j] += evidence.nodes[a].form[i][j]
-    G = [list(row[:rows]) for row in evidence.nodes[b].form[:rows]]
-    if system.time is Time.CONTINUOUS:
-        half = times([row[:n] for row in F], M)
-        form = combine((-1, half), (-1, transpose(half)), (-2 * evidence.rate, F))
-    else:
-        form = combine((evidence.rate**2, F), (-1, times(transpose(M), times(G, M))))
-    for i, ((name, _), q) in enumerate(zip(parts, sizes, strict=True), n):
-        form[i][i] += names[name]
-        form = combine((1, form), (-names[name], times(transpose([q]), [q])))
-    for name, row in crossings.items():
-        c = whole if row is None else [*row, *[Fraction(0)] * len(parts)]
-        for j, entry in enumerate(c):
-            form[n - 1][j] += names[name] * entry
-            form[j][n - 1] += names[name] * entry
-    return form
-
-
 MULTIPLIERS3 = {
     Time.CONTINUOUS: ("pull 1 f", "pull 2 f", "pull 1 g", "pull 2 g", "coupling 1"),
     STEPS: ("lost", *(f"{p}" for k in (1, 2) for p in (f"pull {k}", f"pull {k} lost",
@@ -1352,17 +1291,15 @@ def test_every_form_by_hand(shape):
         numbers = tuple(Multiplier(fact, value) for fact, value in facts)
         evidence = FormsOnGraph(nodes, 0, Fraction(2, 7), multipliers=numbers)
     assert evidence.find_misfit(system) is None
-    place = [node.place for node in evidence.nodes]
+    disturbed = shape != "each"
+    acting = {"rounding": disturbed and bool(system.roundings), "coupling": disturbed}
+    steps = [move for move in moves(system, lost=True, **acting) if move.strict]
     wanted = [
-        (where, form_by_hand(system, evidence, a, b, k, rows, crossings))
-        for where, k, places, rows, crossings in steps_by_hand(system)
-        for a, b in product(range(len(place)), repeat=2)
-        if (place[a], place[b]) == places
-        and any(e.source in (None, a) and e.mode in (None, system.every_mode[k].name)
-                for e in evidence.edges)
-    ]  # fmt: skip
+        (steps[k].where, edge_form(evidence, steps[k], a, b))
+        for k, a, b in edges_at(evidence, steps)
+    ]
     words, forms = zip(*evidence.forms(system), strict=True)
-    count = len(place)
+    count = len(evidence.nodes)
     assert forms[:count] == tuple(node.form for node in evidence.nodes)
     found = [word.partition("rate ")[2] for word in words[count:]]
     assert found == [where for where, _ in wanted]

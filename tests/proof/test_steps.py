@@ -17,8 +17,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import (
     Acting,
-    find_odd_multipliers,
-    find_odd_roundings,
     flow_step,
     map_step,
     multiplier_names,
@@ -276,22 +274,6 @@ def test_every_form_by_hand(keeps, acting, roundings):
             assert is_in_other_units(form, true)
 
 
-@pytest.mark.parametrize(
-    ("roundings", "fault"),
-    [
-        ((), None),
-        ((1, 2), None),
-        ((0, 0), None),
-        ((1,), "there is not one multiplier for each rounding"),
-        ((1, 2, 3), "there is not one multiplier for each rounding"),
-        ((-1, 2), "the multiplier of a rounding is negative"),
-        ((2, -1), "the multiplier of a rounding is negative"),
-    ],
-)
-def test_multipliers_of_roundings(roundings, fault):
-    assert find_odd_roundings(roundings, three_states(contact=True)) == fault
-
-
 def test_names_of_multipliers():
     """One for lost contact, and three for every force; in flows one for each force and mode."""
     assert multiplier_names(replace(bouncing_in_steps(), contact=None)) == ()
@@ -299,11 +281,6 @@ def test_names_of_multipliers():
     pulled = ("pull 1", "pull 1 lost", "lost pull 1", "pull 2", "pull 2 lost", "lost pull 2")
     assert multiplier_names(bouncing_in_steps(1)) == ("lost", *pulled)
     assert multiplier_names(bouncing(1)) == ("pull 1 free", "pull 2 free")
-    needed = "there is not one multiplier for each condition that needs it"
-    assert find_odd_multipliers((4, 0), bouncing(1)) is None
-    assert find_odd_multipliers((4,), bouncing(1)) == needed
-    assert find_odd_multipliers((1,), replace(bouncing(1), contact=None)) == needed
-    assert find_odd_multipliers((4, -1), bouncing(1)) == "a multiplier is negative"
 
 
 def test_a_map_and_a_flow_by_hand():

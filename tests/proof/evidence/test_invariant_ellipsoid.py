@@ -46,6 +46,8 @@ STEPS = InvariantEllipsoid(
 )
 PULLED = replace(BOUNCE, Q=((60, 17), (17, 55)), shares=(Fraction(1, 3),), multipliers=(80, 80))
 KEPT = replace(bouncing(), contact=None)
+ROUNDING = Rounding("F", (matrix([[0], [0]]),) * 3, (matrix([[0, 0, 0]]),) * 3)
+ROUNDED = replace(bouncing_in_steps(), roundings=(ROUNDING, replace(ROUNDING, name="G")))
 GENUINE = (
     (pushed(bouncing()), BOUNCE),
     (pushed(bouncing(1)), PULLED),
@@ -508,10 +510,22 @@ def test_shares_of_two_disturbances(shares, time, fits):
     assert (both.find_misfit(three_states(time, (), ())) is None) is fits
 
 
-@pytest.mark.parametrize("multipliers", [(80, -1), (-1, 80)])
-def test_no_multiplier_is_negative(multipliers):
-    misfit = replace(PULLED, multipliers=multipliers).find_misfit(pushed(bouncing(1)))
-    assert misfit == "a multiplier is negative"
+@pytest.mark.parametrize(
+    ("system", "evidence", "changes", "fault"),
+    [
+        (bouncing(1), PULLED, {"multipliers": (80, -1)}, "a multiplier is negative"),
+        (bouncing(1), PULLED, {"multipliers": (-1, 80)}, "a multiplier is negative"),
+        (ROUNDED, STEPS, {"roundings": (1, 2)}, None),
+        (ROUNDED, STEPS, {"roundings": (0, 0)}, None),
+        (ROUNDED, STEPS, {"roundings": ()}, None),
+        (ROUNDED, STEPS, {"roundings": (1,)}, "there is not one multiplier for each rounding"),
+        (ROUNDED, STEPS, {"roundings": (1, 2, 3)}, "there is not one multiplier for each rounding"),
+        (ROUNDED, STEPS, {"roundings": (-1, 2)}, "the multiplier of a rounding is negative"),
+        (ROUNDED, STEPS, {"roundings": (2, -1)}, "the multiplier of a rounding is negative"),
+    ],
+)
+def test_one_multiplier_for_each(system, evidence, changes, fault):
+    assert replace(evidence, **changes).find_misfit(pushed(system)) == fault
 
 
 def test_no_multiplier_where_contact_is_kept():

@@ -143,29 +143,6 @@ def test_a_disturbance_is_rounded_too():
         assert candidate(Fraction("2.99"), Fraction(t, 200)).find_fault(system) is not None
 
 
-def changed(**changes: object) -> SwitchedSystem:
-    system = bouncing_and_rounded("1/1000")
-    return replace(system, roundings=(replace(system.roundings[0], **changes),))
-
-
-@pytest.mark.parametrize(
-    ("system", "fault"),
-    [
-        (changed(columns=(matrix([[1], [0]]),) * 2), "one column and row for every mode"),
-        (changed(columns=(matrix([[1]]),) * 3), "the size of the state"),
-        (changed(rows=(matrix([[1, 1, 1]]),) * 3), "the size of the state"),
-        (changed(rows=(matrix([[1, 1]]),) * 3), "depends on the deflection in free motion"),
-        (
-            replace(changed(), roundings=changed().roundings * 2),
-            "is said twice",
-        ),
-        (replace(family([[-1]]), roundings=rounded(0, 0).roundings), "there are no steps"),
-    ],
-)
-def test_roundings_that_make_no_sense(system, fault):
-    assert fault in find_contradiction(system)
-
-
 @settings(deadline=None)
 @given(
     st.lists(st.integers(-8, 8), min_size=4, max_size=4),

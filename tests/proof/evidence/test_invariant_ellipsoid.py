@@ -1,6 +1,5 @@
 """Bounds on an output: known answers, attacks, and what each condition bars."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 
@@ -111,11 +110,6 @@ def test_the_exact_bound_of_one_state(system, share):
     )
 
 
-def test_a_larger_disturbance_is_not_covered():
-    system = pushed(bouncing(), "1/2")
-    assert "can be left" in BOUNCE.find_fault(system)
-
-
 def test_the_claim_says_the_weaker_number():
     """A level is rounded up, and the size of a disturbance down."""
     system = pushed(bouncing(), Fraction(1, 7))
@@ -139,14 +133,6 @@ def test_the_bound_in_numbers():
 
 def test_a_function_that_decreases_bounds_no_output():
     assert common_quadratic(((1,),), 0, Fraction(1)).bound(family([[-2]])) is None
-
-
-def test_a_limit_that_is_not_kept_is_not_said_to_be():
-    system = pushed(bouncing())
-    tight = replace(system, outputs=(replace(system.outputs[0], limit=Fraction(59, 100)),))
-    assert "That the limit of 0.59 N is kept is not shown;" in BOUNCE.claim(tight)
-    none = replace(system, outputs=(replace(system.outputs[0], limit=None),))
-    assert "limit" not in BOUNCE.claim(none)
 
 
 # Families that leave the set, with evidence that keeps all conditions but one. The disturbance
@@ -313,34 +299,6 @@ def test_what_lags_in_steps_can_leave_the_set(where):
     assert replace(ellipsoid, multipliers=multipliers[:1]).find_fault(sprung) is None
 
 
-def changed_channel(**changes: object) -> Callable[[SwitchedSystem], SwitchedSystem]:
-    return lambda s: replace(s, channels=(replace(s.channels[0], **changes),))
-
-
-def changed_output(**changes: object) -> Callable[[SwitchedSystem], SwitchedSystem]:
-    return lambda s: replace(s, outputs=(replace(s.outputs[0], **changes),))
-
-
-COLUMN = matrix([[1], [0]])
-
-
-@pytest.mark.parametrize(
-    ("change", "fault"),
-    [
-        (changed_channel(bound=Fraction(0)), "no positive bound"),
-        (changed_channel(columns=(COLUMN,) * 2), "not one column for every mode"),
-        (changed_channel(columns=(matrix([[1]]),) * 3), "the size of the state"),
-        (changed_output(rows=()), "has no rows"),
-        (changed_output(rows=(matrix([[1, 0, 0]]),)), "the size of the state"),
-        (changed_output(limit=Fraction(0)), "limit of an output is not positive"),
-        (changed_output(name="push"), "one name"),
-        (lambda s: replace(s, channels=s.channels * 2), "one name"),
-    ],
-)
-def test_disturbances_and_outputs_that_make_no_sense(change, fault):
-    assert fault in BOUNCE.find_fault(change(pushed(bouncing())))
-
-
 @settings(deadline=None)
 @given(
     st.lists(st.integers(-8, 8), min_size=4, max_size=4),
@@ -485,13 +443,6 @@ def test_forms_in_steps_are_those_of_its_numbers(multipliers, roundings):
 )
 def test_the_limits_of_every_number_in_steps(changes, fault):
     assert replace(STEPS, **changes).find_misfit(pushed(bouncing_in_steps())) == fault
-
-
-@pytest.mark.parametrize(("share", "is_odd"), [(0, True), ("1/9", False), (1, False), (2, False)])
-def test_a_share_by_the_second(share, is_odd):
-    misfit = replace(BOUNCE, shares=(Fraction(share),)).find_misfit(pushed(bouncing()))
-    assert (misfit == "the shares are not those of a set that is not left") is is_odd
-    assert (misfit is None) is not is_odd
 
 
 @pytest.mark.parametrize(

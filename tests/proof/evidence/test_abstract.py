@@ -456,3 +456,11 @@ def test_a_kind_that_does_not_exist_is_no_name_of_the_package():
     package = import_module("nrs_design.proof.evidence")
     with pytest.raises(AttributeError, match="has no attribute 'Hope'"):
         _ = package.Hope
+
+
+def test_evidence_about_every_mode_holds_for_its_equals_too():
+    system, evidence = genuine("no-common-quadratic")
+    assert evidence.spread(system, twice(system)) is evidence
+    system, evidence = genuine("common-quadratic")
+    assert evidence.spread(system, twice(system)) == evidence
+    assert evidence.find_fault(twice(system)) is None

@@ -14,6 +14,7 @@ from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence import BlockTriangular
 from nrs_design.proof.evidence.fields import (
     find_unreadable,
+    rate_text,
     rate_words,
     read_integer,
     read_integers,
@@ -39,6 +40,7 @@ from tests.proof.systems import (
     saturating,
     settling,
 )
+from tests.support import number_in
 
 
 @pytest.mark.parametrize("value", [True, 1.0, "1", None, [1], Decimal(1), Fraction(1)])
@@ -329,3 +331,11 @@ def test_free_motion_among_the_modes_is_read_as_it_was_written():
         fields = json.loads(json.dumps(system_fields(written)))
         assert read_system(written.name, fields) == written
         assert written.is_losable
+
+
+@given(st.fractions(min_value="1/1000000", max_value=10**6))
+def test_a_printed_rate_never_promises_more_than_the_proof(rate):
+    # Decay of a continuous system is faster the larger alpha is, of a discrete one the smaller rho.
+    slower, larger = (number_in(rate_text(rate, time)) for time in Time)
+    assert slower <= rate <= larger
+    assert abs(slower / rate - 1) < Fraction(1, 10**5)

@@ -25,9 +25,8 @@ from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import COUPLING, ROUNDING, Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY
-from nrs_design.search.lifted import products, vanishing_basis
+from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import time_unit
-from nrs_design.search.polynomial import make_vanish
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
     begin,
@@ -53,6 +52,8 @@ LARGEST_MULTIPLIER = 64.0
 LOST_TO_ERRORS = 1.25
 # Times at which a stay of any length in a range is looked at.
 SAMPLES = 17
+# Forms reach up to the identity where there are any; all of them below this are zero.
+NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
 
@@ -242,6 +243,8 @@ class FormsProgram:
             np.tensordot(part, symmetric_basis(n), axes=1)
             for part, n in zip(parts, self.sizes, strict=False)
         ]
+        if max(np.abs(Q).max() for Q in forms) < NOTHING:
+            return None
         # Inequalities of maps have been divided by what is left of the form after a step.
         keeps = [
             1.0 if edge.is_flow else 1 / f for edge, f in zip(self.edges, factors, strict=True)

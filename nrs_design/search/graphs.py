@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +16,22 @@ from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.steps import Stays
 from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING
-from nrs_design.proof.switching import Clock
+from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import own_norm, scale_states
+from nrs_design.search.balance import balance, own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.conewise_quadratic import WITH_ERRORS
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
+from nrs_design.search.forms import SAMPLES, Drawing, FormCoordinates, FormsProgram
 from nrs_design.search.lifted import monomial_weights
+from nrs_design.search.polynomial import conewise_cost, family_cost
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
+from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
@@ -40,6 +45,12 @@ ANY_RATE = Fraction(1)
 KEPT = 0.99
 # Where more conditions than this are to be checked, what the arithmetic rounds is left out.
 MOST_ROUNDED = 250
+# Numbers of steps that are each shown for a mode that is stable, too.
+FEW_STAYS = 64
+# How finely the stays of a mode that must be left are enclosed.
+PIECES = (32, 256, 1024)
+# Work of checking that a form is positive in exact arithmetic, per entry of its matrix.
+PER_CHECK = 6e-5
 
 
 @dataclass(frozen=True)
@@ -55,6 +66,16 @@ class Rates:
     pieces: Sequence[int] = (1,)  # How finely stays of any length are enclosed
     always: bool = False  # Look for the largest rate, whatever was asked for
     words: str = "found with the largest decay rate"
+
+
+# Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
+POLYNOMIAL = Rates(
+    resolution=2.0**-8,
+    smallest=2.0**-10,
+    nearest=0.998,
+    bits=digits(10),
+    words="found with a decay rate near the largest",
+)
 
 
 def propose(
@@ -259,6 +280,63 @@ def _free(system: SwitchedSystem) -> tuple[Mode, ...]:
     return (system.contact or Contact(())).free
 
 
+def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
+    """Search for a form for each mode, under its rules of switching.
+
+    Parameters
+    ----------
+    family : Family
+        The modes, of any sizes, and their switching.
+    degree : int
+        Half the degree of the forms; beyond 1 for discrete time.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice for another solution.
+    """
+    system, allowance = family.system, family.allowance
+    cost, what = functions_cost(system, degree)
+    checked = replace(cost, work=cost.work + _work_of_checks(system, degree))
+    allowance.require(checked, f"{what}, with the exact check of what it finds,")
+    drawing = draw_each_mode(family, degree)
+    if not drawing.is_finite:
+        return OUT_OF_RANGE
+    left = drawing.graph.stays is not None and drawing.graph.stays.leaving
+    rates = Rates(nearest=0.999, bits=digits(6))
+    if left and system.time is Time.CONTINUOUS:
+        # Enclosures take time: few attempts, and wider gaps.
+        rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True), pieces=PIECES)
+    always = family.optimize_rate or not family.stand_ins()
+    rates = replace(rates, always=always, words="found")
+    return (yield from propose([FormsProgram(drawing)], family, family.limit, rates))
+
+
+def draw_each_mode(family: Family, degree: int) -> Drawing:
+    """Draw a node for each mode, as a place of its own."""
+    system = family.system
+    like = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
+    number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
+    matrices = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
+    shared = [balance(np.array(list(matrices.values())))] if system.is_uniform else []
+    coordinates = []
+    for name in number:
+        d = shared[0] if shared else balance(matrices[name][None])
+        coordinates.append(lifted_coordinates(d, degree))
+    leaving = tuple(
+        mode.name for mode in system.modes if _is_left(system, mode, system.stays()[mode.name])
+    )
+    graph = FormsOnGraph(
+        tuple(Node(mode.name, ()) for mode in system.modes),
+        0,
+        ANY_RATE,
+        degree,
+        stays=Stays(leaving),
+    )
+    forms = tuple(number[like[mode.name]] for mode in system.modes)
+    return Drawing(system, graph, forms, tuple(coordinates))
+
+
 def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for all axes that act on each other.
 
@@ -279,6 +357,32 @@ def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
     rates = Rates(resolution=2.0**-9, smallest=2.0**-12, bits=(16, 24, 32, 40, 50, 60))
     programs = [FormsProgram(drawing) for drawing in drawings]
     return (yield from propose(programs, family, family.limit, rates))
+
+
+def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
+    """Search for a polynomial of degree 2d that all modes share.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    family.allowance.require(*family_cost(family.system, degree))
+    program = FormsProgram(draw_together(family, degree))
+    return (yield from propose([program], family, family.limit, POLYNOMIAL))
+
+
+def search_conewise_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
+    """Search for a polynomial of degree 2d for contact and free motion.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    family.allowance.require(*conewise_cost(family.system, degree))
+    program = FormsProgram(draw_together(family, degree, lost=True))
+    return (yield from propose([program], family, family.limit, POLYNOMIAL))
 
 
 def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
@@ -322,3 +426,44 @@ def draw_together(
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
     return Drawing(system, graph, (0,) * len(places), (own,), solved)
+
+
+def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
+    """Predict what one solution takes, before anything is lifted; say for what."""
+    n = max(mode.A.shape[0] for mode in system.modes)
+    order = comb(n + degree - 1, degree)
+    own = order * (order + 1) // 2
+    forms = own - comb(n + 2 * degree - 1, 2 * degree)
+    decreases = _count_decreases(system)
+    shared = own * len(system.modes) + 1
+    cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
+    what = f"a program with {len(cones)} blocks of order {order}"
+    return program_cost(shared + forms * decreases, shared, cones), what
+
+
+def _work_of_checks(system: SwitchedSystem, degree: int) -> float:
+    """Predict the work of checking what is found, by us and by the second library."""
+    n = max(mode.A.shape[0] for mode in system.modes)
+    order = comb(n + degree - 1, degree)
+    return 2 * _count_decreases(system) * PER_CHECK * order**2
+
+
+def _count_decreases(system: SwitchedSystem) -> int:
+    counts = {name: _count_stays(system, stay) for name, stay in system.stays().items()}
+    return len(system.modes) + sum(counts[edge.source.name] for edge in system.edges())
+
+
+def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
+    if stay.longest is None:
+        return 1
+    if system.time is Time.CONTINUOUS:
+        return SAMPLES
+    return int(stay.longest) - int(stay.shortest) + 1
+
+
+def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:
+    """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
+    if stay.longest is None:
+        return False
+    few = stay.longest - stay.shortest < FEW_STAYS and system.time is Time.DISCRETE
+    return few or not is_stable(mode.A, system.time)

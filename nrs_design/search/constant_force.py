@@ -12,23 +12,20 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import ConstantForce
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_program import (
-    FEWEST_STEPS,
-    LARGEST_MULTIPLIER,
-    SMALLEST_MARGIN,
-    START_FLOOR,
-    Motions,
-    separating_coordinates,
-)
-from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.family import Family
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
-from nrs_design.search.lmi import time_unit
+from nrs_design.search.lmi import FEWEST_STEPS, START_FLOOR, time_unit
+from nrs_design.search.motions import Motions, numerators, separating_coordinates
 from nrs_design.search.rounding import digits, unscale
 from nrs_design.search.sdp import pack, symmetric_basis
 from nrs_design.work import Allowance, Cost
 
 Array = NDArray[np.float64]
+
+# The slope lies between 0 and this, in coordinates where all numbers are of like size.
+LARGEST_SLOPE = 64.0
+# Rounding takes about as much as a smaller margin gives.
+SMALLEST_MARGIN = 1e-10
 
 
 def search_constant_force(
@@ -100,7 +97,7 @@ def find_constant_force(A: Array, allowance: Allowance | None = None) -> tuple[A
     images[-1, :counted] = -np.eye(n)
     constant = np.zeros(images.shape[1:])
     constant[counted + 1 :] = np.eye(n)
-    constant[-1, 0, 0], constant[-1, 1, 1] = 0.0, LARGEST_MULTIPLIER
+    constant[-1, 0, 0], constant[-1, 1, 1] = 0.0, LARGEST_SLOPE
     step = step_cost(len(images), len(constant), n)
     described = f"a program of {len(images)} unknowns and {len(constant)} blocks"
     allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), described)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,26 +16,25 @@ from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.proof.steps import Stays
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING
+from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_program import Motions, separating_coordinates
-from nrs_design.search.conewise_quadratic import WITH_ERRORS
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
-from nrs_design.search.forms import SAMPLES, Drawing, FormCoordinates, FormsProgram
+from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
 from nrs_design.search.lifted import monomial_weights
-from nrs_design.search.polynomial import conewise_cost, family_cost
+from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
-from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
+# Few roundings with errors: more digits at once, as every check takes longer.
+WITH_ERRORS = (24, 32, 40, 50, 60)
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
 # Programs take the steps of a system in units that suit this rate.
@@ -49,8 +47,6 @@ MOST_ROUNDED = 250
 FEW_STAYS = 64
 # How finely the stays of a mode that must be left are enclosed.
 PIECES = (32, 256, 1024)
-# Work of checking that a form is positive in exact arithmetic, per entry of its matrix.
-PER_CHECK = 6e-5
 
 
 @dataclass(frozen=True)
@@ -84,7 +80,7 @@ def propose(
     limit: float,
     rates: Rates,
     *,
-    errors: bool = False,
+    covers: int = 0,
 ) -> Candidates[FormsOnGraph]:
     """Solve for any rate; then, if asked to, for the largest, which is proposed first.
 
@@ -98,8 +94,8 @@ def propose(
         The rate that no form can beat.
     rates : Rates
         How the largest rate is looked for.
-    errors : bool
-        Whether all but the last leave room for errors that they do not solve for.
+    covers : int
+        So many of them, the first ones, leave room for errors that they do not solve for.
 
     Raises
     ------
@@ -113,13 +109,14 @@ def propose(
     part = allowance.part(rates.share)
     if family.optimize_rate or rates.always:
         half = part.part(0.5)
+
         best = bisect_position(
             lambda s: asked.solve(rate_at(s, limit, time), half) is not None,
             rates.resolution,
             rates.smallest,
         )
     for k, program in enumerate(programs, 1):
-        covered = errors and k < len(programs)
+        covered = k <= covers
         bits = WITH_ERRORS if covered else rates.bits
         try:
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
@@ -212,7 +209,7 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
     programs, limit = [FormsProgram(drawing)] * ways, _limit(family, clock)
-    return (yield from propose(programs, family, limit, rates, errors=True))
+    return (yield from propose(programs, family, limit, rates, covers=ways - 1))
 
 
 def draw_turns(family: Family, clock: Clock) -> Drawing:
@@ -297,7 +294,7 @@ def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
     """
     system, allowance = family.system, family.allowance
     cost, what = functions_cost(system, degree)
-    checked = replace(cost, work=cost.work + _work_of_checks(system, degree))
+    checked = replace(cost, work=cost.work + work_of_checks(system, degree))
     allowance.require(checked, f"{what}, with the exact check of what it finds,")
     drawing = draw_each_mode(family, degree)
     if not drawing.is_finite:
@@ -335,6 +332,52 @@ def draw_each_mode(family: Family, degree: int) -> Drawing:
     )
     forms = tuple(number[like[mode.name]] for mode in system.modes)
     return Drawing(system, graph, forms, tuple(coordinates))
+
+
+def search_together(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes, in contact and free.
+
+    Where the arithmetic rounds, forms that cover that are tried before others.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    lost, rounds = family.system.contact is not None, bool(family.system.roundings)
+    return (yield from _together(family, rounds + lost, rounds, lost=lost))
+
+
+def search_raw(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes in the coordinates of the spec, without balancing."""
+    n = family.system.order
+    raw = FormCoordinates(np.zeros(n, dtype=np.int64), np.eye(n))
+    return (yield from _together(family, coordinates=raw))
+
+
+def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes in coordinates in which their own norms are round."""
+    return (yield from _together(family))
+
+
+def _together(
+    family: Family,
+    times: int = 1,
+    covers: int = 0,
+    *,
+    lost: bool = False,
+    coordinates: FormCoordinates | None = None,
+) -> Candidates[FormsOnGraph]:
+    """Ask one program so many times, the first times for forms that cover errors."""
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    drawing = draw_together(family, 1, lost=lost)
+    if coordinates is not None:
+        drawing = replace(drawing, coordinates=(coordinates,))
+    if not drawing.is_finite:
+        return OUT_OF_RANGE
+    programs = [FormsProgram(drawing)] * times
+    return (yield from propose(programs, family, family.limit, Rates(share=0.5), covers=covers))
 
 
 def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
@@ -412,8 +455,6 @@ def draw_together(
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]
     facts = [*(f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1))]
-    if ROUNDING not in solved:
-        facts = []
     facts += [f"{COUPLING} {k}" for k, _ in enumerate(system.couplings, 1)]
     graph = FormsOnGraph(
         tuple(Node(place, ()) for place in places),
@@ -426,39 +467,6 @@ def draw_together(
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
     return Drawing(system, graph, (0,) * len(places), (own,), solved)
-
-
-def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict what one solution takes, before anything is lifted; say for what."""
-    n = max(mode.A.shape[0] for mode in system.modes)
-    order = comb(n + degree - 1, degree)
-    own = order * (order + 1) // 2
-    forms = own - comb(n + 2 * degree - 1, 2 * degree)
-    decreases = _count_decreases(system)
-    shared = own * len(system.modes) + 1
-    cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
-    what = f"a program with {len(cones)} blocks of order {order}"
-    return program_cost(shared + forms * decreases, shared, cones), what
-
-
-def _work_of_checks(system: SwitchedSystem, degree: int) -> float:
-    """Predict the work of checking what is found, by us and by the second library."""
-    n = max(mode.A.shape[0] for mode in system.modes)
-    order = comb(n + degree - 1, degree)
-    return 2 * _count_decreases(system) * PER_CHECK * order**2
-
-
-def _count_decreases(system: SwitchedSystem) -> int:
-    counts = {name: _count_stays(system, stay) for name, stay in system.stays().items()}
-    return len(system.modes) + sum(counts[edge.source.name] for edge in system.edges())
-
-
-def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
-    if stay.longest is None:
-        return 1
-    if system.time is Time.CONTINUOUS:
-        return SAMPLES
-    return int(stay.longest) - int(stay.shortest) + 1
 
 
 def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:

@@ -57,13 +57,13 @@ LADDER: tuple[Rung, ...] = (
         "conewise quadratic",
         Method.CONEWISE_QUADRATIC,
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
-        _in("conewise_quadratic", "search_conewise"),
+        _in("graphs", "search_together"),
     ),
     Rung(
         "quadratic, with roundings",
         Method.LMI,
         lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
-        _in("conewise_quadratic", "search_conewise"),
+        _in("graphs", "search_together"),
     ),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said
     # of the matrices all the same.
@@ -128,14 +128,14 @@ LADDER: tuple[Rung, ...] = (
         "lmi, raw",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        _in("common_quadratic", "search_raw"),
+        _in("graphs", "search_raw"),
         only_quadratic=True,
     ),
     Rung(
         "lmi, preconditioned",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        _in("common_quadratic", "search_preconditioned"),
+        _in("graphs", "search_preconditioned"),
         only_quadratic=True,
     ),
     Rung(
@@ -185,7 +185,7 @@ LADDER: tuple[Rung, ...] = (
         Method.MODE_POLYNOMIAL,
         lambda f: f.has_rules and not f.is_continuous,
         _in("graphs", "search_modes"),
-        cost=_in("graphs", "functions_cost"),
+        cost=_in("polynomial", "functions_cost"),
     ),
     Rung(
         "period",

@@ -1,15 +1,23 @@
-"""What a search for polynomials takes: known before anything is lifted."""
+"""How high the degrees of forms may rise, and what their programs take.
+
+Both are known before anything is lifted.
+"""
 
 from __future__ import annotations
 
 from math import comb
 
 from nrs_design.proof.evidence.graph import MAX_DEGREE, MAX_MONOMIALS
+from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import Stay
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.forms import SAMPLES
 from nrs_design.search.sdp import program_cost
 from nrs_design.work import Cost
 
 HELD = f"a certificate holds at most {MAX_MONOMIALS} monomials and degree {MAX_DEGREE}"
+# Work of checking that a form is positive in exact arithmetic, per entry of its matrix.
+PER_CHECK = 6e-5
 
 
 def highest_degree(variables: int) -> int:
@@ -19,48 +27,57 @@ def highest_degree(variables: int) -> int:
     return max(fitting, default=1)
 
 
-def polynomial_cost(variables: int, modes: int, degree: int) -> tuple[Cost, str]:
-    """Predict what a common polynomial takes before anything is lifted; say for what.
-
-    Parameters
-    ----------
-    variables : int
-        States.
-    modes : int
-        How many.
-    degree : int
-        The d of a form of degree 2d.
-    """
-    order = comb(variables + degree - 1, degree)
-    shared = order * (order + 1) // 2 + 1
-    forms = shared - 1 - comb(variables + 2 * degree - 1, 2 * degree)
-    cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
-    return program_cost(shared + modes * forms, shared, cones), f"a program in {order} monomials"
-
-
 def family_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict the same for a system; see `polynomial_cost`."""
-    return polynomial_cost(system.order, len(system.modes), degree)
+    """Predict what a form of degree 2d for all modes takes; say for what."""
+    return _shared_cost(system, degree, 0)
 
 
 def conewise_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
-    """Predict what one solution takes, before anything is lifted; say for what.
+    """Predict the same in contact and free motion."""
+    return _shared_cost(system, degree, len(system.free))
 
-    Parameters
-    ----------
-    system : SwitchedSystem
-        In which contact is lost.
-    degree : int
-        The d of a form of degree 2d.
-    """
-    assert system.contact is not None  # the ladder
-    n, free = system.order, len(system.contact.free)
-    order, inner = (comb(m + degree - 1, degree) for m in (n, n - 1))
-    shared = order * (order + 1) // 2 + 1
-    forms = shared - 1 - comb(n + 2 * degree - 1, 2 * degree)
-    flying = inner * (inner + 1) // 2 - comb(n - 1 + 2 * degree - 1, 2 * degree)
-    modes = len(system.modes)
+
+def _shared_cost(system: SwitchedSystem, degree: int, free: int) -> tuple[Cost, str]:
+    n, modes = system.order, len(system.modes)
+    (order, own, forms), (inner, _, flying) = (_sizes(k, degree) for k in (n, n - 1))
+    shared = own + 1
     cones = [(order, shared)] * 2 + [(order, shared + forms)] * modes
     cones += [(inner, shared + flying)] * free
     unknowns = shared + modes * forms + free * flying
     return program_cost(unknowns, shared, cones), f"a program in {order} monomials"
+
+
+def _sizes(variables: int, degree: int) -> tuple[int, int, int]:
+    """Return how many monomials there are, forms of them, and forms that vanish."""
+    order = comb(variables + degree - 1, degree)
+    own = order * (order + 1) // 2
+    return order, own, own - comb(variables + 2 * degree - 1, 2 * degree)
+
+
+def functions_cost(system: SwitchedSystem, degree: int) -> tuple[Cost, str]:
+    """Predict what a form of degree 2d for each mode takes; say for what."""
+    order, own, forms = _sizes(max(mode.A.shape[0] for mode in system.modes), degree)
+    decreases = _count_decreases(system)
+    shared = own * len(system.modes) + 1
+    cones = [(order, own)] * (2 * len(system.modes)) + [(order, 2 * own + forms)] * decreases
+    what = f"a program with {len(cones)} blocks of order {order}"
+    return program_cost(shared + forms * decreases, shared, cones), what
+
+
+def work_of_checks(system: SwitchedSystem, degree: int) -> float:
+    """Predict the work of checking what is found, by us and by the second library."""
+    order, *_ = _sizes(max(mode.A.shape[0] for mode in system.modes), degree)
+    return 2 * _count_decreases(system) * PER_CHECK * order**2
+
+
+def _count_decreases(system: SwitchedSystem) -> int:
+    counts = {name: _count_stays(system, stay) for name, stay in system.stays().items()}
+    return len(system.modes) + sum(counts[edge.source.name] for edge in system.edges())
+
+
+def _count_stays(system: SwitchedSystem, stay: Stay) -> int:
+    if stay.longest is None:
+        return 1
+    if system.time is Time.CONTINUOUS:
+        return SAMPLES
+    return int(stay.longest) - int(stay.shortest) + 1

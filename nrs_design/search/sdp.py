@@ -1,7 +1,7 @@
 """Semidefinite programs for Clarabel: packing of symmetric matrices and one solve (untrusted).
 
 By hand, as CVXPY takes longer to be loaded and to bring such a program into this form than Clarabel
-takes to solve it; off the hot path, `nrs_design.search.raw` leaves that to CVXPY.
+takes to solve it.
 """
 
 from __future__ import annotations

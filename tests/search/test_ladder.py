@@ -8,17 +8,17 @@ import pytest
 from nrs_design.errors import DesignError
 from nrs_design.proof.evidence import GrowingSequence, Shows
 from nrs_design.proof.switching import Switching
-from nrs_design.search import common_quadratic, gradient, mode_quadratic, obstruction, polynomial
+from nrs_design.search import common_quadratic, forms, gradient, obstruction
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import Verdict, certify
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import GradientResult
+from nrs_design.search.graphs import search_polynomial
 from nrs_design.search.ladder import LADDER, applicable_methods, steps
 from nrs_design.search.method import Method
 from nrs_design.search.mixture import search_mixture
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.period import search_period
-from nrs_design.search.polynomial import search_polynomial
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
 from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
@@ -48,7 +48,7 @@ def test_a_lying_semidefinite_solver_never_decides(monkeypatch, value):
     def lie(rows, offset, sizes, begun, equalities=0):
         return np.full(rows.shape[1], value)
 
-    for module in (polynomial, obstruction, mode_quadratic):
+    for module in (forms, obstruction):
         monkeypatch.setattr(module, "maximize_margin", lie)
     for system in (dayawansa_martin(6), dayawansa_martin(5)):
         for method in (Method.POLYNOMIAL, Method.OBSTRUCTION):

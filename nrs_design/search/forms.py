@@ -12,7 +12,6 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import exp, inf, isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +28,7 @@ from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import time_unit
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
+    Sparse,
     begin,
     maximize_margin,
     pack,
@@ -37,9 +37,6 @@ from nrs_design.search.sdp import (
     triangle,
 )
 from nrs_design.work import Allowance, Cost
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_matrix
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -455,18 +452,20 @@ class _Built:
 
     def of_edges(
         self, factors: list[float], active: Sequence[int]
-    ) -> tuple[csc_matrix[np.float64], Array, list[int]]:
+    ) -> tuple[Sparse, Array, list[int]]:
         """Return rows, offset and cones for some of the edges, whose cones are the last ones."""
-        from scipy import sparse
-
-        values = self.fixed + self.varying * np.array([*factors, 0.0])[self.edges]
-        rows = sparse.csr_matrix((values, self.places), shape=self.shape)
         first = len(self.cones) - len(factors)
         cones = [*range(first), *(first + k for k in active)]
         ends = np.cumsum([n * (n + 1) // 2 for n in self.cones])
-        starts = np.concatenate([[0], ends])
-        kept = np.concatenate([np.arange(starts[k], ends[k]) for k in cones])
-        return rows[kept].tocsc(), self.offset[kept], [self.cones[k] for k in cones]
+        kept = np.concatenate([np.arange(ends[k - 1] if k else 0, ends[k]) for k in cones])
+        row = np.full(self.shape[0], -1)
+        row[kept] = np.arange(len(kept))
+        values = self.fixed + self.varying * np.array([*factors, 0.0])[self.edges]
+        rows, columns = row[self.places[0]], self.places[1]
+        used = rows >= 0
+        shape = len(kept), self.shape[1]
+        matrix = Sparse.of(values[used], rows[used], columns[used], shape)
+        return matrix, self.offset[kept], [self.cones[k] for k in cones]
 
     @classmethod
     def of(cls, program: FormsProgram) -> _Built:

@@ -1,6 +1,5 @@
 """Search for one function per mode."""
 
-import numpy as np
 import pytest
 
 from nrs_design.proof.mode import Time
@@ -37,17 +36,6 @@ def test_nothing_is_found_where_there_is_nothing(system):
 def test_no_ends_of_constant_parameters():
     system = shears(Switching(transitions=(), fixed_ends=(("m0", "m1"),)))
     assert found(search_modes, system) is None
-
-
-@pytest.mark.parametrize("lie", [np.nan, np.inf, -1.0, 0.0, 1.0, 1e300])
-def test_a_solver_that_lies_gives_no_false_verdict(monkeypatch, lie):
-    monkeypatch.setattr(
-        forms, "maximize_margin", lambda rows, *_, **__: np.full(rows.shape[1], lie)
-    )
-    try:
-        assert found(search_modes, geromel_colaneri("2.74")) is None
-    except (OverflowError, np.linalg.LinAlgError):
-        return
 
 
 def test_a_solver_that_is_content_with_every_rate_raises_none(monkeypatch):

@@ -4,7 +4,6 @@ from functools import partial
 
 import pytest
 
-from nrs_design.errors import DesignError
 from nrs_design.proof.mode import Time
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
@@ -55,9 +54,3 @@ def test_a_refuted_mode_leaves_nothing_to_iterate():
     assert run.outcome == "not needed"
 
 
-def test_a_start_that_there_is_not():
-    with pytest.raises(DesignError, match="cannot start with mode 'nobody'") as caught:
-        compare_methods(
-            partial(certify, dayawansa_martin(5)), Limits(gradient=Gradient(start="nobody"))
-        )
-    assert caught.value.remedy

@@ -52,5 +52,3 @@ def test_a_refuted_mode_leaves_nothing_to_iterate():
     run = compare_methods(partial(certify, unstable), QUICK)[1]
     assert (run.certification.verdict, run.updates) == ("refuted", None)
     assert run.outcome == "not needed"
-
-

@@ -31,6 +31,7 @@ from tests.proof.systems import (
     dayawansa_martin,
     geromel_colaneri,
     leaning,
+    two_ways,
 )
 from tests.search.support import found
 
@@ -91,3 +92,22 @@ def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, d
 def test_a_solution_shows_the_rate_that_it_was_asked_for(search, system, draw):
     program = FormsProgram(draw(Family.of(system)))
     assert program.own_rate(program.solve(0.99, Allowance())) < 0.99
+
+
+@pytest.mark.parametrize(("search", "system", "draw"), DRAWN[:2])
+def test_edges_that_a_solution_violates_are_added(monkeypatch, search, system, draw):
+    monkeypatch.setattr(forms, "FIRST_EDGES", 1)
+    program = FormsProgram(draw(Family.of(system)))
+    assert len(program.active) == 1
+    assert program.solve(0.99, Allowance()) is not None
+    whole = FormsProgram(draw(Family.of(system)))
+    whole.active = list(range(len(whole.edges)))
+    assert whole.solve(0.99, Allowance()) is not None
+    assert whole.solve(0.5, Allowance()) is None
+    assert program.solve(0.5, Allowance()) is None
+    assert len(program.active) > 1
+
+
+def test_forms_that_are_nearly_zero_are_no_solution():
+    """The best rate is ``sqrt(3)/2``; below it, the solver finds none but zero, with a margin."""
+    assert found(search_modes, two_ways(3)).rate < 0.8665

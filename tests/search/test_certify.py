@@ -583,7 +583,7 @@ class TestLyingSolvers:
                 x = np.resize(lie(2).ravel(), rows.shape[1])
                 return x if np.isfinite(x).all() else None
 
-            for module in ("forms", "obstruction", "parameter_quadratic"):
+            for module in ("forms", "obstruction", "sdp"):
                 monkeypatch.setattr(f"nrs_design.search.{module}.maximize_margin", answer)
 
         # Rates are claimed for what is found, and here is nothing.

@@ -128,7 +128,15 @@ class Sparse:
     def of(
         cls, values: Array, rows: NDArray[Any], columns: NDArray[Any], shape: tuple[int, int]
     ) -> Sparse:
-        """Put entries in order; what is given twice counts as their sum."""
+        """Put entries in order; what is given twice counts as their sum.
+
+        Parameters
+        ----------
+        values, rows, columns : ndarray, shape (k,)
+            The entries and where they are.
+        shape : (int, int)
+            Of the matrix.
+        """
         places, entry = np.unique(columns * shape[0] + rows, return_inverse=True)
         data = np.bincount(entry, values, len(places))
         ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])

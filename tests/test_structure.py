@@ -212,7 +212,7 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
         "nrs_design.cli.gate",
     }
     limited = {name for name in FILES if "time_limit" in FILES[name].read_text(encoding="utf-8")}
-    assert limited == {"nrs_design.search.sdp", "nrs_design.search.raw"}
+    assert limited == {"nrs_design.search.sdp"}
 
 
 def test_the_proof_stands_on_itself():

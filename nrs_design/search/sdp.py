@@ -138,7 +138,7 @@ class Sparse:
             Of the matrix.
         """
         places, entry = np.unique(columns * shape[0] + rows, return_inverse=True)
-        data = np.bincount(entry, values, len(places))
+        data: Array = np.bincount(entry, values, len(places)).astype(float)
         ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])
         return cls(data, (places % shape[0]).astype(np.int32), ends.astype(np.int32), shape)
 

@@ -249,5 +249,6 @@ def test_a_linear_law_of_contact_is_known_to_the_files_of_the_table(law, file):
         f"models/contact/{file}.py",
         "models/contact/__init__.py",
         "spec/environment.py",
+        "identification/tissue/prony.py",
         "identification/tissue/starts.py",
     }

@@ -132,7 +132,7 @@ def propose(
         if rates.always:
             continue
         for claim in claims(1.0, asked.own_rate(first), time):
-            slow = first if program.drawing == asked.drawing else program.solve(float(claim), part)
+            slow = first if program is asked else program.solve(float(claim), part)
             if slow is not None:
                 for evidence in program.roundings(slow, claim, bits, errors=covered):
                     yield Candidate(evidence)
@@ -454,8 +454,10 @@ def draw_together(
     """
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]
-    facts = [*(f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1))]
-    facts += [f"{COUPLING} {k}" for k, _ in enumerate(system.couplings, 1)]
+    facts = list[str]()
+    if degree == 1:  # A form of monomials has no multipliers
+        facts += [f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1)]
+        facts += [f"{COUPLING} {k}" for k, _ in enumerate(system.couplings, 1)]
     graph = FormsOnGraph(
         tuple(Node(place, ()) for place in places),
         0,

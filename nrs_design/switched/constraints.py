@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain, islice, permutations, product
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.spec import DwellTime, SwitchingSpec
+
+if TYPE_CHECKING:
+    from nrs_design.controllers.controller_design import Controller
 
 MAX_ASSEMBLED = 200_000
 

@@ -590,7 +590,7 @@ def test_goals_of_the_proof_are_said_where_it_is(tmp_path, wanted, ends):
     text = SOFT_TISSUE.read_text(encoding="utf-8")
     path.write_text(f"{text}goals: {{decay_rate: {wanted}}}\n", encoding="utf-8")
     done = run("certify-switching", path, cwd=tmp_path, code=0)
-    assert f"  goal decay_rate, {wanted}: {ends}: the proved decay rate is 3.91406" in done.stdout
+    assert f"  goal decay_rate, {wanted}: {ends}: the proved decay rate is 3.91583" in done.stdout
     told = document_of("certify-switching", path, cwd=tmp_path)
     (goal,) = told["goals"]
     assert (goal["goal"], goal["wanted"], goal["proved"]) == ("decay_rate", wanted, ends == "met")

@@ -99,7 +99,7 @@ def test_numbers_at_the_head_lead_to_what_derives_them(page):
         label: titles[at]
         for at, label in re.findall(r'<a href="#(section-\d+)" title[^>]*>([^<]+)</a>', head)
     }
-    assert links["3.9140625 1/s"] == "Lyapunov evidence"
+    assert links["3.91583 1/s"] == "Lyapunov evidence"
     assert links["4 modes of 4 states, in continuous time"] == "Modes"
     assert links["4 modes in contact and 2 of free motion"] == "Modes"
     assert {"Rungs tried", "How to check again", "The spec"} <= set(links.values())

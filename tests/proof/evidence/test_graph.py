@@ -27,8 +27,8 @@ from nrs_design.proof.switching import Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.search.draw import undeflected
+from nrs_design.search.graphs import search_polynomial
 from nrs_design.search.method import Method
-from nrs_design.search.polynomial import search_polynomial
 from tests.proof.graphs import (
     common_polynomial,
     common_quadratic,

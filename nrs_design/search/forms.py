@@ -51,6 +51,8 @@ LOST_TO_ERRORS = 1.25
 SAMPLES = 17
 # With so many edges a program begins.
 FIRST_EDGES = 8
+# An edge outside the program keeps at least this share of the margin of those in it.
+NEARLY_ALL = 0.8
 # Forms reach up to the identity where there are any; all of them below this are zero.
 NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
@@ -226,7 +228,8 @@ class FormsProgram:
     def solve(self, rate: float, allowance: Allowance) -> Solution | None:
         """Maximize the margin at a rate; None if it is not positive.
 
-        Of many edges of quadratic forms, only those that the last solution violates are kept.
+        Of many edges of quadratic forms, only those are kept to which the last solution left a
+        margin well below that of the others.
 
         Raises
         ------
@@ -238,10 +241,13 @@ class FormsProgram:
             if solution is None or len(self.active) == len(self.edges):
                 return solution
             margins, known = self._margins(solution, rate), set(self.active)
-            violated = [k for k in np.argsort(margins) if not margins[k] > 0 and k not in known]
-            if not violated:
+            strict = np.array([edge.is_strict for edge in self.edges])
+            enough = NEARLY_ALL * min((margins[k] for k in known if strict[k]), default=0.0)
+            tight = ~(margins > np.where(strict, max(enough, 0.0), 0.0))
+            added = [k for k in np.argsort(margins) if tight[k] and k not in known]
+            if not added:
                 return solution
-            self.active = sorted([*known, *violated[: len(known)]])
+            self.active = sorted([*known, *added[: len(known)]])
 
     def _solve_for(
         self, active: Sequence[int], rate: float, allowance: Allowance

@@ -124,7 +124,7 @@ def test_matplotlib_has_one_door():
 def test_no_other_library_brings_matplotlib_along():
     used = {item.target.split(".")[0] for item in imports() if not item.typing_only}
     others = sorted(used - BEHIND - sys.stdlib_module_names - {"nrs_design"})
-    assert {"cvxpy", "numpy", "scipy", "clarabel"} <= {*others}
+    assert {"numpy", "scipy", "clarabel"} <= {*others}
     load = (
         "import importlib, sys\n"
         f"for name in {others!r}:\n"

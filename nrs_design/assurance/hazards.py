@@ -1,0 +1,139 @@
+"""Hazards traced to goals, limits, gains, assumptions, tests and the program.
+
+`hazards.toml` lists the hazards. What is met or missed comes from the obligations of the gate,
+decided by the same code.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from nrs_design.assurance.register import RecordState, RegisterRow
+from nrs_design.gating.obligations import Obligation
+
+if TYPE_CHECKING:
+    from nrs_design.certificates.certificate import Gains
+    from nrs_design.spec import Spec
+
+_TABLE = Path(__file__).with_name("hazards.toml")
+# As the header of an exported monitor names what was left.
+_LEFT = re.compile(r"_LEFT_([A-Z]+)\b")
+
+
+@dataclass(frozen=True, slots=True)
+class Hazard:
+    """One row of the table."""
+
+    id: str
+    name: str
+    events: str
+    rules: tuple[str, ...]
+    goals: tuple[str, ...]
+    limits: tuple[str, ...]
+    assumptions: tuple[str, ...]
+    watched: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TracedHazard:
+    """A hazard of one spec, and all that leads from it to the binary."""
+
+    hazard: Hazard
+    obligations: tuple[Obligation, ...]  # Each met, missed, proved, ...
+    limits: tuple[str, ...]  # As the spec writes them
+    gains: tuple[str, ...]  # Of the controllers that it is about, such as ``insertion.Bt``
+    assumptions: tuple[RegisterRow, ...]
+    watched: tuple[str, ...]  # What the exported monitor tells
+
+    @property
+    def missed(self) -> tuple[Obligation, ...]:
+        """Obligations that are not fulfilled."""
+        return tuple(item for item in self.obligations if not item.fulfilled)
+
+    @property
+    def unsettled(self) -> tuple[str, ...]:
+        """Ids of assumptions of which something is left to show."""
+        return tuple(row.id for row in self.assumptions if not row.settled)
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """Ids of assumptions whose test failed."""
+        return tuple(row.id for row in self.assumptions if row.state is RecordState.FAILED)
+
+
+@cache
+def hazards() -> tuple[Hazard, ...]:
+    """Return the table."""
+    table: dict[str, dict[str, Any]] = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
+    return tuple(
+        Hazard(id, **{k: tuple(v) if isinstance(v, list) else v for k, v in row.items()})
+        for id, row in table.items()
+    )
+
+
+def trace_hazards(
+    spec: Spec,
+    gains: Gains,
+    rows: Iterable[RegisterRow],
+    obligations: Sequence[Obligation],
+    monitor: str = "",
+) -> tuple[TracedHazard, ...]:
+    """Return the hazards that a spec has, traced.
+
+    Parameters
+    ----------
+    spec : Spec
+        With limits, if it is a design.
+    gains : mapping
+        That ship, by controller.
+    rows : iterable of RegisterRow
+        The register of assumptions.
+    obligations : sequence of Obligation
+        What the gate asks of this spec, each as it ended.
+    monitor : str
+        Header of the exported monitor; empty if there is none.
+    """
+    rows, watched = tuple(rows), frozenset(_LEFT.findall(monitor))
+    traced = (_trace(h, spec, gains, rows, obligations, watched) for h in hazards())
+    return tuple(t for t in traced if t.obligations or t.assumptions or t.limits)
+
+
+def _trace(
+    hazard: Hazard,
+    spec: Spec,
+    gains: Gains,
+    rows: Sequence[RegisterRow],
+    obligations: Iterable[Obligation],
+    watched: Collection[str],
+) -> TracedHazard:
+    about = tuple(item for item in obligations if _is_about(item, hazard))
+    named = [item.subject.partition(":")[0] for item in about]
+    # What holds for the whole system is about all gains.
+    chosen = [name for name in gains if name in named] or list(gains)
+    return TracedHazard(
+        hazard,
+        about,
+        tuple(_limits(spec, hazard)),
+        tuple(f"{name}.{gain}" for name in chosen for gain in gains[name]),
+        tuple(row for row in rows if row.kind.id in hazard.assumptions),
+        tuple(name for name in hazard.watched if name in watched),
+    )
+
+
+def _is_about(item: Obligation, hazard: Hazard) -> bool:
+    return item.rule.id in hazard.rules or item.subject.partition(": ")[2] in hazard.goals
+
+
+def _limits(spec: Spec, hazard: Hazard) -> Iterable[str]:
+    if spec.kind != "interaction-design":
+        return
+    for name in hazard.limits:
+        limit = getattr(spec.limits, name, None)
+        if limit is not None:
+            yield f"{name}: {limit.text}"

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from nrs_design.assurance.case import Case
 from nrs_design.assurance.gsn import GsnElement, GsnKind, goal, solution
-from nrs_design.assurance.hazards import TracedHazard
+from nrs_design.assurance.hazards import TracedHazard, in_words
 from nrs_design.assurance.register import RecordState, RegisterRow, state_of
 from nrs_design.assurance.steps import STEPS, steps_of
-from nrs_design.proof.text import counted
 from nrs_design.switched.assumption import Standing
+
 
 def build_argument(case: Case) -> GsnElement:
     """Return the whole argument of a case."""
@@ -92,14 +92,14 @@ def _hazards(case: Case) -> GsnElement:
 
 
 def _hazard(id: str, traced: TracedHazard) -> GsnElement:
-    met, missed = len(traced.obligations) - len(traced.missed), traced.missed
+    missed = traced.missed
     text = f"{traced.hazard.id}: {traced.hazard.name}"
     if not traced.obligations:
         text += " (no goal of the spec is about it)"
     support = ()
-    if met and not missed:
-        told = ", ".join(dict.fromkeys(item.rule.id for item in traced.obligations))
-        support = (solution(f"Sn{id[1:]}", f"{counted(met, 'obligation')} met: {told}"),)
+    if traced.obligations and not missed:
+        rules = ", ".join(dict.fromkeys(item.rule.id for item in traced.obligations))
+        support = (solution(f"Sn{id[1:]}", f"{in_words(traced.obligations)}: {rules}"),)
     refuted = any(item.severity > 1 for item in missed)
     return goal(id, f"{text}; {len(missed)} missed" if missed else text, *support, refuted=refuted)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -110,6 +109,7 @@ def facts_of(case: Case, spec: str, argument: GsnElement) -> dict[str, Any]:
             "sha256": decides.sha256,
             "lines": decides.lines,
             "imports": decides.imports,
+            "believed_beside": decides.believed,
             "files": {file.path: file.sha256 for file in decides.files},
             "mutants": None
             if mutation is None
@@ -178,4 +178,4 @@ def _element_facts(element: GsnElement) -> dict[str, Any]:
 
 
 def _json(document: dict[str, Any]) -> bytes:
-    return (json_text(json.loads(json.dumps(document)), indent=2) + "\n").encode()
+    return (json_text(document) + "\n").encode()

@@ -190,8 +190,7 @@ def _stacked(own: _Drawing, below: _Drawing, tops: list[float]) -> _Drawing:
     left, right = max(0.0, own.x - middle), max(0.0, middle - own.x)
     x, down = right + own.x, bottom + 2 * GAP
     lines = [
-        f'<path class="support" d="M{x:g} {LINE} V{bottom + GAP:g} '
-        f'H{left + top:g} V{down:g}"/>'
+        f'<path class="support" d="M{x:g} {LINE} V{bottom + GAP:g} H{left + top:g} V{down:g}"/>'
         for top in tops
     ]
     parts = (*lines, *_moved(own.parts, right, 0), *_moved(below.parts, left, down))

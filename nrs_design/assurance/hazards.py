@@ -47,7 +47,7 @@ class TracedHazard:
     hazard: Hazard
     obligations: tuple[Obligation, ...]  # Each met, missed, proved, ...
     limits: tuple[str, ...]  # As the spec writes them
-    gains: tuple[str, ...]  # Of the controllers that it is about, such as ``insertion.Bt``
+    gains: tuple[str, ...]  # Of the controllers that it is about, such as ``insertion: Mt, Bt``
     assumptions: tuple[RegisterRow, ...]
     watched: tuple[str, ...]  # What the exported monitor tells
 
@@ -75,6 +75,12 @@ def hazards() -> tuple[Hazard, ...]:
         Hazard(id, **{k: tuple(v) if isinstance(v, list) else v for k, v in row.items()})
         for id, row in table.items()
     )
+
+
+def in_words(obligations: Iterable[Obligation]) -> str:
+    """Count obligations by how they ended, such as ``1 proved, 2 met``."""
+    ended = [item.status.value for item in obligations]
+    return ", ".join(f"{ended.count(word)} {word}" for word in dict.fromkeys(ended))
 
 
 def trace_hazards(
@@ -120,7 +126,7 @@ def _trace(
         hazard,
         about,
         tuple(_limits(spec, hazard)),
-        tuple(f"{name}.{gain}" for name in chosen for gain in gains[name]),
+        tuple(f"{name}: {', '.join(gains[name])}" for name in chosen),
         tuple(row for row in rows if row.kind.id in hazard.assumptions),
         tuple(name for name in hazard.watched if name in watched),
     )

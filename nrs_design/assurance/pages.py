@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from hashlib import sha256
 
 from nrs_design.assurance.case import Case
-from nrs_design.assurance.hazards import TracedHazard
+from nrs_design.assurance.hazards import TracedHazard, in_words
 from nrs_design.assurance.register import RegisterRow
 from nrs_design.assurance.standards import standards, support_of
 from nrs_design.assurance.steps import STEPS, steps_of
@@ -57,9 +58,7 @@ _FILES = (
 
 
 def _standing(case: Case) -> Iterator[str]:
-    ended = [item.status.value for item in case.obligations]
-    counts = ", ".join(f"{ended.count(word)} {word}" for word in dict.fromkeys(ended))
-    yield f"Obligations of the gate: {counts}."
+    yield f"Obligations of the gate: {in_words(case.obligations)}."
     for item in case.missed:
         yield f"**{item.status}**: {item.subject}: {visible(item.message)}"
     settled = sum(row.settled for row in case.register)
@@ -148,8 +147,7 @@ def hazard_page(case: Case) -> str:
 
 
 def _tally(obligations: Sequence[Obligation]) -> str:
-    met = sum(item.fulfilled for item in obligations)
-    return f"{met} of {len(obligations)} met" if obligations else "no goal is set"
+    return in_words(obligations) if obligations else "no goal is set"
 
 
 def _hazard(traced: TracedHazard) -> str:
@@ -159,7 +157,7 @@ def _hazard(traced: TracedHazard) -> str:
         for item in traced.obligations
     ]
     lines.append(f"- Limits of the spec: {visible('; '.join(traced.limits)) or 'none'}")
-    lines.append(f"- Gains: {', '.join(traced.gains) or 'none; matrices are given'}")
+    lines.append(f"- Gains: {'; '.join(traced.gains) or 'none: matrices are given'}")
     told = (f"{row.id} ({row.state})" for row in traced.assumptions)
     lines.append(f"- Assumptions: {', '.join(told) or 'none of its own'}")
     lines.append(f"- Told by the monitor: {', '.join(traced.watched) or 'nothing'}")
@@ -168,18 +166,15 @@ def _hazard(traced: TracedHazard) -> str:
 
 def _program(case: Case) -> str:
     told = "All gains above are in these files." if case.program else f"None: {case.no_program}."
-    rows = [(f"`program/{name}`", f"{len(content)} bytes") for name, content in _sorted(case)]
+    files = ((name, sha256(content).hexdigest()) for name, content in sorted(case.program.items()))
+    rows = [(f"`program/{name}`", hashed) for name, hashed in files]
     rows += [
-        (f"`{visible(file.name)}`, named by the user", f"{file.size} bytes, SHA-256 {file.sha256}")
+        (f"`{visible(file.name)}`, named by the user, {file.size} bytes", file.sha256)
         for file in case.binaries
     ]
     if case.binaries:
         told += " What was named by the user is told by its hash; nothing here has looked inside."
-    return told + ("\n\n" + _table(("file", "size"), rows) if rows else "")
-
-
-def _sorted(case: Case) -> list[tuple[str, bytes]]:
-    return sorted(case.program.items())
+    return told + ("\n\n" + _table(("file", "SHA-256"), rows) if rows else "")
 
 
 def standards_page(case: Case, files: Iterable[str]) -> str:
@@ -225,6 +220,11 @@ def tool_page(case: Case) -> str:
         f"library they import {', '.join(decides.imports) or 'nothing'}. They are what to "
         "qualify, by their own tests and by programs that decide the same.",
         f"SHA-256 over all of them: `{decides.sha256}`.",
+        "## Believed beside it",
+        "A certificate holds its modes, and these files decide about them. That the modes are "
+        "those of the spec rests on more of this program; the tests hold it against formulas and "
+        "runs, and no second program decides it.",
+        _table(("what it does", "lines"), ((w, str(n)) for w, n in decides.believed.items())),
         f"## Mutation record\n\n{mutants}",
         "## Programs that decide the same",
         _table(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 from pathlib import Path
-from types import MappingProxyType
 from typing import NoReturn
 
 from nrs_design.errors import DataError
@@ -41,7 +40,7 @@ class RecordedTests:
     """The results of a file."""
 
     spec: str = ""  # Hash of the spec that was tested, in hexadecimal; empty without a file
-    by_id: Mapping[str, RecordedTest] = MappingProxyType({})
+    by_id: Mapping[str, RecordedTest] = field(default_factory=dict)
     text: str = ""  # The file, as it is
 
 
@@ -100,9 +99,7 @@ class _Reader:
         except ValueError:
             at = item.entries["date"].position
             self.fail(at, f"{quoted(said['date'])} is no date", "write one such as 2026-01-31")
-        return RecordedTest(
-            said["result"] == PASSED, day, said["reference"], said.get("by", "")
-        )
+        return RecordedTest(said["result"] == PASSED, day, said["reference"], said.get("by", ""))
 
     def expect_keys(
         self, item: tree.Mapping, needed: Collection[str], optional: Collection[str] = ()

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from nrs_design.assurance.case import Case
 from nrs_design.assurance.gsn import GsnElement, GsnKind, goal, solution
-from nrs_design.assurance.hazards import TracedHazard, in_words
-from nrs_design.assurance.register import RecordState, RegisterRow, state_of
-from nrs_design.assurance.steps import STEPS, steps_of
+from nrs_design.assurance.hazards import TracedHazard, ended_in
+from nrs_design.assurance.register import RecordState, RegisterRow, recorded_state
+from nrs_design.assurance.steps import STEPS, user_steps
 from nrs_design.switched.assumption import Standing
 
 
@@ -70,13 +70,13 @@ def _program(case: Case) -> GsnElement:
     text = "The processor computes the law with these gains"
     if not case.program:
         return goal("G4", f"{text} (no program here: {case.no_program})")
-    steps = [name for name in steps_of(case.program) if name.startswith("program.")]
+    steps = [name for name in user_steps(case.program) if name.startswith("program.")]
     return goal("G4", text, *(_step(f"G4.{k}", n, case) for k, n in enumerate(steps, start=1)))
 
 
 def _step(id: str, name: str, case: Case) -> GsnElement:
-    state = state_of(name, case.results, case.spec_sha256)
-    support = ()
+    state = recorded_state(name, case.results, case.spec_sha256)
+    support: tuple[GsnElement, ...] = ()
     if state is RecordState.PASSED:
         support = (solution(f"Sn{id[1:]}", case.results.by_id[name].said),)
     return goal(id, f"{name}: {STEPS[name][0]}", *support, refuted=state is RecordState.FAILED)
@@ -96,10 +96,10 @@ def _hazard(id: str, traced: TracedHazard) -> GsnElement:
     text = f"{traced.hazard.id}: {traced.hazard.name}"
     if not traced.obligations:
         text += " (no goal of the spec is about it)"
-    support = ()
+    support: tuple[GsnElement, ...] = ()
     if traced.obligations and not missed:
         rules = ", ".join(dict.fromkeys(item.rule.id for item in traced.obligations))
-        support = (solution(f"Sn{id[1:]}", f"{in_words(traced.obligations)}: {rules}"),)
+        support = (solution(f"Sn{id[1:]}", f"{ended_in(traced.obligations)}: {rules}"),)
     refuted = any(item.severity > 1 for item in missed)
     return goal(id, f"{text}; {len(missed)} missed" if missed else text, *support, refuted=refuted)
 

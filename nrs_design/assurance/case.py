@@ -11,11 +11,11 @@ from nrs_design.assurance.register import (
     RecordState,
     RegisterRow,
     ids_of,
+    recorded_state,
     register_rows,
-    state_of,
 )
 from nrs_design.assurance.results import RecordedTests, read_results
-from nrs_design.assurance.steps import steps_of
+from nrs_design.assurance.steps import user_steps
 from nrs_design.assurance.tool import Decider, decider
 from nrs_design.certificates.certificate import Certificate, Gains
 from nrs_design.certificates.units import gain_units
@@ -72,14 +72,17 @@ class Case:
     @property
     def states(self) -> dict[str, RecordState]:
         """What users found, by id: assumptions first, then steps to the robot."""
-        steps = {id: state_of(id, self.results, self.spec_sha256) for id in steps_of(self.program)}
+        steps = {
+            id: recorded_state(id, self.results, self.spec_sha256)
+            for id in user_steps(self.program)
+        }
         return {row.id: row.state for row in self.register} | steps
 
     @property
     def open(self) -> tuple[str, ...]:
         """Ids of which something is left to show."""
         unsettled = {row.id for row in self.register if not row.settled}
-        steps = {id for id in steps_of(self.program) if self.states[id] is not RecordState.PASSED}
+        steps = {id for id in user_steps(self.program) if self.states[id] is not RecordState.PASSED}
         return tuple(id for id in self.states if id in unsettled | steps)
 
     @property
@@ -124,7 +127,7 @@ def build_case(
     assert evidence is not None, "proved"
     progress("program")
     program, why = _program(result, certificate)
-    ids = (*dict.fromkeys(ids_of(result.certification.granted)), *steps_of(program))
+    ids = (*dict.fromkeys(ids_of(result.certification.granted)), *user_steps(program))
     found = RecordedTests() if results is None else read_results(results, ids)
     rows, judged = register_rows(result, found), tuple(obligations)
     headers = "".join(text.decode() for name, text in program.items() if name.endswith(".h"))

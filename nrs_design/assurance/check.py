@@ -13,7 +13,7 @@ from nrs_design.assurance.contents import FACTS, PARTS, RESULTS, contents_of
 from nrs_design.assurance.folder import hash_faults, read_facts, read_folder
 from nrs_design.assurance.sources import sources_of
 from nrs_design.errors import CertificateError, NrsDesignError
-from nrs_design.gating.judge import judge
+from nrs_design.gating.judge import judge_result
 from nrs_design.pipeline import Result, run_recorded
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import quoted
@@ -41,7 +41,7 @@ class FolderCheck:
         return "inconclusive" if self.undecided else "holds"
 
 
-def check_folder(
+def check_evidence(
     folder: Path,
     spec: Path | None = None,
     binaries: Sequence[UserFile] = (),
@@ -70,7 +70,8 @@ def check_folder(
     progress("hashes")
     files = read_folder(folder)
     facts = read_facts(files)
-    name = str(facts.get("package") and _text(facts, "spec", "name"))
+    part = facts.get("spec")
+    name = str(part.get("name", "")) if isinstance(part, dict) else ""
     faults = hash_faults(files)
     if faults:
         return FolderCheck(name, len(files), faults)
@@ -99,7 +100,10 @@ def _made_again(
 ) -> FolderCheck:
     """Make all files again from the spec, the certificate and what users gave."""
     name = result.loaded.spec.name
-    release = _text(facts, "package", "version")
+    try:
+        release, decided = _text(facts, "package", "version"), _text(facts, "decides", "sha256")
+    except CertificateError as error:
+        return FolderCheck(name, len(files), (str(error),))
     if release != __version__:
         why = f"written by release {release}, and this is {__version__}: pages were not made again"
         return FolderCheck(name, len(files), (), why)
@@ -107,14 +111,14 @@ def _made_again(
     try:
         given = [UserFile(f["name"], f["size"], f["sha256"]) for f in facts["binaries"]]
         day = str(facts["date"] or "")
-        obligations = judge(result, progress)
+        obligations = judge_result(result, progress)
         case = build_case(result, obligations, results, given, day, progress)
         again = contents_of(case, *sources_of(result.loaded))
     except (LookupError, TypeError):
         return FolderCheck(name, len(files), (_PATH,))
     except NrsDesignError as error:
         return FolderCheck(name, len(files), (str(error),))
-    if case.decider.sha256 != _text(facts, "decides", "sha256"):
+    if case.decider.sha256 != decided:
         why = "written by other files of nrs_design/proof than are installed here"
         return FolderCheck(name, len(files), (), f"{why}: pages were not made again")
     # What is installed here may differ from what wrote the folder; hashes hold its list.
@@ -140,7 +144,8 @@ def _of_now(loaded: LoadedSpec, spec: Path | None) -> Iterable[str]:
 
 def _of_binaries(facts: Mapping[str, Any], binaries: Iterable[UserFile]) -> Iterable[str]:
     named = facts.get("binaries")
-    hashes = {f.get("sha256") for f in named if isinstance(f, dict)} if named else set()
+    listed = named if isinstance(named, list) else []
+    hashes = {f.get("sha256") for f in listed if isinstance(f, dict)}
     for file in binaries:
         if file.sha256 not in hashes:
             yield f"{file.name} is none of the binaries that the folder names"

@@ -54,7 +54,7 @@ def contents_of(case: Case, spec: str, sources: Mapping[str, bytes]) -> dict[str
         "results-to-do.yaml": form_page(case).encode(),
         PARTS: _json(parts_list()),
         f"{case.name}.cert.json": dump(case.certificate, spec).encode(),
-        FACTS: _json(facts_of(case, spec, argument)),
+        FACTS: _json(case_facts(case, spec, argument)),
         **sources,
         **{f"program/{name}": content for name, content in case.program.items()},
     }
@@ -70,7 +70,7 @@ def sums_of(files: Mapping[str, bytes]) -> bytes:
     return "".join(f"{hashes[path]}  {path}\n" for path in sorted(files)).encode()
 
 
-def facts_of(case: Case, spec: str, argument: GsnElement) -> dict[str, Any]:
+def case_facts(case: Case, spec: str, argument: GsnElement) -> dict[str, Any]:
     """Return the facts of a case for programs.
 
     Parameters

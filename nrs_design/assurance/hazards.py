@@ -71,13 +71,15 @@ class TracedHazard:
 def hazards() -> tuple[Hazard, ...]:
     """Return the table."""
     table: dict[str, dict[str, Any]] = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
-    return tuple(
-        Hazard(id, **{k: tuple(v) if isinstance(v, list) else v for k, v in row.items()})
-        for id, row in table.items()
-    )
+    return tuple(_hazard(id, row) for id, row in table.items())
 
 
-def in_words(obligations: Iterable[Obligation]) -> str:
+def _hazard(id: str, row: dict[str, Any]) -> Hazard:
+    fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in row.items()}
+    return Hazard(id, **fields)
+
+
+def ended_in(obligations: Iterable[Obligation]) -> str:
     """Count obligations by how they ended, such as ``1 proved, 2 met``."""
     ended = [item.status.value for item in obligations]
     return ", ".join(f"{ended.count(word)} {word}" for word in dict.fromkeys(ended))

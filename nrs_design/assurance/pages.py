@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from hashlib import sha256
 
 from nrs_design.assurance.case import Case
-from nrs_design.assurance.hazards import TracedHazard, in_words
+from nrs_design.assurance.hazards import TracedHazard, ended_in
 from nrs_design.assurance.register import RegisterRow
 from nrs_design.assurance.standards import standards, support_of
-from nrs_design.assurance.steps import STEPS, steps_of
+from nrs_design.assurance.steps import STEPS, user_steps
 from nrs_design.gating.obligations import Obligation
 from nrs_design.printable import visible
 from nrs_design.proof.text import counted
@@ -58,7 +58,7 @@ _FILES = (
 
 
 def _standing(case: Case) -> Iterator[str]:
-    yield f"Obligations of the gate: {in_words(case.obligations)}."
+    yield f"Obligations of the gate: {ended_in(case.obligations)}."
     for item in case.missed:
         yield f"**{item.status}**: {item.subject}: {visible(item.message)}"
     settled = sum(row.settled for row in case.register)
@@ -100,7 +100,7 @@ def register_page(case: Case) -> str:
             ("id", "what", "how", "state", "result"),
             (
                 (f"`{id}`", *STEPS[id], case.states[id], _found(case, id))
-                for id in steps_of(case.program)
+                for id in user_steps(case.program)
             ),
         ),
     )
@@ -147,7 +147,7 @@ def hazard_page(case: Case) -> str:
 
 
 def _tally(obligations: Sequence[Obligation]) -> str:
-    return in_words(obligations) if obligations else "no goal is set"
+    return ended_in(obligations) if obligations else "no goal is set"
 
 
 def _hazard(traced: TracedHazard) -> str:
@@ -257,7 +257,7 @@ def form_page(case: Case) -> str:
         return f'{head}spec: "{case.spec_sha256}"\nresults: {{}}\n'
     lines = [f'spec: "{case.spec_sha256}"', "results:"]
     how = {row.id: row.kind.test for row in case.register} | {
-        id: STEPS[id][1] for id in steps_of(case.program)
+        id: STEPS[id][1] for id in user_steps(case.program)
     }
     for id in case.open:
         lines += [f"  # {how[id]}", f'  {id}: {{result: "", date: "", reference: ""}}']

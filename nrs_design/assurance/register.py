@@ -59,7 +59,7 @@ class RegisterRow:
         return shown or (self.standing is Standing.TESTED and self.state is RecordState.OPEN)
 
 
-def state_of(id: str, results: RecordedTests, sha256: str) -> RecordState:
+def recorded_state(id: str, results: RecordedTests, sha256: str) -> RecordState:
     """Return what the user's file says about an id.
 
     Parameters
@@ -111,7 +111,7 @@ def ids_of(granted: Iterable[str]) -> Iterator[str]:
 
 
 def _row(id: str, found: list[Entry], results: RecordedTests, sha256: str) -> RegisterRow:
-    first, state = found[0], state_of(id, results, sha256)
+    first, state = found[0], recorded_state(id, results, sha256)
     if state is RecordState.OPEN and first.kind.test == _NO_TEST:
         state = RecordState.NOT_NEEDED
     return RegisterRow(

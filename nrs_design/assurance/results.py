@@ -74,7 +74,7 @@ class _Reader:
         self.expect_keys(top, ("spec", "results"))
         spec = self.text(top.entries["spec"], "spec")
         if not _SHA256.fullmatch(spec):
-            remedy = "copy `spec_sha256` from `nrs-design check SPEC --json`"
+            remedy = "copy it from results-to-do.yaml in the folder, or from README.md there"
             self.fail(top.entries["spec"].position, "spec is not a SHA-256", remedy)
         results = self.mapping(top.entries["results"], "results")
         return RecordedTests(spec, dict(self.items(results, ids)), text)

@@ -9,7 +9,8 @@ from __future__ import annotations
 import platform
 import re
 from collections.abc import Iterator
-from importlib.metadata import Distribution, PackageNotFoundError, distribution
+from dataclasses import dataclass
+from importlib.metadata import PackageMetadata, PackageNotFoundError, distribution
 from typing import Any
 
 from nrs_design.errors import NrsDesignError
@@ -19,6 +20,21 @@ _LICENSE = "License :: OSI Approved :: "
 _SEPARATORS = re.compile(r"[-_.]+")
 # An identifier of SPDX or several, as PEP 639 writes them.
 _EXPRESSION = re.compile(r"[A-Za-z0-9.+() -]+")
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One installed package."""
+
+    name: str  # As it names itself
+    version: str
+    needs: tuple[str, ...]  # Normalized names of what it needs here, without its extras
+    licenses: tuple[dict[str, Any], ...]  # As the format writes them
+
+    @property
+    def purl(self) -> str:
+        """The address of the package, which names it in the document, too."""
+        return f"pkg:pypi/{_plain(self.name)}@{self.version}"
 
 
 def parts_list() -> dict[str, Any]:
@@ -40,11 +56,14 @@ def parts_list() -> dict[str, Any]:
         "version": 1,
         "metadata": {"component": _component(own, "application")},
         "components": [*(_component(part, "library") for part in others), python],
-        "dependencies": [*_dependencies(parts, python["bom-ref"])],
+        "dependencies": [
+            {"ref": own.purl, "dependsOn": [*_needed(own, parts), python["bom-ref"]]},
+            *({"ref": part.purl, "dependsOn": _needed(part, parts)} for part in others),
+        ],
     }
 
 
-def installed_parts() -> dict[str, Distribution]:
+def installed_parts() -> dict[str, Part]:
     """Return this program and every package that it needs, by normalized name.
 
     Raises
@@ -52,57 +71,56 @@ def installed_parts() -> dict[str, Distribution]:
     NrsDesignError
         If one of them is not installed.
     """
-    found: dict[str, Distribution] = {}
+    found: dict[str, Part] = {}
     waiting = [TOOL]
     while waiting:
         name = waiting.pop()
         if name not in found:
-            found[name] = _distribution(name)
-            waiting += needs(found[name])
+            found[name] = _part(name)
+            waiting += found[name].needs
     return found
 
 
-def needs(part: Distribution) -> list[str]:
-    """Return the normalized names of what a package needs here, without its extras."""
+def _part(name: str) -> Part:
     # Loaded where it is used: no other command reads requirements.
     from packaging.requirements import Requirement
 
-    wanted = map(Requirement, part.requires or ())
-    here = {"extra": ""}
-    return sorted({_plain(r.name) for r in wanted if r.marker is None or r.marker.evaluate(here)})
-
-
-def _distribution(name: str) -> Distribution:
     try:
-        return distribution(name)
+        about = distribution(name).metadata
     except PackageNotFoundError as error:
         raise NrsDesignError(
             f"{name} is not installed as a package, so its version and its parts are not known",
             remedy="install nrs-design with pip, and run it from there",
         ) from error
+    wanted, here = map(Requirement, about.get_all("Requires-Dist") or ()), {"extra": ""}
+    needs = {_plain(r.name) for r in wanted if r.marker is None or r.marker.evaluate(here)}
+    return Part(about["Name"], about["Version"], tuple(sorted(needs)), tuple(_licenses(about)))
+
+
+def _licenses(about: PackageMetadata) -> Iterator[dict[str, Any]]:
+    """Yield one expression, or the names that the classifiers give; free text is no name."""
+    (expression,) = about.get_all("License-Expression") or [""]
+    if _EXPRESSION.fullmatch(expression):
+        yield {"expression": expression}
+        return
+    for classifier in about.get_all("Classifier") or ():
+        if classifier.startswith(_LICENSE):
+            yield {"license": {"name": classifier.removeprefix(_LICENSE)}}
 
 
 def _plain(name: str) -> str:
     return _SEPARATORS.sub("-", name).lower()
 
 
-def _component(part: Distribution, type_: str) -> dict[str, Any]:
-    name, version = part.metadata["Name"], part.version
-    purl = f"pkg:pypi/{_plain(name)}@{version}"
-    found = {"type": type_, "bom-ref": purl, "name": name, "version": version, "purl": purl}
-    licenses = [*_licenses(part)]
-    return found | ({"licenses": licenses} if licenses else {})
-
-
-def _licenses(part: Distribution) -> Iterator[dict[str, Any]]:
-    """Yield one expression, or the names that the classifiers give; free text is no name."""
-    expression = part.metadata.get("License-Expression")
-    if expression and _EXPRESSION.fullmatch(expression):
-        yield {"expression": expression}
-        return
-    for classifier in part.metadata.get_all("Classifier") or ():
-        if classifier.startswith(_LICENSE):
-            yield {"license": {"name": classifier.removeprefix(_LICENSE)}}
+def _component(part: Part, type_: str) -> dict[str, Any]:
+    found = {
+        "type": type_,
+        "bom-ref": part.purl,
+        "name": part.name,
+        "version": part.version,
+        "purl": part.purl,
+    }
+    return found | ({"licenses": list(part.licenses)} if part.licenses else {})
 
 
 def _python() -> dict[str, Any]:
@@ -110,8 +128,5 @@ def _python() -> dict[str, Any]:
     return {"type": "platform", "bom-ref": f"{name}@{version}", "name": name, "version": version}
 
 
-def _dependencies(parts: dict[str, Distribution], python: str) -> Iterator[dict[str, Any]]:
-    refs = {name: f"pkg:pypi/{name}@{part.version}" for name, part in parts.items()}
-    for name in sorted(parts, key=lambda name: (name != TOOL, name)):
-        needed = [refs[other] for other in needs(parts[name])]
-        yield {"ref": refs[name], "dependsOn": [*needed, python] if name == TOOL else needed}
+def _needed(part: Part, parts: dict[str, Part]) -> list[str]:
+    return [parts[name].purl for name in part.needs]

@@ -19,6 +19,6 @@ STEPS = {
 }
 
 
-def steps_of(program: object) -> tuple[str, ...]:
+def user_steps(program: object) -> tuple[str, ...]:
     """Return the ids of the steps to the robot: without a program, only what is about the tool."""
     return tuple(id for id in STEPS if program or not id.startswith("program."))

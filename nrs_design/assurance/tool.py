@@ -22,7 +22,8 @@ BELIEVED = {
     "makes the modes of spec and gains": ("models", "controllers", "switched"),
     "reads certificates, and holds them against the spec": ("certificates",),
 }
-_MUTATION = Path(__file__).with_name("mutation.toml")
+# How the last whole run over all mutants ended; absent before the first one.
+MUTATION = Path(__file__).with_name("mutation.toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,13 +104,13 @@ def write_record(counts: Mapping[str, int]) -> None:
         f'sha256 = "{decider().sha256}"',
         *(f"{name} = {counts[name]}" for name in ("mutants", "killed", "equivalent", "unnoticed")),
     ]
-    _MUTATION.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    MUTATION.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def _record() -> MutationRecord | None:
-    if not _MUTATION.is_file():
+    if not MUTATION.is_file():
         return None
-    found: dict[str, Any] = tomllib.loads(_MUTATION.read_text(encoding="utf-8"))
+    found: dict[str, Any] = tomllib.loads(MUTATION.read_text(encoding="utf-8"))
     return MutationRecord(**found)
 
 

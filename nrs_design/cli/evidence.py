@@ -103,7 +103,7 @@ def _write(
     from nrs_design.assurance.contents import contents_of
     from nrs_design.assurance.folder import check_free, write_folder
     from nrs_design.assurance.sources import sources_of
-    from nrs_design.gating.judge import judge
+    from nrs_design.gating.judge import judge_result
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -115,7 +115,7 @@ def _write(
         verdict = result.certification.verdict
         if result.certificate is None or verdict != "proved":
             return _refused(name, verdict)
-        case = build_case(result, judge(result, step), results, binaries, date, step)
+        case = build_case(result, judge_result(result, step), results, binaries, date, step)
         step("pages")
         contents = contents_of(case, *sources_of(loaded))
         write_folder(out, name, contents)
@@ -183,10 +183,10 @@ def _show_state(case: Case) -> None:
 
 
 def _check(folder: Path, spec: Path | None, binaries: list[UserFile]) -> Answer:
-    from nrs_design.assurance.check import check_folder
+    from nrs_design.assurance.check import check_evidence
 
     with progress(f"checking {folder}") as step:
-        found = check_folder(folder, spec, binaries, step)
+        found = check_evidence(folder, spec, binaries, step)
     codes = {
         "holds": exit_codes.PROVED,
         "rejected": exit_codes.REFUTED,

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis
 
 
-def judge(result: Result, progress: Progress = silent) -> tuple[Obligation, ...]:
+def judge_result(result: Result, progress: Progress = silent) -> tuple[Obligation, ...]:
     """Return what the gate asks of a spec beside files, single modes and robots.
 
     Parameters

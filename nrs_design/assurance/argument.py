@@ -97,11 +97,13 @@ def _hazard(id: str, traced: TracedHazard) -> GsnElement:
     if not traced.obligations:
         text += " (no goal of the spec is about it)"
     support: tuple[GsnElement, ...] = ()
-    if traced.obligations and not missed:
+    if traced.obligations and not (missed or traced.failed):
         rules = ", ".join(dict.fromkeys(item.rule.id for item in traced.obligations))
         support = (solution(f"Sn{id[1:]}", f"{ended_in(traced.obligations)}: {rules}"),)
-    refuted = any(item.severity > 1 for item in missed)
-    return goal(id, f"{text}; {len(missed)} missed" if missed else text, *support, refuted=refuted)
+    text += f"; {len(missed)} missed" if missed else ""
+    text += f"; {', '.join(traced.failed)} failed" if traced.failed else ""
+    refuted = bool(traced.failed) or any(item.severity > 1 for item in missed)
+    return goal(id, text, *support, refuted=refuted)
 
 
 def _tool(case: Case) -> GsnElement:

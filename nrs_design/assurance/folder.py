@@ -17,7 +17,8 @@ from nrs_design.files import read_json_text, unique_keys
 from nrs_design.output import check_place, write_outputs
 from nrs_design.proof.text import quoted
 
-MAX_FILES = 1000
+# Far more than any evidence has.
+MAX_FILES, MAX_BYTES = 1000, 2**28
 _LINE = re.compile(r"([0-9a-f]{64})  ([^\s/][^\n]*)")
 _ELSEWHERE = "choose another --out, or remove the folder"
 
@@ -28,20 +29,22 @@ def read_folder(folder: Path) -> dict[str, bytes]:
     Raises
     ------
     CertificateError
-        If it is no folder, holds a link, or far more files than evidence has.
+        If it is no folder, holds a link, or far more than evidence has.
     """
     if not folder.is_dir():
         message = "is a file" if folder.exists() else "there is no such folder"
         remedy = "name a folder that `nrs-design evidence --out` has written"
         raise CertificateError(message, path=folder, remedy=remedy)
-    paths = []
+    paths, size = [], 0
     for path in _walk(folder):
         if path.is_symlink():
             remedy = "evidence holds files only: remove it"
             raise CertificateError("is a symbolic link", path=path, remedy=remedy)
         paths.append(path)
-        if len(paths) > MAX_FILES:
-            raise CertificateError(f"holds more than {MAX_FILES} files", path=folder)
+        size += path.stat().st_size
+        if len(paths) > MAX_FILES or size > MAX_BYTES:
+            remedy = "name the folder of one spec alone"
+            raise CertificateError("holds more than evidence does", path=folder, remedy=remedy)
     return {path.relative_to(folder).as_posix(): read_file(path) for path in sorted(paths)}
 
 

@@ -16,8 +16,8 @@ from nrs_design.assurance.gsn import MAY_SUPPORT, GsnElement, GsnKind
 from nrs_design.output import SVG_MARK
 from nrs_design.printable import visible
 
-# In px: of a line of text, the widest letter of most texts, and between things.
-LINE, LETTER, GAP, MARGIN = 15, 6.7, 26, 10
+# In px: a line of text, a digit in the widest of common fonts, and between things.
+LINE, LETTER, GAP, MARGIN = 14, 7.1, 26, 10
 DIAMOND = 7
 # Letters in a line, and lines; the whole text is in the title of an element and in the outline.
 ROOM = {
@@ -29,7 +29,7 @@ ROOM = {
     GsnKind.JUSTIFICATION: (26, 5),
 }
 _STYLE = (
-    "text{font:12px Arial,Helvetica,sans-serif;text-anchor:middle;fill:#111}"
+    "text{font:11px Arial,Helvetica,sans-serif;text-anchor:middle;fill:#111}"
     ".id{font-weight:bold}"
     "rect,ellipse,circle,polygon{fill:#fff;stroke:#111}"
     ".refuted{fill:#fdd;stroke:#b00020;stroke-width:2}"

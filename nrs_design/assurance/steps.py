@@ -14,7 +14,7 @@ STEPS = {
     ),
     "tool.independent-check": (
         "A program that shares nothing with this one accepts the certificate",
-        "check_elsewhere.py of the documentation, on the certificate of this folder",
+        "check_elsewhere.py of the documentation, or one of your own, on the certificate here",
     ),
 }
 

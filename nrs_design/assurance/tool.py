@@ -8,6 +8,7 @@ import sys
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -75,8 +76,13 @@ class Decider:
 
 def decider() -> Decider:
     """Read the files that decide, and the record of their mutants."""
-    paths = sorted(DECIDES.rglob("*.py"))
-    sources = {path: path.read_bytes() for path in paths}
+    return Decider(nrs_design.__version__, *_installed(), _record())
+
+
+@cache
+def _installed() -> tuple[tuple[SourceFile, ...], tuple[str, ...], Mapping[str, int]]:
+    """Return what decides, what it imports, and what is believed; no process sees it change."""
+    sources = {path: path.read_bytes() for path in sorted(DECIDES.rglob("*.py"))}
     files = tuple(
         SourceFile(
             path.relative_to(HOME).as_posix(),
@@ -88,7 +94,7 @@ def decider() -> Decider:
     imports = {name for source in sources.values() for name in _imported(source)}
     foreign = imports - sys.stdlib_module_names - {"nrs_design"}
     believed = {what: sum(map(_lines, folders)) for what, folders in BELIEVED.items()}
-    return Decider(nrs_design.__version__, files, tuple(sorted(foreign)), believed, _record())
+    return files, tuple(sorted(foreign)), believed
 
 
 def write_record(counts: Mapping[str, int]) -> None:

@@ -12,7 +12,9 @@ def argument_of(folder):
     return {element["id"]: element for element in facts["argument"]}, facts
 
 
-@pytest.mark.parametrize("folder", ["matrices_folder", "sampled_folder"])
+@pytest.mark.parametrize(
+    "folder", ["matrices_folder", pytest.param("sampled_folder", marks=pytest.mark.slow)]
+)
 def test_it_is_a_tree_that_keeps_the_rules(request, folder):
     elements, facts = argument_of(request.getfixturevalue(folder))
     assert len(elements) == len(facts["argument"])
@@ -26,6 +28,7 @@ def test_it_is_a_tree_that_keeps_the_rules(request, folder):
         assert element["undeveloped"] == (kind in MAY_SUPPORT and not support)
 
 
+@pytest.mark.slow
 def test_every_assumption_and_every_hazard_is_in_it(sampled_folder):
     elements, facts = argument_of(sampled_folder)
     texts = [element["text"] for element in elements.values() if element["kind"] == "goal"]
@@ -35,6 +38,7 @@ def test_every_assumption_and_every_hazard_is_in_it(sampled_folder):
     assert any(facts["claim"] in element["text"] for element in elements.values())
 
 
+@pytest.mark.slow
 def test_what_is_open_is_undeveloped(sampled_folder):
     elements, facts = argument_of(sampled_folder)
     undeveloped = {e["text"].partition(":")[0] for e in elements.values() if e["undeveloped"]}

@@ -93,3 +93,10 @@ def test_what_a_newer_folder_lacks_is_removed(folder):
     contents = {"README.md": b"new", "SHA256SUMS": b""}
     write_folder(folder, NAME, contents)
     assert read_folder(folder) == contents
+
+
+def test_a_folder_of_more_than_evidence_is_refused(folder):
+    with (folder / "disk.img").open("wb") as file:
+        file.truncate(2**28 + 1)
+    with pytest.raises(CertificateError, match="holds more than evidence does"):
+        read_folder(folder)

@@ -43,6 +43,7 @@ def test_the_same_argument_gives_the_same_text():
 
 
 @pytest.mark.browser
+@pytest.mark.slow
 def test_in_a_browser_texts_fit_and_shapes_do_not_overlap(tmp_path, sampled_folder):
     chromium, driver = map(program_named, ("chromium", "chromedriver"))
     from selenium import webdriver

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from nrs_design.assurance.hazards import hazards, trace_hazards
+from nrs_design.assurance.hazards import ended_in, hazards, trace_hazards
 from nrs_design.exporters.formats.monitor import KINDS
 from nrs_design.gating.obligations import Obligation, Status
 from nrs_design.gating.rules import CERTIFIED_GOAL, GOAL, RULES, SWITCHING_STABLE
@@ -73,3 +73,8 @@ def test_given_matrices_have_no_limits():
 def test_hazards_are_told_in_sentences(hazard):
     assert hazard.name[0].isupper()
     assert hazard.events.endswith(".")
+
+
+def test_obligations_are_counted_by_how_they_ended():
+    ends = (Status.PROVED, Status.MET, Status.MET, Status.MISSED)
+    assert ended_in(obligation(GOAL, "x: y", end) for end in ends) == "1 proved, 2 met, 1 missed"

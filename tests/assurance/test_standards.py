@@ -5,17 +5,7 @@ from nrs_design.assurance.standards import NOTHING, standards, support_of
 # Clauses as the standards number them: IEC 62304 with its amendment, ISO 14971:2019, and the
 # first level of IEC 80601-2-77, whose clause 201.N goes with clause N of IEC 60601-1.
 CLAUSES = {
-    "IEC 62304:2006": [
-        "5.1.4",
-        "5.1.10",
-        "5.2.2",
-        "5.4.2",
-        "5.5.5",
-        "5.8.5",
-        "7.1.2",
-        "7.3.3",
-        "8.1.2",
-    ],
+    "IEC 62304:2006": "5.1.4, 5.1.10, 5.2.2, 5.4.2, 5.5.5, 5.8.5, 7.1.2, 7.3.3, 8.1.2",
     "ISO 14971:2019": "4.5, 5.4, 5.5, 7.2, 7.3, 10",
     "IEC 80601-2-77:2019": "201.9, 201.12, 201.13, 201.14",
 }

@@ -132,6 +132,7 @@ def build_case(
     rows, judged = register_rows(result, found), tuple(obligations)
     headers = "".join(text.decode() for name, text in program.items() if name.endswith(".h"))
     sampled = system.sample_time is not None
+    limits = None if result.designed is None else result.designed.spec.limits
     return Case(
         name=certificate.spec_name,
         title=getattr(result.loaded.spec, "title", None) or "",
@@ -146,7 +147,7 @@ def build_case(
         else (),
         register=rows,
         obligations=judged,
-        hazards=trace_hazards(result.loaded.spec, certificate.gains, rows, judged, headers),
+        hazards=trace_hazards(limits, certificate.gains, rows, judged, headers),
         results=found,
         program=program,
         no_program=why,
@@ -158,18 +159,17 @@ def build_case(
 
 def _program(result: Result, certificate: Certificate) -> tuple[dict[str, bytes], str]:
     """Return the files of the program, or none and why."""
-    spec, design = result.loaded.spec, result.design
-    if design is None or spec.kind != "interaction-design":
+    designed = result.designed
+    if designed is None:
         return {}, "the spec gives matrices, and no law"
     if certificate.system.sample_time is None:
         return {}, "the proof is about continuous time"
     if certificate.system.clock is not None:
         return {}, "an export has room for one period, and the outer loop has its own"
+    spec, design = designed.spec, designed.design
     delay = None if spec.sampling is None else spec.sampling.delay
     record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
-    export = Export(
-        "proved", record, certificate, design=design, spec=spec, designed=result.designed
-    )
+    export = Export("proved", record, certificate, design=design, spec=spec, designed=designed)
     try:
         return dict(_files(export, spec.name)), ""
     except DesignError as error:

@@ -19,7 +19,7 @@ from nrs_design.gating.obligations import Obligation
 
 if TYPE_CHECKING:
     from nrs_design.certificates.certificate import Gains
-    from nrs_design.spec import Spec
+    from nrs_design.spec.motion import LimitsSpec
 
 _TABLE = Path(__file__).with_name("hazards.toml")
 # As the header of an exported monitor names what was left.
@@ -86,7 +86,7 @@ def ended_in(obligations: Iterable[Obligation]) -> str:
 
 
 def trace_hazards(
-    spec: Spec,
+    limits: LimitsSpec | None,
     gains: Gains,
     rows: Iterable[RegisterRow],
     obligations: Sequence[Obligation],
@@ -96,8 +96,8 @@ def trace_hazards(
 
     Parameters
     ----------
-    spec : Spec
-        With limits, if it is a design.
+    limits : LimitsSpec or None
+        Of the spec; None for given matrices.
     gains : mapping
         That ship, by controller.
     rows : iterable of RegisterRow
@@ -108,13 +108,13 @@ def trace_hazards(
         Header of the exported monitor; empty if there is none.
     """
     rows, watched = tuple(rows), frozenset(_LEFT.findall(monitor))
-    traced = (_trace(h, spec, gains, rows, obligations, watched) for h in hazards())
+    traced = (_trace(h, limits, gains, rows, obligations, watched) for h in hazards())
     return tuple(t for t in traced if t.obligations or t.assumptions or t.limits)
 
 
 def _trace(
     hazard: Hazard,
-    spec: Spec,
+    limits: LimitsSpec | None,
     gains: Gains,
     rows: Sequence[RegisterRow],
     obligations: Iterable[Obligation],
@@ -127,7 +127,7 @@ def _trace(
     return TracedHazard(
         hazard,
         about,
-        tuple(_limits(spec, hazard)),
+        tuple(_limits(limits, hazard)),
         tuple(f"{name}: {', '.join(gains[name])}" for name in chosen),
         tuple(row for row in rows if row.kind.id in hazard.assumptions),
         tuple(name for name in hazard.watched if name in watched),
@@ -138,10 +138,8 @@ def _is_about(item: Obligation, hazard: Hazard) -> bool:
     return item.rule.id in hazard.rules or item.subject.partition(": ")[2] in hazard.goals
 
 
-def _limits(spec: Spec, hazard: Hazard) -> Iterable[str]:
-    if spec.kind != "interaction-design":
-        return
+def _limits(limits: LimitsSpec | None, hazard: Hazard) -> Iterable[str]:
     for name in hazard.limits:
-        limit = getattr(spec.limits, name, None)
+        limit = getattr(limits, name, None)
         if limit is not None:
             yield f"{name}: {limit.text}"

@@ -92,8 +92,7 @@ def register_rows(result: Result, results: RecordedTests) -> tuple[RegisterRow, 
     results : RecordedTests
         What users found.
     """
-    spec = result.loaded.spec
-    design = spec if spec.kind == "interaction-design" else None
+    design = None if result.designed is None else result.designed.spec
     granted = result.certification.granted
     entries = register_of(granted, design)
     grouped: dict[str, list[Entry]] = {}

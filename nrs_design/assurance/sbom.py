@@ -23,7 +23,7 @@ _EXPRESSION = re.compile(r"[A-Za-z0-9.+() -]+")
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class InstalledPart:
     """One installed package."""
 
     name: str  # As it names itself
@@ -63,7 +63,7 @@ def parts_list() -> dict[str, Any]:
     }
 
 
-def installed_parts() -> dict[str, Part]:
+def installed_parts() -> dict[str, InstalledPart]:
     """Return this program and every package that it needs, by normalized name.
 
     Raises
@@ -71,7 +71,7 @@ def installed_parts() -> dict[str, Part]:
     NrsDesignError
         If one of them is not installed.
     """
-    found: dict[str, Part] = {}
+    found: dict[str, InstalledPart] = {}
     waiting = [TOOL]
     while waiting:
         name = waiting.pop()
@@ -81,7 +81,7 @@ def installed_parts() -> dict[str, Part]:
     return found
 
 
-def _part(name: str) -> Part:
+def _part(name: str) -> InstalledPart:
     # Loaded where it is used: no other command reads requirements.
     from packaging.requirements import Requirement
 
@@ -94,7 +94,9 @@ def _part(name: str) -> Part:
         ) from error
     wanted, here = map(Requirement, about.get_all("Requires-Dist") or ()), {"extra": ""}
     needs = {_plain(r.name) for r in wanted if r.marker is None or r.marker.evaluate(here)}
-    return Part(about["Name"], about["Version"], tuple(sorted(needs)), tuple(_licenses(about)))
+    return InstalledPart(
+        about["Name"], about["Version"], tuple(sorted(needs)), tuple(_licenses(about))
+    )
 
 
 def _licenses(about: PackageMetadata) -> Iterator[dict[str, Any]]:
@@ -112,7 +114,7 @@ def _plain(name: str) -> str:
     return _SEPARATORS.sub("-", name).lower()
 
 
-def _component(part: Part, type_: str) -> dict[str, Any]:
+def _component(part: InstalledPart, type_: str) -> dict[str, Any]:
     found = {
         "type": type_,
         "bom-ref": part.purl,
@@ -128,5 +130,5 @@ def _python() -> dict[str, Any]:
     return {"type": "platform", "bom-ref": f"{name}@{version}", "name": name, "version": version}
 
 
-def _needed(part: Part, parts: dict[str, Part]) -> list[str]:
+def _needed(part: InstalledPart, parts: dict[str, InstalledPart]) -> list[str]:
     return [parts[name].purl for name in part.needs]

@@ -126,10 +126,6 @@ def _write(
 def _certified(loaded: LoadedSpec, certificate: Path | None, step: Any) -> Result:
     from nrs_design.pipeline import run_certification, run_recorded
 
-    if loaded.spec.kind == "robot":
-        remedy = "name a spec with controllers, or with matrices"
-        message = "a robot has no controllers, so nothing is proved of it"
-        raise NrsDesignError(message, path=loaded.path, remedy=remedy)
     if certificate is not None:
         return run_recorded(loaded, certificate, step)
     return run_certification(loaded, progress=step)

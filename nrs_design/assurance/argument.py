@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from nrs_design.assurance.build import Build
 from nrs_design.assurance.case import Case
 from nrs_design.assurance.gsn import GsnElement, GsnKind, goal, solution
 from nrs_design.assurance.hazards import TracedHazard, ended_in
@@ -71,7 +72,17 @@ def _program(case: Case) -> GsnElement:
     if not case.program:
         return goal("G4", f"{text} (no program here: {case.no_program})")
     steps = [name for name in user_steps(case.program) if name.startswith("program.")]
-    return goal("G4", text, *(_step(f"G4.{k}", n, case) for k, n in enumerate(steps, start=1)))
+    taken = (_step(f"G4.{k}", name, case) for k, name in enumerate(steps, start=2))
+    return goal("G4", text, _build(case.build), *taken)
+
+
+def _build(build: Build | None) -> GsnElement:
+    text = "The source in program/, compiled by the user's own line, passes its self-test"
+    if build is None:
+        return goal("G4.1", f"{text} (no record of a build is named)")
+    if build.others:
+        return goal("G4.1", f"{text} (built from another {', '.join(build.others)})")
+    return goal("G4.1", text, solution("Sn4.1", f"build.json: {build.said}"))
 
 
 def _step(id: str, name: str, case: Case) -> GsnElement:

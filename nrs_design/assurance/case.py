@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from nrs_design.assurance.build import Build, read_build
 from nrs_design.assurance.hazards import TracedHazard, trace_hazards
 from nrs_design.assurance.register import (
     RecordState,
@@ -42,6 +43,16 @@ class UserFile:
 
 
 @dataclass(frozen=True, slots=True)
+class Given:
+    """What users give beside spec and certificate."""
+
+    results: Path | None = None  # File of what they found
+    build: Path | None = None  # Record of a build
+    binaries: tuple[UserFile, ...] = ()  # What runs on the robot
+    date: str = ""  # Written into the files; none by default
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
     """What is claimed of one spec, what shows it, and what is left open."""
 
@@ -60,6 +71,7 @@ class Case:
     results: RecordedTests
     program: Mapping[str, bytes]  # Exported files by name; empty if there is no program
     no_program: str  # Why; empty if there is one
+    build: Build | None  # None without a record of one
     binaries: tuple[UserFile, ...]
     decider: Decider
     date: str  # Empty unless one was asked for
@@ -94,9 +106,7 @@ class Case:
 def build_case(
     result: Result,
     obligations: Iterable[Obligation],
-    results: Path | None = None,
-    binaries: Iterable[UserFile] = (),
-    date: str = "",
+    given: Given,
     progress: Progress = silent,
 ) -> Case:
     """Collect the facts of a case.
@@ -107,19 +117,15 @@ def build_case(
         Of a certification that proved its spec.
     obligations : iterable of Obligation
         What the gate asks of the spec, each as it ended.
-    results : Path, optional
-        File of what users found.
-    binaries : iterable of UserFile
-        What runs on the robot.
-    date : str
-        Written into the files; none by default.
+    given : Given
+        By users.
     progress : callable
         Told the name of each step.
 
     Raises
     ------
     DataError, SpecError
-        If the file of results cannot be read, or has an id that is none of the spec.
+        If the file of results or of the build cannot be read, or is about something else.
     """
     certificate = result.certificate
     assert certificate is not None, "proved"
@@ -128,7 +134,7 @@ def build_case(
     progress("program")
     program, why = _program(result, certificate)
     ids = (*dict.fromkeys(ids_of(result.certification.granted)), *user_steps(program))
-    found = RecordedTests() if results is None else read_results(results, ids)
+    found = RecordedTests() if given.results is None else read_results(given.results, ids)
     rows, judged = register_rows(result, found), tuple(obligations)
     headers = "".join(text.decode() for name, text in program.items() if name.endswith(".h"))
     sampled = system.sample_time is not None
@@ -151,9 +157,10 @@ def build_case(
         results=found,
         program=program,
         no_program=why,
-        binaries=tuple(binaries),
+        build=None if given.build is None else read_build(given.build, certificate, program),
+        binaries=given.binaries,
         decider=decider(),
-        date=date,
+        date=given.date,
     )
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from nrs_design import __version__
-from nrs_design.assurance.case import Case, UserFile, build_case
-from nrs_design.assurance.contents import FACTS, PARTS, RESULTS, contents_of
+from nrs_design.assurance.case import Case, Given, UserFile, build_case
+from nrs_design.assurance.contents import BUILD, FACTS, PARTS, RESULTS, contents_of
 from nrs_design.assurance.folder import hash_faults, read_facts, read_folder
 from nrs_design.assurance.sources import sources_of
 from nrs_design.errors import CertificateError, NrsDesignError
@@ -107,12 +107,11 @@ def _made_again(
     if release != __version__:
         why = f"written by release {release}, and this is {__version__}: pages were not made again"
         return FolderCheck(name, len(files), (), why)
-    results = folder / RESULTS if RESULTS in files else None
+    results, build = (folder / name if name in files else None for name in (RESULTS, BUILD))
     try:
-        given = [UserFile(f["name"], f["size"], f["sha256"]) for f in facts["binaries"]]
-        day = str(facts["date"] or "")
-        obligations = judge_result(result, progress)
-        case = build_case(result, obligations, results, given, day, progress)
+        named = tuple(UserFile(f["name"], f["size"], f["sha256"]) for f in facts["binaries"])
+        given = Given(results, build, named, str(facts["date"] or ""))
+        case = build_case(result, judge_result(result, progress), given, progress)
         again = contents_of(case, *sources_of(result.loaded))
     except (LookupError, TypeError):
         return FolderCheck(name, len(files), (_PATH,))

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from nrs_design.assurance.argument import build_argument
+from nrs_design.assurance.build import Build
 from nrs_design.assurance.case import Case
 from nrs_design.assurance.gsn import GsnElement, render_text
 from nrs_design.assurance.gsn_svg import render_svg
@@ -25,6 +26,7 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.printable import json_text
 
 FACTS, SUMS, PARTS, RESULTS = "evidence.json", "SHA256SUMS", "sbom.cdx.json", "results.yaml"
+BUILD = "build.json"
 SCHEMA = "nrs-design/evidence/1"
 # Git must not change the ends of lines, or no hash is right.
 _ATTRIBUTES = b"* -text\n"
@@ -60,6 +62,8 @@ def contents_of(case: Case, spec: str, sources: Mapping[str, bytes]) -> dict[str
     }
     if case.results.text:
         pages[RESULTS] = case.results.text.encode()
+    if case.build is not None:
+        pages[BUILD] = case.build.content
     pages["standards.md"] = standards_page(case, pages).encode()
     return {SUMS: sums_of(pages), **dict(sorted(pages.items()))}
 
@@ -102,6 +106,7 @@ def case_facts(case: Case, spec: str, argument: GsnElement) -> dict[str, Any]:
         "hazards": list(map(_hazard_facts, case.hazards)),
         "argument": [_element_facts(element) for element in argument.walk()],
         "program": {"files": sorted(case.program), "none_since": case.no_program or None},
+        "build": None if case.build is None else _build_facts(case.build),
         "binaries": [
             {"name": file.name, "size": file.size, "sha256": file.sha256} for file in case.binaries
         ],
@@ -123,6 +128,18 @@ def case_facts(case: Case, spec: str, argument: GsnElement) -> dict[str, Any]:
         },
         "open": case.open,
         "failed": case.failed,
+    }
+
+
+def _build_facts(build: Build) -> dict[str, Any]:
+    return {
+        "compiler": build.record.compiler.version,
+        "compile": build.record.compile,
+        "run": build.record.run,
+        "result": build.record.result,
+        "compiled": dict(build.record.compiled),
+        "other_sources": build.others,
+        "not_compared": build.record.not_compared,
     }
 
 

@@ -53,6 +53,7 @@ _FILES = (
     ("`*.cert.json`, `spec/`", "certificate, and what it is about"),
     ("`program/`", "source, vectors, self-test, monitor; only where the sampled loop is proved"),
     ("`results.yaml`, `results-to-do.yaml`", "what users found; what is left, to fill in"),
+    ("`build.json`", "record of a build, where one was named"),
     ("`SHA256SUMS`", "hashes of all files"),
 )
 
@@ -172,6 +173,15 @@ def _program(case: Case) -> str:
         (f"`{visible(file.name)}`, named by the user, {file.size} bytes", file.sha256)
         for file in case.binaries
     ]
+    if case.build is not None:
+        told += f" Build: {visible(case.build.said)}."
+        others = ", ".join(case.build.others)
+        told += f" **It took another {others} than the one here.**" if others else ""
+        told += f" Not looked at: {visible('; '.join(case.build.record.not_compared))}."
+        rows += [
+            (f"`{visible(name)}`, as build.json says", visible(hashed))
+            for name, hashed in sorted(case.build.record.compiled.items())
+        ]
     if case.binaries:
         told += " What was named by the user is told by its hash; nothing here has looked inside."
     return told + ("\n\n" + _table(("file", "SHA-256"), rows) if rows else "")

@@ -13,7 +13,7 @@ from nrs_design.cli.printing import note, progress, say, say_failure
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
-    from nrs_design.assurance.case import Case, UserFile
+    from nrs_design.assurance.case import Case, Given, UserFile
     from nrs_design.assurance.check import FolderCheck
     from nrs_design.pipeline import Result
     from nrs_design.spec import LoadedSpec
@@ -39,6 +39,10 @@ def evidence(
         Path | None,
         typer.Option(help="What you found by testing: YAML, as results-to-do.yaml in the folder."),
     ] = None,
+    build: Annotated[
+        Path | None,
+        typer.Option(help="Record of a build, NAME.binary.json, as verify --deployed writes it."),
+    ] = None,
     binary: Annotated[
         list[Path] | None,
         typer.Option(help="A file that runs on the robot; kept as its hash. May be repeated."),
@@ -61,13 +65,15 @@ def evidence(
         raise NrsDesignError("name one of --out and --check", remedy="--out writes, --check checks")
     files = [*map(_user_file, binary or ())]
     if check is not None:
-        if certificate is not None or results is not None or date is not None:
-            message = "--certificate, --results and --date are for writing"
+        if any(given is not None for given in (certificate, results, build, date)):
+            message = "--certificate, --results, --build and --date are for writing"
             raise NrsDesignError(message, remedy="the folder has its own: leave them out")
         return _check(check, spec, files)
     if spec is None or out is None:
         raise NrsDesignError("no spec is named", remedy="name the spec that the folder is about")
-    return _write(spec, out, certificate, results, files, _day(date))
+    from nrs_design.assurance.case import Given
+
+    return _write(spec, out, certificate, Given(results, build, tuple(files), _day(date)))
 
 
 def _user_file(path: Path) -> UserFile:
@@ -91,14 +97,7 @@ def _day(text: str | None) -> str:
         ) from None
 
 
-def _write(
-    spec: Path,
-    out: Path,
-    certificate: Path | None,
-    results: Path | None,
-    binaries: list[UserFile],
-    date: str,
-) -> Answer:
+def _write(spec: Path, out: Path, certificate: Path | None, given: Given) -> Answer:
     from nrs_design.assurance.case import build_case
     from nrs_design.assurance.contents import contents_of
     from nrs_design.assurance.folder import check_free, write_folder
@@ -115,7 +114,7 @@ def _write(
         verdict = result.certification.verdict
         if result.certificate is None or verdict != "proved":
             return _refused(name, verdict)
-        case = build_case(result, judge_result(result, step), results, binaries, date, step)
+        case = build_case(result, judge_result(result, step), given, step)
         step("pages")
         contents = contents_of(case, *sources_of(loaded))
         write_folder(out, name, contents)

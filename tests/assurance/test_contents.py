@@ -52,3 +52,41 @@ def test_pages_say_what_the_facts_say(sampled_folder):
 def test_no_file_names_this_machine(sampled_folder):
     here = str(ROOT).encode()
     assert [p.name for p in sampled_folder.rglob("*.*") if here in p.read_bytes()] == []
+
+
+@pytest.fixture(scope="module")
+def built_folder(sampled_folder, tmp_path_factory):
+    """With the record of a build of its program."""
+    folder = tmp_path_factory.mktemp("built")
+    facts = json.loads((sampled_folder / "evidence.json").read_text())
+    sources = (f"{NAME}.c", f"{NAME}.h")
+    record = {
+        "schema": "nrs-design/binary/1",
+        "spec": {"name": NAME, "sha256": facts["spec"]["sha256"]},
+        "certificate": facts["certificate"]["id"],
+        "compiler": {"version": "gcc 13.2", "target": "arm-none-eabi"},
+        "compile": ["arm-none-eabi-gcc"],
+        "run": ["qemu-system-arm"],
+        "result": "passed",
+        "compared": {
+            name: hashlib.sha256((sampled_folder / "program" / name).read_bytes()).hexdigest()
+            for name in sources
+        },
+        "compiled": {f"{NAME}.o": "3" * 64},
+        "not_compared": ["silicon: an emulator ran it"],
+    }
+    (folder / "build").write_text(json.dumps(record))
+    given = (*PROOF, "--build", "build", "--out", "a")
+    run("evidence", SAMPLED, *given, cwd=folder, code=0)
+    return folder / "a"
+
+
+def test_a_build_leads_from_the_source_to_the_object(built_folder):
+    assert "Sn4.1 (solution): build.json: passed" in (built_folder / "argument.txt").read_text()
+    page = (built_folder / "hazards.md").read_text()
+    assert f"| `{NAME}.o`, as build.json says | {'3' * 64} |" in page
+    assert "Not looked at: silicon: an emulator ran it." in page
+
+
+def test_a_folder_with_a_build_holds(built_folder):
+    assert check_evidence(built_folder).verdict == "holds"

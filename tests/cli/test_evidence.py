@@ -147,7 +147,10 @@ def test_what_is_not_proved_has_no_evidence(tmp_path):
         (["--check", "none"], "there is no such folder"),
         ([COMMUTING, "--out", "a", "--date", "31.1.2026"], "'31.1.2026' is no date"),
         ([COMMUTING, "--out", "a", "--binary", "none.bin"], "none.bin: cannot be read"),
-        ([ROOT / "specs/robots/neuroboscope.nrs.yaml", "--out", "a"], "a robot has no controllers"),
+        (
+            [ROOT / "specs/robots/neuroboscope.nrs.yaml", "--out", "a"],
+            "a robot spec has no controllers",
+        ),
     ],
 )
 def test_wrong_usage_is_one_message_and_writes_nothing(tmp_path, arguments, said):

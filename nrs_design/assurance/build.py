@@ -58,8 +58,8 @@ class Build:
     @property
     def said(self) -> str:
         """The build in a few words."""
-        on = self.record.run[0] if self.record.run else "this machine"
-        return f"{self.record.result}, by {self.record.compiler.version}, run by {on}"
+        by = f"run by {self.record.run[0]}" if self.record.run else "run where it was compiled"
+        return f"{self.record.result}; {self.record.compiler.version}; {by}"
 
 
 def read_build(path: Path, certificate: Certificate, program: Mapping[str, bytes]) -> Build:

@@ -27,7 +27,7 @@ from nrs_design.printable import json_text
 
 FACTS, SUMS, PARTS, RESULTS = "evidence.json", "SHA256SUMS", "sbom.cdx.json", "results.yaml"
 BUILD = "build.json"
-SCHEMA = "nrs-design/evidence/1"
+SCHEMA = "nrs-design/evidence-folder/1"
 # Git must not change the ends of lines, or no hash is right.
 _ATTRIBUTES = b"* -text\n"
 

@@ -55,7 +55,8 @@ def evidence(
 
     Claim, register of assumptions, hazards, argument, clauses of standards, parts list, program and
     hashes. Nothing is claimed for the maker of the device. Exit code: 1 if a goal is missed or a
-    test failed, though the folder is written; with --check, 1 if the folder is rejected.
+    test failed, 3 if a goal is not proved; the folder is written. With --check, 1 if the folder is
+    rejected, 3 if its pages cannot be compared.
 
     Example: nrs-design evidence specs/neuroboscope/soft-tissue-sampled.nrs.yaml --out evidence
 

@@ -35,9 +35,10 @@ def read(tmp_path, **changes):
 def test_a_build_of_these_sources(tmp_path):
     found = read(tmp_path)
     assert found.others == ()
-    assert found.said == "1000 of 1000 steps, by gcc 13.2, run by qemu-system-arm"
+    assert found.said == "1000 of 1000 steps; gcc 13.2; run by qemu-system-arm"
+    assert read(tmp_path, run=[]).said.endswith("; run where it was compiled")
     assert found.record.compiled == {"arm.o": "3" * 64}
-    assert found.content == (tmp_path / "arm.binary.json").read_bytes()
+    assert found.content == json.dumps(RECORD).encode()
 
 
 def test_a_build_of_other_sources_is_told(tmp_path):

@@ -7,7 +7,16 @@ import subprocess
 import pytest
 
 from nrs_design.spec import read_spec
-from tests.support import COMMUTING, ROBOT, ROOT, document_of, program_named, run, typed
+from tests.support import (
+    COMMUTING,
+    ROBOT,
+    ROOT,
+    SOFT_TISSUE,
+    document_of,
+    program_named,
+    run,
+    typed,
+)
 
 PROOF = ("--certificate", ROOT / "reports/commuting.cert.json")
 UNSTABLE = """kind: switched-system
@@ -78,6 +87,19 @@ def test_results_settle_assumptions_of_this_spec_only(tmp_path):
     assert "found with another spec" in done.stderr
     assert facts_in(tmp_path / "a")["open"] == facts["open"]
     assert "Results are of another spec" in (tmp_path / "a/README.md").read_text()
+
+
+def test_a_goal_that_is_not_proved_is_in_the_folder_and_in_the_exit_code(tmp_path):
+    spec = tmp_path / "fast.nrs.yaml"
+    text = SOFT_TISSUE.read_text()
+    spec.write_text(text.replace("switching:", "goals: {decay_rate: 90 1/s}\nswitching:"))
+    done = run("evidence", spec, "--out", "a", cwd=tmp_path, code=3)
+    assert "inconclusive: system: decay_rate: the proved decay rate is" in done.stdout
+    hazard = next(h for h in facts_in(tmp_path / "a")["hazards"] if h["id"] == "unstable-switching")
+    assert hazard["missed"] == ["NRS108 system: decay_rate"]
+    page = (tmp_path / "a/README.md").read_text()
+    assert "**inconclusive**: system: decay_rate" in page
+    assert "1 missed" in (tmp_path / "a/argument.txt").read_text()
 
 
 @pytest.mark.parametrize("of_this_spec", [True, False])

@@ -11,6 +11,7 @@ from nrs_design.assurance.gsn import GsnElement, GsnKind, goal, solution
 from nrs_design.assurance.hazards import TracedHazard, ended_in
 from nrs_design.assurance.register import RecordState, RegisterRow, recorded_state
 from nrs_design.assurance.steps import STEPS, user_steps
+from nrs_design.proof.text import counted
 from nrs_design.switched.assumption import Standing
 
 
@@ -25,10 +26,15 @@ def build_argument(case: Case) -> GsnElement:
     top = goal("G1", f"{case.name}: control does what the claim says, on the robot", strategy)
     contexts = (
         _context("C1", f"Spec {case.name}, SHA-256 {case.spec_sha256}"),
-        _context("C2", f"Claim: {case.claim}"),
+        _context("C2", f"Claim: {case.claim}{_more(case)}"),
         _context("C3", "Outside of the claim: what README.md lists as outside of the proof"),
     )
     return replace(top, in_context_of=contexts)
+
+
+def _more(case: Case) -> str:
+    more = len(case.also)
+    return f" README.md has {counted(more, 'claim')} more." if more else ""
 
 
 def _context(id: str, text: str) -> GsnElement:

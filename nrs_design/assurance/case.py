@@ -61,7 +61,8 @@ class Case:
     spec_sha256: str
     certificate: Certificate
     certificate_id: str
-    claim: str
+    claim: str  # Of the statement that decides
+    also: tuple[str, ...]  # Claims of all other statements, such as bounds
     gains: Gains
     units: Mapping[str, Mapping[str, str]]
     outside: tuple[str, ...]  # Of the proof
@@ -146,6 +147,7 @@ def build_case(
         certificate=certificate,
         certificate_id=certificate.id,
         claim=evidence.claim(system),
+        also=tuple(s.claim(system) for s in certificate.statements if s is not evidence),
         gains=certificate.gains,
         units=gain_units(certificate),
         outside=outside_of(sampled=sampled, rounded=evidence.covers_rounding)

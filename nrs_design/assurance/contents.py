@@ -95,6 +95,7 @@ def case_facts(case: Case, spec: str, argument: GsnElement) -> dict[str, Any]:
         "spec": {"name": case.name, "sha256": case.spec_sha256, "file": spec},
         "certificate": {"file": f"{case.name}.cert.json", "id": case.certificate_id},
         "claim": case.claim,
+        "also": case.also,
         "outside": case.outside,
         "gains": case.gains,
         "obligations": [

@@ -128,7 +128,7 @@ def _trace(
         hazard,
         about,
         tuple(_limits(limits, hazard)),
-        tuple(f"{name}: {', '.join(gains[name])}" for name in chosen),
+        tuple(f"{name}: {', '.join(gains[name])}" for name in chosen if gains[name]),
         tuple(row for row in rows if row.kind.id in hazard.assumptions),
         tuple(name for name in hazard.watched if name in watched),
     )

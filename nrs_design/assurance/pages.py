@@ -28,6 +28,7 @@ def start_page(case: Case) -> str:
         *([case.title] if case.title else []),
         *([f"Date: {case.date}"] if case.date else []),
         f"**Proved.** {visible(case.claim)}",
+        *(f"**Shown, too.** {visible(claim)}" for claim in case.also),
         "\n".join(f"- {line}" for line in _standing(case)),
         f"Spec: SHA-256 `{case.spec_sha256}`. Certificate: id `{case.certificate_id}`, made by "
         f"nrs-design {case.certificate.version}; this folder by nrs-design {case.decider.release}.",

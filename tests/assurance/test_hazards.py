@@ -16,7 +16,7 @@ from nrs_design.switched.assumption import kinds
 from tests.support import SOFT_TISSUE
 
 LIMITS = load_spec(SOFT_TISSUE).limits
-GAINS = {"motion": {"Kp": "1"}, "insertion": {"Mt": "1", "Bt": "2"}}
+GAINS = {"motion": {"Kp": "1"}, "insertion": {"Mt": "1", "Bt": "2"}, "position": {}}
 
 
 def test_every_assumption_is_in_a_hazard():

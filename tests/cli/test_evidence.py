@@ -102,6 +102,18 @@ def test_a_goal_that_is_not_proved_is_in_the_folder_and_in_the_exit_code(tmp_pat
     assert "1 missed" in (tmp_path / "a/argument.txt").read_text()
 
 
+def test_every_claim_of_a_certificate_is_told(tmp_path):
+    proof = ROOT / "reports/oscillator-range.cert.json"
+    spec = ROOT / "specs/examples/oscillator-range.nrs.yaml"
+    run("evidence", spec, "--certificate", proof, "--out", "a", cwd=tmp_path, code=0)
+    claims = [statement["claim"] for statement in json.loads(proof.read_text())["statements"]]
+    facts, page = facts_in(tmp_path / "a"), (tmp_path / "a/README.md").read_text()
+    assert sorted([facts["claim"], *facts["also"]]) == sorted(claims)
+    assert len(claims) == 2
+    assert all(claim in page for claim in claims)
+    assert "README.md has 1 claim more" in (tmp_path / "a/argument.txt").read_text()
+
+
 @pytest.mark.parametrize("of_this_spec", [True, False])
 def test_a_failed_test_is_loud(tmp_path, of_this_spec):
     sha256 = read_spec(COMMUTING).sha256

@@ -16,11 +16,11 @@ from nrs_design.controllers.laws import (
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
-from tests.support import program_named
+from tests.support import ROOT, program_named
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
-M4F = Path(__file__).parent / "m4f"
+M4F = ROOT / "nrs_design/exporters/board"
 STRICT = (
     "-std=c99",
     *("-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wdouble-promotion"),
@@ -111,7 +111,7 @@ def emulated(folder: Path, law: Path, *others: str | Path) -> str:
     gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     compiled, program = folder / "compiled.o", folder / "program.elf"
     built(gcc, *CORTEX, *STRICT, "-O2", "-c", law, "-o", compiled)
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    start = (M4F / "startup.c", "-T", M4F / "memory.ld", "--specs=nosys.specs", "-nostartfiles")
     flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
     linked = run(gcc, *flags, compiled, *others, *start, "-lm", "-o", program)
     assert linked.returncode == 0, linked.stderr

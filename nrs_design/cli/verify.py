@@ -45,8 +45,8 @@ def verify(
         Path | None,
         typer.Option(
             metavar="PLACE",
-            help="Folder of exported files, or one of them (C, tests, vectors, monitor, CMake, FMU, "
-            "record), which must be what is exported with the certificate.",
+            help="Folder of exported files, or one of them (C, tests, vectors, monitor, CMake, "
+            "FMU, record): they must be what is exported with the certificate.",
         ),
     ] = None,
     compile_line: Annotated[
@@ -106,7 +106,8 @@ def verify(
     again, from the spec of the robot.
 
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
-    deployed files, the binary or the bounds of the robot are others. 3: it holds, but decides nothing.
+    deployed files, the binary or the bounds of the robot are others. 3: it holds, but decides
+    nothing.
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """

@@ -1,4 +1,4 @@
-"""The record of a build: who compiled what with which flags, what passed, and what nobody looked at.
+"""The record of a build: compiler, flags, hashes, what passed, and what nobody looked at.
 
 It has no date and no path of a machine: the same build is the same text, so that a change of
 compiler, flags or binary is a change of the file.
@@ -92,10 +92,12 @@ def _sha256(file: Path) -> str:
 
 
 def _left_out(comparison: Comparison, binary: Binary) -> Iterator[str]:
-    name = "the object of the law above"
     yield "comments in the files that were compared"
     yield from (f"{file.name}: no export" for file in comparison.others)
-    yield f"the program of the robot: it has to link {name}, by its SHA-256 (with -flto, other code)"
+    yield (
+        "the program of the robot: it has to link the object of the law above, by its SHA-256 (with "
+        "-flto it is other code)"
+    )
     if any(file.name.endswith("_monitor.c") for file in comparison.compared):
         yield "the monitor was compiled, and not run"
     yield "start, clock, interrupts, rounding mode and subnormal numbers as the robot sets them"

@@ -41,7 +41,7 @@ def code_differences(text: str, wanted: str) -> Iterator[str]:
 
 
 def line_differences(text: str, wanted: str) -> Iterator[str]:
-    """Yield the first line that differs from what was exported; lines that begin with # do not count.
+    """Yield the first line that differs from what was exported; those behind a # do not count.
 
     Parameters
     ----------

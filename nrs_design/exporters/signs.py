@@ -22,8 +22,8 @@ SIGNS: Mapping[str, str] = MappingProxyType(
     }
 )
 WRONG = (
-    "Of a torque or an angle of the other sign the proof says nothing: the loop then adds to what it "
-    "should oppose. Vectors do not see it: push the joint by hand once, and look at both signs."
+    "Of a torque or an angle of the other sign the proof says nothing: the loop then adds to what "
+    "it should oppose. Vectors do not see it: push the joint by hand, and look at both signs."
 )
 
 

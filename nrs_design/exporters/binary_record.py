@@ -95,7 +95,7 @@ def _left_out(comparison: Comparison, binary: Binary) -> Iterator[str]:
     yield "comments in the files that were compared"
     yield from (f"{file.name}: no export" for file in comparison.others)
     yield (
-        "the program of the robot: it has to link the object of the law above, by its SHA-256 (with "
+        "the program of the robot: it has to link the object of the law, by its SHA-256 (with "
         "-flto it is other code)"
     )
     if any(file.name.endswith("_monitor.c") for file in comparison.compared):

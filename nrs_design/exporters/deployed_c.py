@@ -51,11 +51,8 @@ def line_differences(text: str, wanted: str) -> Iterator[str]:
     found, exported = _lines(text.replace("\r\n", "\n")), _lines(wanted)
     for (number, one), (_, other) in zip_longest(found, exported, fillvalue=(0, "")):
         if one != other:
-            yield (
-                f"line {number}: {_said(one, other)}"
-                if number
-                else f"at its end: {_said('', other)}"
-            )
+            where = f"line {number}" if number else "at its end"
+            yield f"{where}: {_said(one, other)}"
             return
 
 

@@ -12,8 +12,8 @@ from nrs_design.cli.printing import progress, say
 from nrs_design.exporters.binary import Binary, Toolchain, build_binary
 from nrs_design.exporters.binary_record import binary_document, write_record
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.commands import words_of
-from nrs_design.exporters.deployed import Comparison, compare_deployed
+from nrs_design.exporters.deployed import DeployedFiles, compare_deployed
+from nrs_design.exporters.run_command import words_of
 from nrs_design.spec import InteractionDesignSpec
 
 # Of what a compiler or a self-test said, these many lines are shown: its end.
@@ -25,7 +25,7 @@ class DeployedAnswer:
     """What was deployed, and whether it is what the certificate is about."""
 
     place: Path
-    comparison: Comparison
+    comparison: DeployedFiles
     binary: Binary | None  # None where nothing was compiled
     record: dict[str, Any] | None  # Of a binary that passed
     file: Path | None  # Where it was written

@@ -15,8 +15,8 @@ from tempfile import TemporaryDirectory
 
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.commands import Done, run_command
 from nrs_design.exporters.formats.vectors import COUNT
+from nrs_design.exporters.run_command import Done, run_command
 from nrs_design.exporters.self_test import passed_text, program_macro
 from nrs_design.progress import Progress
 

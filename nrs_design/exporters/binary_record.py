@@ -16,7 +16,7 @@ from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.exporters.binary import Binary, Toolchain
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.deployed import BINARY_RECORD, Comparison
+from nrs_design.exporters.deployed import BINARY_RECORD, DeployedFiles
 from nrs_design.exporters.formats.vectors import COUNT
 from nrs_design.exporters.self_test import passed_text
 from nrs_design.output import BINARY, write_output
@@ -25,7 +25,7 @@ SCHEMA = "nrs-design/binary/1"
 
 
 def binary_document(
-    certificate: Certificate, comparison: Comparison, tools: Toolchain, binary: Binary
+    certificate: Certificate, comparison: DeployedFiles, tools: Toolchain, binary: Binary
 ) -> dict[str, Any]:
     """Return what is known of a binary that passed.
 
@@ -33,7 +33,7 @@ def binary_document(
     ----------
     certificate : Certificate
         Of which law the binary is.
-    comparison : Comparison
+    comparison : DeployedFiles
         Without a difference.
     tools : Toolchain
         Commands of the user.
@@ -91,7 +91,7 @@ def _sha256(file: Path) -> str:
     return sha256(file.read_bytes()).hexdigest()
 
 
-def _left_out(comparison: Comparison, binary: Binary) -> Iterator[str]:
+def _left_out(comparison: DeployedFiles, binary: Binary) -> Iterator[str]:
     yield "comments in the files that were compared"
     yield from (f"{file.name}: no export" for file in comparison.others)
     yield (

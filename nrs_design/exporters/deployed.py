@@ -34,7 +34,7 @@ _RELEASE = "package"
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class DeployedFiles:
     """What of a deployed file or folder was compared, and what was found."""
 
     compared: tuple[Path, ...]
@@ -55,7 +55,7 @@ class Comparison:
 
 def compare_deployed(
     place: Path, spec: InteractionDesignSpec, certificate: Certificate
-) -> Comparison:
+) -> DeployedFiles:
     """Compare a deployed file, or every exported file in a folder, with a certificate.
 
     Parameters
@@ -74,7 +74,7 @@ def compare_deployed(
         it.
     """
     if not place.is_dir():
-        return Comparison((place,), tuple(find_differences(place, spec, certificate)), ())
+        return DeployedFiles((place,), tuple(find_differences(place, spec, certificate)), ())
     files = sorted(path for path in place.iterdir() if path.is_file())
     known = {file: end for end in _WAYS if (file := place / f"{spec.name}{end}") in files}
     exports = _Exports(spec, certificate)
@@ -83,7 +83,7 @@ def compare_deployed(
     # The certificate is read, and a record of a build is what is about to be written.
     aside = {f"{spec.name}.cert.json", f"{spec.name}{BINARY_RECORD}"}
     others = (file for file in files if file not in known and file.name not in aside)
-    return Comparison((*known,), (*told,), (*others,))
+    return DeployedFiles((*known,), (*told,), (*others,))
 
 
 def _missing(there: set[str]) -> list[str]:

@@ -13,6 +13,8 @@ _TOKEN = re.compile(
 # Lines that go on or end otherwise, and other ways to write a # or a backslash.
 _STRANGE = re.compile(r"\\\n|\?\?|%:|[\x00-\x08\x0b-\x1f\x7f]")
 _WORD = re.compile(r"\d[\w.]*(?:(?<=[pPeE])[+-]\w+)?|\w+|\S", re.ASCII)
+# The line that names the release which wrote a file.
+_RELEASE = re.compile(r"^# nrs-design \d[\w.+]{0,40}(?=, nrs-design/export/1$)", re.MULTILINE)
 _END = "\n"
 # For a line that ends within a comment, and so does not end: it is white, and no text has it.
 _BREAK = "\f"
@@ -41,14 +43,19 @@ def code_differences(text: str, wanted: str) -> Iterator[str]:
 
 
 def line_differences(text: str, wanted: str) -> Iterator[str]:
-    """Yield the first line that differs from what was exported; those behind a # do not count.
+    """Yield the first line that differs from what was exported; the release may differ.
+
+    Comments count: to a reader of Python or CMake, some of them are none.
 
     Parameters
     ----------
     text, wanted : str
         What was deployed, and what is exported: a table, a test in Python, a file of CMake.
     """
-    found, exported = _lines(text.replace("\r\n", "\n")), _lines(wanted)
+    found, exported = (
+        enumerate(_RELEASE.sub("", one, count=1).split("\n"), 1)
+        for one in (text.replace("\r\n", "\n"), wanted)
+    )
     for (number, one), (_, other) in zip_longest(found, exported, fillvalue=(0, "")):
         if one != other:
             where = f"line {number}" if number else "at its end"
@@ -62,16 +69,8 @@ def _said(one: str, other: str) -> str:
 
 
 def _shown(text: str) -> str:
-    named = {"": "nothing more", _END: "the end of a line"}
+    named = {"": "nothing", _END: "the end of a line"}
     return named.get(text, f"`{text.strip()[:_LONGEST]}`")
-
-
-def _lines(text: str) -> Iterator[tuple[int, str]]:
-    yield from (
-        (number, line)
-        for number, line in enumerate(text.split("\n"), 1)
-        if line and not line.startswith("#")
-    )
 
 
 def _tokens(text: str) -> Iterator[tuple[int, str]]:

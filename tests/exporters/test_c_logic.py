@@ -1,6 +1,7 @@
 """The mode logic in C: step by step what the replica does, and every number of it deployed."""
 
 import json
+import re
 from fractions import Fraction
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.c_names import CNames, literal
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
 from nrs_design.exporters.logic_cases import logic_document
@@ -136,8 +137,8 @@ def test_every_number_of_the_logic_is_in_the_header(shipped):
     exported = json.loads(vectors_text(law, make_vectors(law, 3), ()))
     assert exported["logic"] == logic_document(law.logic)
     text = header_text(record, law, names)
-    numbers = names.logic(law)
-    assert len(numbers) == 1 + len(law.modes) + sum(len(s.bounds) for s in law.logic.switches)
-    assert numbers.items() <= names.numbers(law).items()
-    assert all(f"#define {macro} " in text for macro in numbers)
+    macros = re.findall(rf"#define {names.upper}_LOGIC_\w+ (\S+)", text)
+    bounds = [literal(b.threshold) for s in law.logic.switches for b in s.bounds]
+    stays = [f"{number}U" for number in (law.logic.start, *law.logic.stays)]
+    assert sorted(macros) == sorted([*bounds, *stays])
     assert "The proof does not rest on the signals" in " ".join(text.replace("\n *", " ").split())

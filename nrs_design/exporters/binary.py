@@ -31,6 +31,8 @@ EMULATOR = (
 _ON_BOARD = ("-T", MEMORY, "--specs=nosys.specs", "-nostartfiles")
 # Where a runner wants the program, if not at its end.
 PLACE = "{program}"
+# No source, and nothing that links one, is larger.
+_LARGEST_BYTES = 2**24
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +98,8 @@ def build_binary(
     with TemporaryDirectory(prefix="nrs-design-") as scratch:
         here = Path(scratch)
         for file in sorted(path for path in folder.iterdir() if path.is_file()):
-            shutil.copyfile(file, here / file.name)
+            if file.stat().st_size <= _LARGEST_BYTES:
+                shutil.copyfile(file, here / file.name)
         return _Bench(here, names, tools, progress).build(files)
 
 
@@ -114,9 +117,11 @@ class _Bench:
         link, run = self._fitting(target)
         made = Binary(version, target, link, run, self._hashes(f.name for f in files), {})
         sources = sorted(file.name for file in files if file.suffix == ".c")
+        # What debuggers read would name the scratch folder, and no two objects would be the same.
+        more = (f"-fdebug-prefix-map={self.here}=.",) if target else ()
         for source in sources:
             self.progress(f"compile {source}")
-            done = self._compile(source)
+            done = self._compile(source, *more)
             if done.code:
                 return self._failed(made, f"the compiler refuses {source}", done)
         objects = [_object(source) for source in sources]
@@ -127,9 +132,11 @@ class _Bench:
         kept = [name for name in objects if name != f"{self.names.spec}_test.o"]
         made = replace(made, objects=self._hashes([*kept, "program"]))
         done = self._run(run)
-        if done.code == 0 and passed_text(self.names, COUNT) in done.said:
-            return made
-        return self._failed(made, f"the self-test ended with {done.code}", done)
+        if passed_text(self.names, COUNT) not in done.said:
+            return self._failed(made, "the self-test does not say that it passed", done)
+        if done.code:
+            return self._failed(made, f"the self-test ended with {done.code}", done)
+        return made
 
     def _compiler(self) -> tuple[str, str]:
         """Return the first line of its version, and its target, as far as it says them."""
@@ -152,7 +159,8 @@ class _Bench:
             raise NrsDesignError(
                 f"the start of an emulated Cortex-M4F does not compile with these flags: "
                 f"{_end_of(done)}",
-                remedy="for another processor, say by --link and --run how to link and run for it",
+                remedy="add -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard; for "
+                "another processor, --link and --run say how to link and run",
             )
         return (_object(START), *_ON_BOARD), run or EMULATOR
 

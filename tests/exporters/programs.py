@@ -1,6 +1,7 @@
 """Laws of every shape, and the compilers that make programs of them."""
 
 import subprocess
+from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -16,6 +17,8 @@ from nrs_design.controllers.laws import (
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
+from nrs_design.exporters import rendered
+from nrs_design.exporters.export import Export
 from tests.support import ROOT, program_named
 
 PERIOD = Fraction(1, 500)
@@ -86,6 +89,14 @@ LAWS = {
     ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
+
+
+def write_formats(folder: Path, export: Export, formats: Iterable[str]) -> Path:
+    """Write all files of some formats of an export into a folder, which comes back."""
+    for name in formats:
+        for ending, content in rendered(name, export).items():
+            (folder / f"{export.record.spec.name}{ending}").write_bytes(content)
+    return folder
 
 
 def compiler(name="gcc"):

@@ -42,7 +42,7 @@ def test_what_was_exported_has_no_difference(differences, header, sampled_export
 def test_comments_and_space_are_no_difference(differences, header):
     for old, new in (
         ("#define", "  #  define"),
-        ("#endif", "// the end\n#endif /* of it"),
+        ("#endif", "// the end\n#endif /* of it */"),
     ):
         assert old in header
         assert differences(header.replace(old, new)) == [], new

@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+from hashlib import sha256
 
 import pytest
 
@@ -12,7 +13,7 @@ from nrs_design.exporters.binary_record import binary_document, write_record
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.deployed import compare_deployed
 from nrs_design.progress import silent
-from tests.exporters.programs import CORTEX, compiler, write_formats
+from tests.exporters.programs import CORTEX, compiler, run, write_formats
 
 NAMES = CNames("soft-tissue")
 SAME = "soft-tissue: all 1000 cases are the same"
@@ -40,13 +41,16 @@ def built(exported, tmp_path):
     return build
 
 
-def test_a_law_that_passes_is_named_by_the_hash_of_its_object(built):
+def test_a_law_that_passes_is_named_by_the_hash_of_its_object(built, exported, tmp_path):
     made = built("-O2")
     assert (made.fault, made.said, made.emulated) == ("", "", False)
     assert "gcc" in made.version
     assert set(made.objects) == {"soft-tissue.o", "program"}
     assert built("-O2").objects == made.objects
     assert built("-O1").objects["soft-tissue.o"] != made.objects["soft-tissue.o"]
+    # A build of the robot makes the same, wherever it is.
+    run("gcc", "-O2", "-c", exported / "soft-tissue.c", "-o", tmp_path / "law.o")
+    assert made.objects["soft-tissue.o"] == sha256((tmp_path / "law.o").read_bytes()).hexdigest()
     # Where it was built is in no object, even with what a debugger reads.
     assert built("-O2", "-g").objects == built("-O2", "-g").objects
 

@@ -53,7 +53,7 @@ class Binary:
     target: str  # For what it compiles; empty if it does not say
     link: tuple[str, ...]
     run: tuple[str, ...]
-    sources: dict[str, str]  # SHA-256 of each file that was compiled or included, by name
+    sources: dict[str, str]  # SHA-256 of each file that was compared, as it was compiled, by name
     objects: dict[str, str]  # The same of objects and of the program that ran
     fault: str = ""  # Why it is not the law; empty if it passed
     said: str = ""  # What the command that failed said

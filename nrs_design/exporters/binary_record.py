@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +49,7 @@ def binary_document(
         "link": list(binary.link),
         "run": list(binary.run),
         "result": passed_text(CNames(certificate.spec_name), COUNT),
-        "compared": {file.name: _sha256(file) for file in comparison.compared},
+        "compared": binary.sources,
         "compiled": binary.objects,
         "not_compared": [*_left_out(comparison, binary)],
     }
@@ -87,10 +86,6 @@ def _before(path: Path) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-def _sha256(file: Path) -> str:
-    return sha256(file.read_bytes()).hexdigest()
-
-
 def _left_out(comparison: DeployedFiles, binary: Binary) -> Iterator[str]:
     yield "comments in the files that were compared"
     yield from (f"{file.name}: no export" for file in comparison.others)
@@ -100,6 +95,7 @@ def _left_out(comparison: DeployedFiles, binary: Binary) -> Iterator[str]:
     )
     if any(file.name.endswith("_monitor.c") for file in comparison.compared):
         yield "the monitor was compiled, and not run"
+    yield "what the compiler takes from its environment, such as CPATH"
     yield "start, clock, interrupts, rounding mode and subnormal numbers as the robot sets them"
     yield "input and output: sensors, their signs, drives"
     if binary.emulated:

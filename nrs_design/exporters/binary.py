@@ -6,6 +6,7 @@ linked with the self-test: what the record names by its hash is what passed.
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +16,6 @@ from tempfile import TemporaryDirectory
 
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.formats.vectors import COUNT
 from nrs_design.exporters.run_command import Done, run_command
 from nrs_design.exporters.self_test import passed_text, program_macro
 from nrs_design.progress import Progress
@@ -55,6 +55,7 @@ class Binary:
     run: tuple[str, ...]
     sources: dict[str, str]  # SHA-256 of each file that was compared, as it was compiled, by name
     objects: dict[str, str]  # The same of objects and of the program that ran
+    result: str = ""  # What the self-test said where it passed
     fault: str = ""  # Why it is not the law; empty if it passed
     said: str = ""  # What the command that failed said
 
@@ -132,11 +133,13 @@ class _Bench:
         kept = [name for name in objects if name != f"{self.names.spec}_test.o"]
         made = replace(made, objects=self._hashes([*kept, "program"]))
         done = self._run(run)
-        if passed_text(self.names, COUNT) not in done.said:
+        # How many cases there are, the source says, which was compared.
+        passed = re.search(passed_text(self.names, r"\d+"), done.said)
+        if passed is None:
             return self._failed(made, "the self-test does not say that it passed", done)
         if done.code:
             return self._failed(made, f"the self-test ended with {done.code}", done)
-        return made
+        return replace(made, result=passed[0])
 
     def _compiler(self) -> tuple[str, str]:
         """Return the first line of its version, and its target, as far as it says them."""

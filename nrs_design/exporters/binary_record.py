@@ -14,10 +14,7 @@ from typing import Any
 from nrs_design import __version__
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.exporters.binary import Binary, Toolchain
-from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.deployed import BINARY_RECORD, DeployedFiles
-from nrs_design.exporters.formats.vectors import COUNT
-from nrs_design.exporters.self_test import passed_text
 from nrs_design.output import BINARY, write_output
 
 SCHEMA = "nrs-design/binary/1"
@@ -48,7 +45,7 @@ def binary_document(
         "compile": list(tools.compile),
         "link": list(binary.link),
         "run": list(binary.run),
-        "result": passed_text(CNames(certificate.spec_name), COUNT),
+        "result": binary.result,
         "compared": binary.sources,
         "compiled": binary.objects,
         "not_compared": [*_left_out(comparison, binary)],

@@ -20,16 +20,15 @@ from nrs_design.exporters import rendered
 from nrs_design.exporters.build import build_record
 from nrs_design.exporters.deployed_c import code_differences, line_differences
 from nrs_design.exporters.deployed_model import model_differences
+from nrs_design.exporters.deployed_record import record_differences
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.record import ExportRecord, Gain, dump_record
+from nrs_design.exporters.record import ExportRecord
 from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
 # How the record of a build ends, which stands beside what was built.
 BINARY_RECORD = ".binary.json"
-# The field of a record that is not compared: it names the release that wrote it.
-_RELEASE = "package"
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +128,8 @@ class _Exports:
         if ending is None and file.suffix != ".json":
             raise _something_else(file)
         if ending in (None, ".export.json"):
-            return [*_of_record(_text(file), self.spec, self.certificate, file)]
+            proved = _record(self.spec, self.certificate)
+            return [*record_differences(_text(file), proved, file)]
         format_, differences = _WAYS[ending]
         export = _exported(self.spec, self.certificate, file)
         if ending == ".fmu":
@@ -220,78 +220,8 @@ def _read(file: Path) -> bytes:
 
 def _text(file: Path) -> str:
     try:
-        return _read(file).decode("utf-8" if file.suffix in (".json", ".py") else "ascii")
+        return _read(file).decode("ascii" if file.suffix in (".h", ".c") else "utf-8")
     except UnicodeDecodeError as error:
         raise NrsDesignError(
             "is not the text that was exported", path=file, remedy="export it again"
         ) from error
-
-
-def _of_record(
-    text: str, spec: InteractionDesignSpec, certificate: Certificate, file: Path
-) -> Iterator[str]:
-    from pydantic import ValidationError
-
-    try:
-        record = ExportRecord.model_validate_json(text)
-    except ValidationError as error:
-        raise NrsDesignError(
-            "is not an export record, or its numbers disagree with each other",
-            path=file,
-            remedy="export it again with --format json",
-        ) from error
-    proved = _record(spec, certificate)
-    told = [*_of_numbers(record, proved)]
-    yield from told
-    if told:
-        return
-    found, wanted = json.loads(text), json.loads(dump_record(proved))
-    for name in sorted((found.keys() | wanted.keys()) - {_RELEASE}):
-        if name not in found or name not in wanted or found[name] != wanted[name]:
-            yield f"its field {name!r} is not what the certificate says"
-
-
-def _of_numbers(record: ExportRecord, proved: ExportRecord) -> Iterator[str]:
-    """Yield what can be said of gains, and of what runs beside them."""
-    if record.spec.sha256 != proved.spec.sha256:
-        yield "it is of another spec, or of an earlier text of it"
-    listed, names = _gains_of(record), ["motion", *(c.name for c in record.controllers)]
-    mine, wanted = dict(listed), dict(_gains_of(proved))
-    if len(mine) < len(listed) or len({*names}) < len(names):
-        yield "a controller or a gain is there twice"
-    for at in sorted(mine.keys() | wanted.keys()):
-        found, has = mine.get(at, "missing"), wanted.get(at, "no such gain")
-        if found != has:
-            name, gain = at
-            yield f"{gain} of {name} is {found}, and the certificate has {has}"
-    rest = _rest_of(proved)
-    for what, found in _rest_of(record).items():
-        if found != rest[what]:
-            yield f"{what}: {found}, and the certificate has {rest[what]}"
-
-
-def _gains_of(record: ExportRecord) -> list[tuple[tuple[str, str], str]]:
-    """Return every gain with its unit, by controller and name."""
-    parts = [("motion", record.motion.gains), *((c.name, c.gains) for c in record.controllers)]
-    return [((name, gain.name), _said(gain)) for name, gains in parts for gain in gains]
-
-
-def _rest_of(record: ExportRecord) -> dict[str, str]:
-    """Return what runs beside the gains, in words."""
-    low_pass, idle, period = record.force_filter, record.idle_states, record.sample_time
-    return {
-        "laws and contacts": "; ".join(
-            f"{c.name}: {c.law} at {', '.join(c.contacts)}" for c in record.controllers
-        ),
-        "lags of the filter and their pole": f"{low_pass.order}, {_said(low_pass.pole)}"
-        if low_pass
-        else "none",
-        "decay and reset of idle states": f"{_said(idle.decay)}, {idle.reset}" if idle else "none",
-        "offset": record.offset or "none",
-        "sample time in s": period.exact if period else "none",
-        "age of the force sample": "{} to {}".format(*record.delay) if record.delay else "none",
-    }
-
-
-def _said(gain: Gain) -> str:
-    return f"{gain.exact} {gain.unit}"

@@ -12,7 +12,11 @@ _TOKEN = re.compile(
 )
 # Lines that go on or end otherwise, and other ways to write a # or a backslash.
 _STRANGE = re.compile(r"\\\n|\?\?|%:|[\x00-\x08\x0b-\x1f\x7f]")
-_WORD = re.compile(r"\d[\w.]*(?:(?<=[pPeE])[+-]\w+)?|\w+|\S", re.ASCII)
+# Numbers, names, operators of two signs (`& &x` is no `&& x`), and single signs.
+_WORD = re.compile(
+    r"\d[\w.]*(?:(?<=[pPeE])[+-]\w+)?|\w+|->|\+\+|--|&&|\|\||<<|>>|##|[-+*/%&|^<>=!]=|\S",
+    re.ASCII,
+)
 # The line that names the release which wrote a file.
 _RELEASE = re.compile(r"^# nrs-design \d[\w.+]{0,40}(?=, nrs-design/export/1$)", re.MULTILINE)
 _END = "\n"

@@ -8,6 +8,7 @@ CODE = """\
 #include "x.h"
 static const float k[1] = {0x1.8p+2F};
 float f(float x) { return x - k[0]; }
+bool g(bool a, const bool *b) { return a && b[0]; }
 """
 
 
@@ -31,6 +32,7 @@ def test_space_and_comments_are_no_difference(text):
         ("0x1.8p+2F", "0x1.8p+3F"),
         ("0x1.8p+2F", "0x1.8p+2"),
         ("k[0]", "kk[0]"),
+        ("&&", "& &"),
         ("#include", "#define y 1\n#include"),
         # What follows a directive in its line is part of it.
         ('"x.h"\n', '"x.h" '),
@@ -54,7 +56,7 @@ def test_where_it_differs_is_said():
     assert found == "line 4, after `1 ] = {`: it has `1.0F`, and the export has `0x1.8p+2F`"
     (found,) = code_differences(CODE + "int y;", CODE)
     assert found.endswith("it has `int`, and the export has nothing")
-    (found,) = code_differences(CODE.replace("; }", ";"), CODE)
+    (found,) = code_differences(CODE.removesuffix("}\n"), CODE)
     assert found.startswith("at its end, after `[ 0 ] ;`: it has nothing")
 
 

@@ -1,7 +1,7 @@
 """The record of a build: compiler, flags, hashes, what passed, and what nobody looked at.
 
-It has no date and no path of a machine: the same build is the same text, so that a change of
-compiler, flags or binary is a change of the file.
+It has no date, and no path but those of the user's lines: the same build is the same text, so that
+a change of compiler, flags or binary is a change of the file.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from hashlib import sha256
 import pytest
 
 from nrs_design.errors import NrsDesignError, OutputError
-from nrs_design.exporters.binary import Toolchain, build_binary
+from nrs_design.exporters.binary import BOARD, EMULATOR, Toolchain, build_binary
 from nrs_design.exporters.binary_record import binary_document, write_record
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.deployed import compare_deployed
@@ -109,6 +109,14 @@ def test_a_runner_is_asked_where_it_wants_the_program(built, tmp_path):
     assert built("-O2", run=("true",)).fault == FAILED
     lied = built("-O2", run=("sh", "-c", f"echo {SAME}; exit 3"))
     assert lied.fault == "the self-test ended with 3"
+
+
+def test_a_board_of_ones_own(built):
+    """Its start, its memory and its runner; a source at the end of the line is compiled with it."""
+    words = (str(BOARD / "startup.c"), "-T", str(BOARD / "memory.ld"), "--specs=nosys.specs")
+    tools = {"link": (*words, "-nostartfiles"), "run": (*EMULATOR, "{program}")}
+    made = built(*CORTEX, "-O2", cc="arm-none-eabi-gcc", **tools)
+    assert (made.fault, made.link, made.emulated) == ("", tools["link"], False)
 
 
 def test_what_does_not_fit_is_an_error(built, exported, tmp_path):

@@ -23,6 +23,8 @@ C_MONITOR, C_MONITOR_HEADER = (
     b"/* nrs-design C monitor\n",
     b"/* nrs-design C header of a monitor\n",
 )
+CMAKE = b"# nrs-design CMake file\n"
+BINARY = b'{\n  "schema": "nrs-design/binary/'
 VECTORS = b'{\n  "schema": "nrs-design/vectors/'
 VECTOR_TABLE = b"# nrs-design vectors\n"
 # The first entry of the archive, which is stored as it is, and always the same.

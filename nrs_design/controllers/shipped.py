@@ -55,7 +55,8 @@ def _discrete(controller: Controller, period: Fraction, method: str) -> Discrete
     law = controller.law.discretize(period, method)
     if law is None:
         what = f"{controller.name} is a {controller.law.name} controller"
-        raise _without_program(what, controller.name)
+        because = "its law is known in continuous time only, and no proof is about its steps"
+        raise _without_program(what, because, controller.name)
     return law
 
 
@@ -79,7 +80,8 @@ def _step_law(
     frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec))
     if spec.offset != "none":
         first = next(c.name for c in design.controllers if c.law.commands == "position")
-        raise _without_program("force control takes an offset", first)
+        because = "it jumps at every switch, and no proof of a law in steps covers that"
+        raise _without_program("force control takes an offset", because, first)
     if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
     idle = spec.idle_states
@@ -106,9 +108,9 @@ def _renamed(unit: str, command: str) -> str:
     return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
 
-def _without_program(what: str, controller: str) -> DesignError:
+def _without_program(what: str, because: str, controller: str) -> DesignError:
     return DesignError(
-        f"{what}, of which there is no program",
+        f"{what}, of which there is no program: {because}",
         remedy="export the gains alone, with --format json",
         at=("controllers", controller),
     )

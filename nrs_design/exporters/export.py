@@ -97,7 +97,8 @@ def export_design(
 def _check_one_period(loaded: LoadedSpec, spec: InteractionDesignSpec) -> None:
     if spec.sampling is not None and spec.sampling.round > 1:
         raise DesignError(
-            "an export has room for one period, and the outer loop has its own",
+            "an export has one period for all operations of its law, and the proof with "
+            "outer_period runs some of them at another",
             path=loaded.path,
             remedy="leave outer_period out to export; the report has the gains",
             at=("sampling", "outer_period"),

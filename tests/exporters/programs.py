@@ -1,6 +1,7 @@
 """Laws of every shape, and the compilers that make programs of them."""
 
 import subprocess
+from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -16,11 +17,13 @@ from nrs_design.controllers.laws import (
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
-from tests.support import program_named
+from nrs_design.exporters import rendered
+from nrs_design.exporters.export import Export
+from tests.support import ROOT, program_named
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
-M4F = Path(__file__).parent / "m4f"
+M4F = ROOT / "nrs_design/exporters/board"
 STRICT = (
     "-std=c99",
     *("-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wdouble-promotion"),
@@ -88,6 +91,14 @@ LAWS = {
 }
 
 
+def write_formats(folder: Path, export: Export, formats: Iterable[str]) -> Path:
+    """Write all files of some formats of an export into a folder, which comes back."""
+    for name in formats:
+        for ending, content in rendered(name, export).items():
+            (folder / f"{export.record.spec.name}{ending}").write_bytes(content)
+    return folder
+
+
 def compiler(name="gcc"):
     """Return a program that builds, runs or examines exported C."""
     return program_named(name)
@@ -111,7 +122,7 @@ def emulated(folder: Path, law: Path, *others: str | Path) -> str:
     gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     compiled, program = folder / "compiled.o", folder / "program.elf"
     built(gcc, *CORTEX, *STRICT, "-O2", "-c", law, "-o", compiled)
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    start = (M4F / "startup.c", "-T", M4F / "memory.ld", "--specs=nosys.specs", "-nostartfiles")
     flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
     linked = run(gcc, *flags, compiled, *others, *start, "-lm", "-o", program)
     assert linked.returncode == 0, linked.stderr

@@ -16,6 +16,7 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.signs import sign_lines
 from nrs_design.exporters.start import start_lines
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
@@ -102,6 +103,8 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
     yield FLAGS
     yield "and keep rounding to nearest, and subnormal numbers as they are."
     yield from start_lines(law)
+    yield ""
+    yield from sign_lines(law)
     yield ""
     yield (
         "Guards, outside the proof: a step is not valid where the mode does not exist, or an input "

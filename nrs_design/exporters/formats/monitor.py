@@ -132,12 +132,6 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
     yield from (f"Not monitored: {text}" for text in limits.left_out)
 
 
-def macro_numbers(names: CNames, limits: MonitorLimits) -> dict[str, int | Fraction]:
-    """Return every macro of the header with its number: what may be left, and limits."""
-    kinds = {f"{names.upper}_LEFT_{kind}": k for k, kind in enumerate(_told(limits))}
-    return {**kinds, **{name: number for name, number, _ in _limits(names, limits)}}
-
-
 def _told(limits: MonitorLimits) -> dict[str, str]:
     """Return what may be left: of one axis by itself, no speed."""
     return {k: text for k, text in KINDS.items() if k != "SPEED" or limits.speed is not None}

@@ -30,6 +30,10 @@ FMU = (
     b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\x8f*\x87r\x0f\x00\x00\x00\x0f\x00\x00\x00"
     b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmu\n"
 )
+FMU3 = (
+    b"PK\x03\x04\x14\x00\x00\x00\x00\x00\x00\x00!\x00\xa6\xc8\x1aT\x10\x00\x00\x00\x10\x00\x00\x00"
+    b"\x1c\x00\x00\x00documentation/nrs-design.txtnrs-design fmi3\n"
+)
 VECTOR_TEST = b'"""nrs-design test of conformance vectors'
 BOUNDS = b'{\n  "schema": "nrs-design/robot-bounds/'
 LOCK = b'{\n  "schema": "nrs-design/lock/'

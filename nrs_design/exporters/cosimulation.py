@@ -1,4 +1,4 @@
-"""A law as a model for co-simulation: variables, entries of the archive, and what it says of itself.
+"""A law as a model for co-simulation: variables, archive, and what it says of itself.
 
 Versions of FMI differ in their C around the law and in their description: `Interface`. Entries are
 stored as they are, with one date: no library of compression changes a byte.

@@ -307,7 +307,7 @@ def test_a_file_that_no_format_writes_is_no_folder(export, capsys, sampled, name
 def test_a_co_simulation_model(export, capsys, sampled, monkeypatch):
     spec, certificate = sampled
     options = ("--certificate", certificate, "--format", "fmu")
-    monkeypatch.setattr("nrs_design.exporters.formats.fmu.compiler", lambda: None)
+    monkeypatch.setattr("nrs_design.exporters.cosimulation.compiler", lambda: None)
     assert export(spec, *options, "--out", "model.fmu") == 0
     assert "sources only" in capsys.readouterr().err
     assert export(spec, *options, "--out", "model.fmu", "--json") == 0

@@ -29,6 +29,7 @@ from nrs_design.exporters.formats.fmu3 import remarks, render
 from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.program import Program
 from tests.exporters.programs import LAWS, STRICT, built, compiler
+from tests.exporters.programs import run as run_program
 from tests.support import thinned
 
 T = 0.002
@@ -223,8 +224,8 @@ def test_a_wrong_type_of_a_function_would_be_seen(sources):
     assert "fmi3UInt16 value[]" in text
     (sources / "fmi3.c").write_text(text.replace("fmi3UInt16 value[]", "fmi3Int16 value[]", 1))
     (sources / "all.c").write_text('#include "fmi3Functions.h"\n#include "fmi3.c"\n')
-    with pytest.raises(AssertionError, match="conflicting types"):
-        built(compiler(), f"-isystem{STANDARD / 'c-code'}", "-c", sources / "all.c", "-o", "/dev/null")
+    done = run_program(compiler(), f"-isystem{STANDARD / 'c-code'}", "-c", sources / "all.c")
+    assert "conflicting types" in done.stderr
 
 
 def test_sources_compile_without_a_warning_and_with_names_of_their_own(sources):

@@ -1,29 +1,24 @@
 """The node of ROS 2, compiled with headers that stand for ROS 2 and run on a clock of the test."""
 
-import re
 import subprocess
-import sys
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from types import ModuleType
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from ruamel.yaml import YAML
 
 from nrs_design.controllers.replica import step
-from nrs_design.errors import DesignError
 from nrs_design.exporters.export import Execution, export_design
-from nrs_design.exporters.formats.ros2_node import FORMAT, remarks, render
+from nrs_design.exporters.formats.ros2_node import FORMAT, render
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.write import places, write_files
 from nrs_design.spec import read_spec
 from tests.exporters.programs import STRICT, built, compiler, run
 from tests.support import ROOT, skip_for_want_of
 
+# Each compiles a node, or takes the one that is compiled.
+pytestmark = pytest.mark.slow
 STUB = Path(__file__).parent / "ros2_stub"
 CPP = ("-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror")
 T = 2_000_000
@@ -243,70 +238,6 @@ def test_what_is_missing_in_a_spec_is_said(package):
     assert "`mode`" not in page
 
 
-@pytest.fixture
-def texts(sampled_export):
-    return {
-        name.removeprefix("_ros2/"): text.decode() for name, text in render(sampled_export).items()
-    }
-
-
-def test_the_package_names_what_it_needs_and_no_invented_person(texts):
-    package = ElementTree.fromstring(texts["package.xml"])
-    assert package.find("name").text == "nrs_sampled"
-    assert {item.text for item in package.iter("depend")} == {"rclcpp", "sensor_msgs", "std_msgs"}
-    assert package.find("maintainer").text == "nobody yet"
-    assert package.find("export/build_type").text == "ament_cmake"
-    found = {f"{name}.hpp" for name in ("rclcpp/rclcpp", "sensor_msgs/msg/joint_state")}
-    assert all(f'#include "{name}"' in texts["src/node.cpp"] for name in found)
-
-
-def test_parameters_are_those_that_the_node_declares(texts):
-    (parameters,) = YAML(typ="safe").load(texts["config/node.yaml"]).values()
-    declared = set(
-        re.findall(r'(?:declare_parameter<\S+>|nanoseconds)\("(\w+)"', texts["src/node.cpp"])
-    )
-    assert parameters["ros__parameters"].keys() == declared
-    assert parameters["ros__parameters"]["jitter"] == pytest.approx(0.002 / 20)
-    assert f"kPeriod = {T};" in texts["src/node.cpp"]
-
-
-def test_the_launch_file_starts_the_node_with_its_parameters(texts, tmp_path, monkeypatch):
-    """With modules that stand for those of ROS 2."""
-    for name, kind in (("launch", "LaunchDescription"), ("launch_ros.actions", "Node")):
-        module = ModuleType(name)
-        setattr(module, kind, lambda *args, **given: (args, given))
-        monkeypatch.setitem(sys.modules, name, module)
-    monkeypatch.setitem(sys.modules, "launch_ros", ModuleType("launch_ros"))
-    file = tmp_path / "launch/node.launch.py"
-    space = {"__file__": str(file), "__name__": "launched"}
-    exec(compile(texts["launch/node.launch.py"], file, "exec"), space)
-    (((_, node),),), _ = space["generate_launch_description"]()
-    assert node["package"] == node["name"] == "nrs_sampled"
-    assert node["parameters"] == [str(tmp_path / "config/node.yaml")]
-    assert (node["package"] + ":") in texts["config/node.yaml"]
-
-
-def test_the_page_says_what_was_not_tried_and_what_is_outside(texts, sampled_export):
-    page = " ".join(texts["README.md"].split())
-    for words in (
-        "**Not tried with ROS 2.**",
-        "the proof allows 1 sample of 2 ms",
-        "ROS 2 and its host promise no time",
-        "The proof has the angle of the instant of the step",
-        "| `servo_jv` | `sensor_msgs/JointState`, `velocity` |",
-        "command of the motor in rpm",
-    ):
-        assert words in page
-    assert "never built against ROS 2" in remarks({})[0]
-
-
-def test_a_period_that_no_timer_has_is_refused(sampled_export):
-    record = sampled_export.record
-    third = record.sample_time.model_copy(update={"exact": "0.00000000025"})
-    with pytest.raises(DesignError, match="no whole number of nanoseconds"):
-        render(replace(sampled_export, record=record.model_copy(update={"sample_time": third})))
-
-
 CMAKE = {
     "rclcpp": "add_library(rclcpp::rclcpp INTERFACE IMPORTED)\n"
     "set_target_properties(rclcpp::rclcpp PROPERTIES INTERFACE_INCLUDE_DIRECTORIES {stub})\n",
@@ -315,8 +246,9 @@ CMAKE = {
 }
 
 
-def test_cmake_of_ament_builds_and_installs_it(package, tmp_path):
-    """The real ament_cmake; the packages of ROS 2 are those that stand for them."""
+@pytest.fixture
+def configured(package, tmp_path):
+    """Let the real ament_cmake read the package; those of ROS 2 are some that stand for them."""
     cmake = compiler("cmake")
     if not Path("/usr/share/ament_cmake").is_dir():
         skip_for_want_of("ament_cmake")
@@ -325,23 +257,28 @@ def test_cmake_of_ament_builds_and_installs_it(package, tmp_path):
         config = tmp_path / f"stub/share/{name}/cmake/{name}Config.cmake"
         config.parent.mkdir(parents=True)
         config.write_text(text.format(stub=STUB))
-    python = "-DPython3_EXECUTABLE=/usr/bin/python3"
-    paths = (
-        f"-DCMAKE_PREFIX_PATH={tmp_path}/stub;/usr",
-        f"-DCMAKE_INSTALL_PREFIX={tmp_path}/out",
+    done = run(
+        *(cmake, "-S", folder, "-B", tmp_path / "build", "-DPython3_EXECUTABLE=/usr/bin/python3"),
+        *(f"-DCMAKE_PREFIX_PATH={tmp_path}/stub;/usr", f"-DCMAKE_INSTALL_PREFIX={tmp_path}/out"),
     )
-    for arguments in (
-        ("-S", folder, "-B", tmp_path / "build", python, *paths),
-        ("--build", tmp_path / "build"),
-        ("--install", tmp_path / "build"),
-    ):
-        done = run(cmake, *arguments)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return tmp_path
+
+
+def test_ament_reads_the_package(configured):
+    """Under its name, with the flags of the proof."""
+    made = (configured / "build/CMakeFiles/law.dir/flags.make").read_text()
+    assert "-ffp-contract=off" in made
+    cache_ = (configured / "build/CMakeCache.txt").read_text()
+    assert "CMAKE_PROJECT_NAME:STATIC=nrs_soft_tissue\n" in cache_
+
+
+@pytest.mark.nightly
+def test_cmake_builds_and_installs_it(configured):
+    for verb in ("--build", "--install"):
+        done = run(compiler("cmake"), verb, configured / "build")
         assert done.returncode == 0, done.stdout + done.stderr
-    name = "nrs_sampled"
-    installed = {p.relative_to(tmp_path / "out").as_posix() for p in tmp_path.glob("out/**/*")}
-    share = f"share/{name}"
-    assert {f"lib/{name}/node", f"{share}/launch/node.launch.py", f"{share}/config/node.yaml"} <= (
-        installed
-    )
-    assert f"{share}/package.xml" in installed
-    assert told(tmp_path / f"out/lib/{name}", ["at 2000000"]) == ([WAITING, "command 0x0p+0"], "")
+    out = configured / "out"
+    for file in ("package.xml", "launch/node.launch.py", "config/node.yaml"):
+        assert (out / "share/nrs_soft_tissue" / file).is_file()
+    assert told(out / "lib/nrs_soft_tissue", ["at 2000000"]) == ([WAITING, "command 0x0p+0"], "")

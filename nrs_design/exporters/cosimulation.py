@@ -111,7 +111,7 @@ def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
         yield f"state.{value.name}", f"state.{value.name}", "local", value.unit, value.meaning
 
 
-def model_of(export: Export, interface: Interface) -> bytes:
+def fmu_of(export: Export, interface: Interface) -> bytes:
     """Return the file of an export.
 
     Parameters
@@ -130,7 +130,7 @@ def model_of(export: Export, interface: Interface) -> bytes:
 
 
 def what_it_lacks(file: bytes) -> tuple[str, ...]:
-    """Say what a file lacks that `model_of` made."""
+    """Say what a file lacks that `fmu_of` made."""
     with zipfile.ZipFile(io.BytesIO(file)) as archive:
         if any(name.startswith("binaries/") for name in archive.namelist()):
             return ()

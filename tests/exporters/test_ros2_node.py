@@ -273,7 +273,6 @@ def test_ament_reads_the_package(configured):
     assert "CMAKE_PROJECT_NAME:STATIC=nrs_soft_tissue\n" in cache_
 
 
-@pytest.mark.nightly
 def test_cmake_builds_and_installs_it(configured):
     for verb in ("--build", "--install"):
         done = run(compiler("cmake"), verb, configured / "build")

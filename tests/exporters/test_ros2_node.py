@@ -187,9 +187,13 @@ def test_parameters_say_what_is_accepted_and_wrong_ones_end_the_node(package):
     accepted = ["parameter angle_age 0.0003", "parameter jitter 0.0003"]
     lines, _ = told(folder, [*accepted, *late])
     assert statuses(lines)[1:] == ["running"]
-    for text in ("0", "-1", "nan"):
-        lines, errors = told(folder, [f"parameter jitter {text}"], code=1)
-        assert (lines, "the parameter jitter must be positive, in s" in errors) == ([], True)
+    for name, text, most in (
+        *(("jitter", text, "1.000000 ms") for text in ("0", "-1", "nan", "0.0011")),
+        ("angle_age", "0.0021", "2.000000 ms"),
+    ):
+        lines, errors = told(folder, [f"parameter {name} {text}"], code=1)
+        assert lines == []
+        assert f"the parameter {name} must be above 0 s and at most {most}" in errors
 
 
 def test_the_mode_follows_the_logic_and_positions_start_where_the_joint_is(package):

@@ -94,10 +94,14 @@ def test_every_command_is_bit_for_bit_that_of_the_replica(package):
     law = program_of(export).law
     script, wanted = [], []
     state = {v.name: np.zeros(1, np.float32) for v in law.states}
-    for k, (angle, torque) in enumerate(press(600), 1):
+    run_in = press(600)
+    for k, (angle, torque) in enumerate(run_in, 1):
         if k == 100:
             script.append(f"joint servo_jv {k * T} velocity a 0.01")
-        script += sample(k, angle, torque, late=(k % 3) * 20_000, old=(k % 2) * T)
+        # Every other torque is that of the sample before.
+        old = T if k > 1 and k % 2 else 0
+        torque = run_in[k - 2][1] if old else torque
+        script += sample(k, angle, torque, late=(k % 3) * 20_000, old=old)
         velocity = 0.01 if 100 <= k <= 150 else 0.0
         given = {"angle": angle, "torque": torque, "velocity_command": velocity}
         given = {name: np.array([value], np.float32) for name, value in given.items()}

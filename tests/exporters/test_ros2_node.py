@@ -173,6 +173,16 @@ def test_without_measurements_it_waits_with_a_command_of_zero(package):
     assert lines == [WAITING, "command 0x0p+0", "command 0x0p+0"]
 
 
+def test_before_it_runs_it_waits_for_what_is_fresh(package):
+    """An angle, then a torque, that are too old are no reason to stop what has not begun."""
+    _, folder = package()
+    stale = [*sample(1, 0.004, 0.172, late=200_000), *sample(2, 0.004, 0.172, old=2 * T)]
+    lines, errors = told(folder, [*stale, *sample(3, 0.004, 0.172), *sample(4, 0.005, 0.215)])
+    assert (statuses(lines)[1:], errors) == (["running"], "")
+    assert commands(lines)[:2] == [0.0, 0.0]
+    assert commands(lines)[3] != 0.0
+
+
 def test_one_joint_of_several_is_named_by_a_parameter(package):
     _, folder = package()
     name = "joint measured_js {} position x 0.9 position b {}"

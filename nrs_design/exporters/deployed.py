@@ -132,7 +132,7 @@ class _Exports:
             return [*record_differences(_text(file), proved, file)]
         format_, differences = _WAYS[ending]
         export = _exported(self.spec, self.certificate, file)
-        if ending == ".fmu":
+        if ending.endswith(".fmu"):
             return [*model_differences(_read(file), export)]
         if format_ not in self.made:
             self.made[format_] = rendered(format_, export)
@@ -167,9 +167,10 @@ _WAYS: Mapping[str, tuple[str, Callable[[str, str], Iterator[str]]]] = MappingPr
         ".vectors.json": ("vectors", _vector_differences),
         "_monitor.h": ("monitor", code_differences),
         "_monitor.c": ("monitor", code_differences),
-        # These two have ways of their own.
+        # These have ways of their own.
         ".export.json": ("json", line_differences),
         ".fmu": ("fmu", line_differences),
+        ".fmi3.fmu": ("fmu3", line_differences),
     }
 )
 

@@ -1,0 +1,180 @@
+"""Whether stiffnesses of the range explain the torques of a log: the test of the monitor in C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, floor, inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
+from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.statistics import span
+
+Array = NDArray[np.float64]
+
+# What double precision loses of an angle, and of a number of the size of the noise.
+_ROUNDED = 2.0**-48
+# Where torques are old, rows that are further apart than so many periods leave angles out.
+_SAME = 1.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SectorJudgement:
+    """What the rows of a log leave of the surface."""
+
+    checks: tuple[Check, ...]  # Of the stiffness, and of the speed where the spec bounds it
+    touched: float  # Share of the rows in which contact is certain
+    judged: float  # Share in which the stiffness is for certain within `JUDGED` times the range
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rows:
+    """For each row: time, surfaces that it leaves, torque and angle with their noise."""
+
+    time: Array
+    # lowest, highest: of the surfaces; infinite where nothing is said
+    lowest: Array
+    highest: Array
+    # least, most: of the torque; first, last: of the angle at which it was measured
+    least: Array
+    most: Array
+    first: Array
+    last: Array
+
+
+def judge_sector(
+    log: RunLog, angle: Array, torque: Array, sector: Sector, oldest: float, basis: str
+) -> SectorJudgement:
+    """Hold a log against a range of stiffness.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    angle, torque : ndarray, shape (n,)
+        Its columns, at the pivot.
+    sector : Sector
+        What readings must keep.
+    oldest : float
+        How old a torque may be in its row, in s.
+    basis : str
+        Where the range comes from.
+    """
+    allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
+    if oldest and log.step > _SAME * oldest:
+        words = "torques may be older than a row: log every sample"
+        check = Check("stiffness", BoundStatus.NOT_JUDGED, words, allowed, basis)
+        return SectorJudgement((check,), 0.0, 0.0)
+    rows = _rows(log, angle, torque, sector, ceil(oldest / log.step * 1.01))
+    certain = rows.least > 0
+    first, judged = inf, np.zeros(len(torque), dtype=np.bool_)
+    for begin, end in _contacts(log, certain, sector):
+        left, judged[begin:end] = _one_surface(rows, begin, end, sector)
+        first = min(first, left)
+    pulled = np.flatnonzero((rows.most < 0) & (not sector.kept))
+    first = min(first, float(pulled[0]) if len(pulled) else inf)
+    share = float((judged & certain).mean())
+    check = _stiffness(log, torque, first, share, allowed, basis)
+    checks = (check, *_speed(log, angle, sector, basis))
+    return SectorJudgement(checks, float(certain.mean()), share)
+
+
+def _rows(log: RunLog, angle: Array, torque: Array, sector: Sector, old: int) -> _Rows:
+    noise, e = float(sector.torque_noise), float(sector.angle_noise)
+    low, high = float(sector.low), float(sector.high)
+    about = (e + 1e-12) * (1 + _ROUNDED) + _ROUNDED * np.abs(angle)
+    late = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
+    # Before the log, and before a gap, an angle is not known: NaN stays NaN.
+    first, last = np.min(late, axis=0) - about, np.max(late, axis=0) + about
+    for k in np.flatnonzero(log.gaps):
+        first[k + 1 : k + 1 + old] = last[k + 1 : k + 1 + old] = np.nan
+    least, most = torque - noise * (1 + _ROUNDED), torque + noise * (1 + _ROUNDED)
+    lowest = first - np.maximum(most / low, most / high) * (1 + _ROUNDED)
+    highest = last - np.minimum(least / low, least / high) * (1 - _ROUNDED)
+    highest = np.where((least > 0) | sector.kept, highest, inf)
+    unknown = np.isnan(first)
+    return _Rows(
+        log.time,
+        np.where(unknown, -inf, lowest),
+        np.where(unknown, inf, highest),
+        least,
+        most,
+        first,
+        last,
+    )
+
+
+def _contacts(
+    log: RunLog, certain: NDArray[np.bool_], sector: Sector
+) -> Iterator[tuple[int, int]]:
+    """Yield first row and end of stretches in which the surface stands still."""
+    count = len(certain)
+    if sector.surface == "fixed" or sector.kept:
+        yield 0, count
+        return
+    breaks = np.flatnonzero(log.gaps) + 1
+    edges = np.flatnonzero(np.diff(certain, prepend=False, append=False))
+    for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        cuts = [begin, *breaks[(breaks > begin) & (breaks < end)].tolist(), end]
+        for part, (first, last) in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
+            # The last row in the air tells where the surface is not, unless a gap follows it.
+            still = sector.surface == "free" and not part and first > 0 and first not in breaks
+            yield first - still, last
+
+
+def _one_surface(
+    rows: _Rows, begin: int, end: int, sector: Sector
+) -> tuple[float, NDArray[np.bool_]]:
+    """Return the first row that leaves no surface (else infinity), and which rows are judged."""
+    part = slice(begin, end)
+    moved = float(sector.surface_speed) * rows.time[part]
+    lowest = np.maximum.accumulate(rows.lowest[part] + moved) - moved
+    highest = np.minimum.accumulate(rows.highest[part] - moved) + moved
+    empty = np.flatnonzero(lowest > highest)
+    factor, low, high = float(JUDGED), float(sector.low), float(sector.high)
+    with np.errstate(invalid="ignore"):
+        below = rows.most[part] < factor * high * (rows.first[part] - highest)
+        above = rows.least[part] > low / factor * (rows.last[part] - lowest)
+    return begin + float(empty[0]) if len(empty) else inf, below & above
+
+
+def _stiffness(
+    log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
+) -> Check:
+    within = f"within {float(JUDGED):g} times the range for certain in {_percent(share)} of the rows"
+    if first == inf:
+        words = f"the range explains every row; {within}"
+        return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)
+    at = int(first)
+    what = Violation(
+        log.begin + float(log.time[at]),
+        f"no stiffness of the range explains {torque[at]:.4g} N m and the rows before",
+    )
+    return Check("stiffness", BoundStatus.OUTSIDE, within, allowed, basis, what)
+
+
+def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Check]:
+    """Judge the speed of the joint, where the spec says one for its readings."""
+    if sector.speed is None:
+        return
+    name, limit = "speed", float(sector.speed)
+    step = np.diff(log.time)
+    size = np.abs(np.diff(angle))
+    noise = 2 * float(sector.reading) + _ROUNDED * float(np.abs(angle).max())
+    over = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
+    measured = f"at least {np.maximum(size - noise, 0.0)[step > 0].max():.3g} rad in a row"
+    if not len(over):
+        yield Check(name, BoundStatus.INSIDE, measured, f"up to {limit:.4g} rad/s", basis)
+        return
+    at = int(over[0]) + 1
+    words = f"{size[at - 1]:.3g} rad in {step[at - 1]:.3g} s"
+    first = Violation(log.begin + float(log.time[at]), words)
+    yield Check(name, BoundStatus.OUTSIDE, measured, f"up to {limit:.4g} rad/s", basis, first)
+
+
+def _percent(share: float) -> str:
+    return f"{floor(1000 * share) / 10:g} %"

@@ -69,37 +69,61 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
     """
     low, high = lower(sector.low, 6), upper(sector.high, 6)
     yield (
-        f"STIFFNESS: no stiffnesses in [{low}, {high}] N*m/rad, another one at every sample, "
-        f"explain the readings, which are off by at most {upper(sector.torque_noise, 4)} N*m and "
-        f"{upper(sector.angle_noise, 4)} rad; {_SURFACES[sector.surface]}. Where that holds it is "
-        "never told, whatever the stiffness and the noise do: a theorem, rounding included. These "
-        "are bounds: of normal noise, three standard deviations are left in nearly every run."
+        f"STIFFNESS: no stiffness within [{low}, {high}] N*m/rad, another one at every sample, "
+        f"explains the readings; the torque is off by at most {upper(sector.torque_noise, 4)} N*m, "
+        f"its angle by {upper(sector.angle_noise, 4)} rad; {_surface(sector)}. Where that holds "
+        "it is never told, whatever stiffness and noise do, rounding included. Noise is a bound: "
+        "three standard deviations of a normal one are left in nearly every run."
     )
     yield (
-        "Found for certain, whatever the noise does: a stiffness c times the range once its torque "
-        f"is beyond N. With e, a the noise of torque and angle, l, h the range, {_FORMULA}"
+        "Found for certain: a stiffness c times the end of the range beyond which it is, from the "
+        f"torque N on, where contact is made while the monitor runs. N = {_formula(sector)}; e and "
+        "a are the noise of torque and angle, l and h the ends of the range, d is the travel of "
+        f"the joint between two torques that are read, {upper(travel, 3)} rad at the velocity "
+        f"limit.{_moving(sector)}"
     )
     for factor in FACTORS:
         need = _need(sector, factor, Fraction(0))
         more = _need(sector, factor, travel) - need
         yield f"c = {float(factor):g}: N = {upper(need, 3)} N*m, and {upper(more, 2)} N*m for d"
     yield (
-        f"d here: {upper(travel, 3)} rad, at the velocity limit. Contact has to be made while it "
-        "watches. What noise happens not to hide is found from half of that on."
+        f"`judged` of `sample` samples show a stiffness within {float(JUDGED):g} times the range."
     )
 
 
-_SURFACES = {
-    "fixed": "there is one surface for the whole run",
-    "free": "the surface moves only where the torque may be zero",
-    "touched": "the surface moves until contact is certain",
-}
-_FORMULA = (
-    "d the travel of the joint between two readings of the torque, and k = c h for c > 1, c l for "
-    "c < 1: N = (4 a + 2 e (1/l + 1/h) + m)/|1/k - 1/b|, where b is h for c > 1, l for c < 1; m = "
-    "d for c > 1 if the surface is fixed or free, else (2 e + k d) |1/k - 1/o|, o the other end. "
-    "If contact is kept, k d counts from the least torque, and without 2 e."
-)
+def _surface(sector: Sector) -> str:
+    if sector.kept:
+        return "contact is kept, with one surface"
+    return {
+        "fixed": "there is one surface for the whole run",
+        "free": "the surface has moved since a reading only if the next torque may be zero",
+        "touched": "the surface stands still from the first torque that is not zero for certain on",
+    }[sector.surface]
+
+
+def _formula(sector: Sector) -> str:
+    """Return how N follows, as `Sector.need` has it."""
+    noise, light = "4 a + 2 e (1/l + 1/h)", "c {k} d" if sector.kept else "(2 e + c {k} d)"
+    stiff, soft = (
+        f"({noise} + {light.format(k=k)} ({lever}))/({gain})"
+        for k, lever, gain in (
+            ("h", "1/l - 1/(c h)", "1/h - 1/(c h)"),
+            ("l", "1/(c l) - 1/h", "1/(c l) - 1/l"),
+        )
+    )
+    if sector.surface != "touched" and not sector.kept:
+        stiff = f"({noise} + d)/(1/h - 1/(c h))"
+    after = ", where the torque comes down to zero" if sector.kept else ""
+    return f"{stiff} for c > 1, {soft} for c < 1{after}"
+
+
+def _moving(sector: Sector) -> str:
+    """Say what a surface that moves all the same costs."""
+    if not sector.surface_speed:
+        return ""
+    return (
+        " A surface that moves adds twice its speed times the time between the two samples to 4 a."
+    )
 
 
 def _need(sector: Sector, factor: Fraction, travel: Fraction) -> Fraction:

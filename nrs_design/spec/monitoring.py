@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from nrs_design.spec.check import Row
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Duration, Torque
 
 Surface = Literal["fixed", "free", "touched"]
@@ -32,19 +32,16 @@ class MonitoringSpec(SpecModel):
         "the whole run), free (it may move while nothing is touched, and stands still from the "
         "last sample before the touch on), or touched (it may move until contact is certain)"
     )
-    surface_speed: AngularVelocity | None = Field(
-        default=None,
-        description="how fast the surface may move all the same, in rad/s about the pivot, such as "
-        "with a breath; default: it stands still",
+    surface_speed: AngularVelocity | None = optional(
+        "how fast the surface may move all the same, in rad/s about the pivot, such as "
+        "with a breath; default: it stands still"
     )
-    speed: AngularVelocity | None = Field(
-        default=None,
-        description="largest speed of the joint in rad/s, which the monitor tests, too; required "
-        "with skew, and for a tissue with damping",
+    speed: AngularVelocity | None = optional(
+        "largest speed of the joint in rad/s, which the monitor tests, too; required "
+        "with skew, and for a tissue with damping"
     )
-    skew: Duration | None = Field(
-        default=None,
-        description="largest time between the reading of a torque and that of its angle, in s",
+    skew: Duration | None = optional(
+        "largest time between the reading of a torque and that of its angle, in s"
     )
 
     checks = (

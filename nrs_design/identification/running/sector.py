@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from math import ceil, floor, inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
-
-Array = NDArray[np.float64]
 
 # What double precision loses of an angle, and of a number of the size of the noise.
 _ROUNDED = 2.0**-48
@@ -67,7 +65,7 @@ def judge_sector(
     allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
     if oldest and log.step > _SAME * oldest:
         words = "torques may be older than a row: log every sample"
-        check = Check("stiffness", BoundStatus.NOT_JUDGED, words, allowed, basis)
+        check = Check.open("stiffness", words, allowed, basis)
         return SectorJudgement((check,), 0.0, 0.0)
     rows = _rows(log, angle, torque, sector, ceil(oldest / log.step * 1.01))
     certain = rows.least > 0
@@ -108,17 +106,14 @@ def _rows(log: RunLog, angle: Array, torque: Array, sector: Sector, old: int) ->
     )
 
 
-def _contacts(
-    log: RunLog, certain: NDArray[np.bool_], sector: Sector
-) -> Iterator[tuple[int, int]]:
+def _contacts(log: RunLog, certain: Flags, sector: Sector) -> Iterator[tuple[int, int]]:
     """Yield first row and end of stretches in which the surface stands still."""
     count = len(certain)
     if sector.surface == "fixed" or sector.kept:
         yield 0, count
         return
     breaks = np.flatnonzero(log.gaps) + 1
-    edges = np.flatnonzero(np.diff(certain, prepend=False, append=False))
-    for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+    for begin, end in runs(certain):
         cuts = [begin, *breaks[(breaks > begin) & (breaks < end)].tolist(), end]
         for part, (first, last) in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
             # The last row in the air tells where the surface is not, unless a gap follows it.
@@ -126,9 +121,7 @@ def _contacts(
             yield first - still, last
 
 
-def _one_surface(
-    rows: _Rows, begin: int, end: int, sector: Sector
-) -> tuple[float, NDArray[np.bool_]]:
+def _one_surface(rows: _Rows, begin: int, end: int, sector: Sector) -> tuple[float, Flags]:
     """Return the first row that leaves no surface (else infinity), and which rows are judged."""
     part = slice(begin, end)
     moved = float(sector.surface_speed) * rows.time[part]

@@ -127,5 +127,8 @@ def _moving(sector: Sector) -> str:
 
 
 def _need(sector: Sector, factor: Fraction, travel: Fraction) -> Fraction:
-    """Return the torque with what single precision costs up to half a turn."""
-    return sector.need(factor, travel, 4 * 2 * ROUNDING * TURN) * (1 + 16 * SLACK)
+    """Return the torque with what single precision costs up to half a turn.
+
+    Each of two surfaces is moved by `ROUNDING` of the angle, and by ``2 u`` of it in rounding.
+    """
+    return sector.need(factor, travel, 4 * ROUNDING * TURN) * (1 + 16 * SLACK)

@@ -31,7 +31,9 @@ TEXT = SOFT_TISSUE.read_text().replace("torque: 0.3 N*m", "torque: 30 N*m")
 VISCOUS = "    model: kelvin-voigt\n    damping: {nominal: 0.1 N*s/m, range: [0 N*s/m, 0.2 N*s/m]}"
 
 
-def monitored(surface="fixed", torque_noise="2 N*mm", contact="losable", more="", text=TEXT + SAMPLING):
+def monitored(
+    surface="fixed", torque_noise="2 N*mm", contact="losable", more="", text=TEXT + SAMPLING
+):
     """Return a spec whose readings are known."""
     said = MONITORED.format(surface=surface, torque_noise=torque_noise, contact=contact)
     return parse_spec(text + said + more)

@@ -213,6 +213,7 @@ def _summary(
             for c in found.checks
         ],
         "estimated_share_of_time": found.share,
+        "judged_share_of_rows": found.judged,
         "stiffness": [
             {
                 "from_s": found.log.begin + float(found.log.time[w.first]),

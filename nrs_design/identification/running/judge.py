@@ -10,6 +10,7 @@ from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.contact import ESTIMATE, estimate_contact
 from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.sector import judge_sector
 from nrs_design.identification.running.signals import (
     judge_delay,
     judge_force,
@@ -32,6 +33,8 @@ class RunJudgement:
     checks: tuple[Check, ...]  # One for each bound
     windows: tuple[Window, ...]  # Stiffness at the pivot in N m/rad, estimated
     share: float  # Of the time of the log, in which stiffness or free motion could be estimated
+    # Of the rows, in which the stiffness is for certain near its range; None if nothing tells.
+    judged: float | None = None
 
     @property
     def first(self) -> Check | None:
@@ -108,8 +111,11 @@ def judge_run(
     _check_unit(log, bounds)
     bounds = replace(bounds, proved=proved)
     touch = estimate_contact(log, bounds, window, losable=losable if proved else bounds.losable)
+    sector = judge_sector(log, bounds)
+    estimated, contact = touch.checks
     checks = (
-        *touch.checks,
+        *((estimated,) if sector is None else sector.checks),
+        contact,
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
@@ -120,4 +126,5 @@ def judge_run(
             for name, why, allowed in bounds.unseen
         ),
     )
-    return RunJudgement(log, bounds, checks, touch.windows, touch.share)
+    judged = None if sector is None else sector.judged
+    return RunJudgement(log, bounds, checks, touch.windows, touch.share, judged)

@@ -10,99 +10,103 @@ import numpy as np
 
 from nrs_design.controllers.sector import JUDGED, Sector
 from nrs_design.identification.numeric import Array, Flags, runs
+from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.statistics import span
 
 # What double precision loses of an angle, and of a number of the size of the noise.
 _ROUNDED = 2.0**-48
-# Where torques are old, rows that are further apart than so many periods leave angles out.
+# Rows that are further apart than so many periods leave samples out.
 _SAME = 1.5
+# Of a row: an age that is no longer than a whole number of rows but for that is one.
+_EVEN = 0.05
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class SectorJudgement:
     """What the rows of a log leave of the surface."""
 
     checks: tuple[Check, ...]  # Of the stiffness, and of the speed where the spec bounds it
-    touched: float  # Share of the rows in which contact is certain
-    judged: float  # Share in which the stiffness is for certain within `JUDGED` times the range
+    judged: float  # Share of rows in which the stiffness is for certain near its range
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rows:
-    """For each row: time, surfaces that it leaves, torque and angle with their noise."""
+    """What the rows say, shape (n,) each."""
 
-    time: Array
-    # lowest, highest: of the surfaces; infinite where nothing is said
+    # lowest, highest: between which a row leaves the surface; infinite where it says nothing.
     lowest: Array
     highest: Array
-    # least, most: of the torque; first, last: of the angle at which it was measured
+    # least, most: torque, with its noise.
     least: Array
     most: Array
+    # first, last: angle at which it was measured, with its noise.
     first: Array
     last: Array
 
 
-def judge_sector(
-    log: RunLog, angle: Array, torque: Array, sector: Sector, oldest: float, basis: str
-) -> SectorJudgement:
-    """Hold a log against a range of stiffness.
+def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
+    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell.
 
     Parameters
     ----------
     log : RunLog
         The data.
-    angle, torque : ndarray, shape (n,)
-        Its columns, at the pivot.
-    sector : Sector
-        What readings must keep.
-    oldest : float
-        How old a torque may be in its row, in s.
-    basis : str
-        Where the range comes from.
+    bounds : RunBounds
+        What the spec promises.
     """
+    sector, columns = bounds.sector, _columns(log, bounds)
+    if isinstance(sector, str) or columns is None:
+        return None
+    basis = "proved range" if bounds.proved else "range of the spec, not proved"
     allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
-    if oldest and log.step > _SAME * oldest:
-        words = "torques may be older than a row: log every sample"
-        check = Check.open("stiffness", words, allowed, basis)
-        return SectorJudgement((check,), 0.0, 0.0)
-    rows = _rows(log, angle, torque, sector, ceil(oldest / log.step * 1.01))
+    every = bounds.period or bounds.oldest or inf
+    if (bounds.oldest or sector.surface != "fixed") and log.step > _SAME * every:
+        words = "rows are missing that the age of a torque, or a contact, is told by: log all"
+        return SectorJudgement((Check.open("stiffness", words, allowed, basis),), 0.0)
+    rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _EVEN))
     certain = rows.least > 0
-    first, judged = inf, np.zeros(len(torque), dtype=np.bool_)
+    first, judged = inf, np.zeros(len(log.time), dtype=np.bool_)
     for begin, end in _contacts(log, certain, sector):
-        left, judged[begin:end] = _one_surface(rows, begin, end, sector)
+        left, judged[begin:end] = _one_surface(log, rows, (begin, end), sector)
         first = min(first, left)
     pulled = np.flatnonzero((rows.most < 0) & (not sector.kept))
     first = min(first, float(pulled[0]) if len(pulled) else inf)
     share = float((judged & certain).mean())
-    check = _stiffness(log, torque, first, share, allowed, basis)
-    checks = (check, *_speed(log, angle, sector, basis))
-    return SectorJudgement(checks, float(certain.mean()), share)
+    check = _stiffness(log, columns[1], first, share, allowed, basis)
+    return SectorJudgement((check, *_speed(log, columns[0], sector, basis)), share)
 
 
-def _rows(log: RunLog, angle: Array, torque: Array, sector: Sector, old: int) -> _Rows:
-    noise, e = float(sector.torque_noise), float(sector.angle_noise)
+def _columns(log: RunLog, bounds: RunBounds) -> tuple[Array, Array] | None:
+    """Return angle and torque at the pivot."""
+    columns, arm = log.columns, bounds.lever_arm
+    if {"angle", "torque"} <= columns.keys():
+        return columns["angle"], columns["torque"]
+    if {"deflection", "force"} <= columns.keys() and arm is not None:
+        return columns["deflection"] / arm, columns["force"] * arm
+    return None
+
+
+def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -> _Rows:
+    angle, torque = columns
+    noise, error = float(sector.torque_noise), float(sector.angle_noise)
     low, high = float(sector.low), float(sector.high)
-    about = (e + 1e-12) * (1 + _ROUNDED) + _ROUNDED * np.abs(angle)
+    size = np.abs(angle).max() + np.abs(torque).max() / low
+    about = error * (1 + _ROUNDED) + _ROUNDED * float(size)
     late = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
     # Before the log, and before a gap, an angle is not known: NaN stays NaN.
     first, last = np.min(late, axis=0) - about, np.max(late, axis=0) + about
     for k in np.flatnonzero(log.gaps):
         first[k + 1 : k + 1 + old] = last[k + 1 : k + 1 + old] = np.nan
     least, most = torque - noise * (1 + _ROUNDED), torque + noise * (1 + _ROUNDED)
-    lowest = first - np.maximum(most / low, most / high) * (1 + _ROUNDED)
-    highest = last - np.minimum(least / low, least / high) * (1 - _ROUNDED)
-    highest = np.where((least > 0) | sector.kept, highest, inf)
+    lowest = first - np.maximum(most / low, most / high)
+    highest = last - np.minimum(least / low, least / high)
     unknown = np.isnan(first)
     return _Rows(
-        log.time,
         np.where(unknown, -inf, lowest),
-        np.where(unknown, inf, highest),
-        least,
-        most,
-        first,
-        last,
+        np.where(unknown | ~((least > 0) | sector.kept), inf, highest),
+        *(least, most, first, last),
     )
 
 
@@ -121,10 +125,12 @@ def _contacts(log: RunLog, certain: Flags, sector: Sector) -> Iterator[tuple[int
             yield first - still, last
 
 
-def _one_surface(rows: _Rows, begin: int, end: int, sector: Sector) -> tuple[float, Flags]:
+def _one_surface(
+    log: RunLog, rows: _Rows, ends: tuple[int, int], sector: Sector
+) -> tuple[float, Flags]:
     """Return the first row that leaves no surface (else infinity), and which rows are judged."""
-    part = slice(begin, end)
-    moved = float(sector.surface_speed) * rows.time[part]
+    part = slice(*ends)
+    moved = float(sector.surface_speed) * log.time[part]
     lowest = np.maximum.accumulate(rows.lowest[part] + moved) - moved
     highest = np.minimum.accumulate(rows.highest[part] - moved) + moved
     empty = np.flatnonzero(lowest > highest)
@@ -132,13 +138,15 @@ def _one_surface(rows: _Rows, begin: int, end: int, sector: Sector) -> tuple[flo
     with np.errstate(invalid="ignore"):
         below = rows.most[part] < factor * high * (rows.first[part] - highest)
         above = rows.least[part] > low / factor * (rows.last[part] - lowest)
-    return begin + float(empty[0]) if len(empty) else inf, below & above
+    return ends[0] + float(empty[0]) if len(empty) else inf, below & above
 
 
 def _stiffness(
     log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
 ) -> Check:
-    within = f"within {float(JUDGED):g} times the range for certain in {_percent(share)} of the rows"
+    within = (
+        f"within {float(JUDGED):g} times the range for certain in {_percent(share)} of the rows"
+    )
     if first == inf:
         words = f"the range explains every row; {within}"
         return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)
@@ -154,12 +162,13 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Ch
     """Judge the speed of the joint, where the spec says one for its readings."""
     if sector.speed is None:
         return
-    name, limit = "speed", float(sector.speed)
-    step = np.diff(log.time)
+    name, limit = "speed of the joint", float(sector.speed)
+    # Stamps may be early or late where the samples are not.
+    step = np.maximum(np.diff(log.time), log.step)
     size = np.abs(np.diff(angle))
     noise = 2 * float(sector.reading) + _ROUNDED * float(np.abs(angle).max())
     over = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
-    measured = f"at least {np.maximum(size - noise, 0.0)[step > 0].max():.3g} rad in a row"
+    measured = f"at least {max(float(size.max()) - noise, 0.0):.3g} rad in a row"
     if not len(over):
         yield Check(name, BoundStatus.INSIDE, measured, f"up to {limit:.4g} rad/s", basis)
         return

@@ -107,14 +107,15 @@ def _understated(spec: Spec) -> tuple[str, str, str] | None:
     """Return a noise of readings that is below an error that the spec names elsewhere."""
     if spec.monitoring is None:
         return None
-    acting, sensor = spec.disturbances, spec.sensor
-    noises = spec.monitoring.torque_noise, spec.monitoring.angle_noise
-    named = (
-        ("angle_noise", noises[1], "disturbances: encoder_step", acting and acting.encoder_step, 2),
-        ("torque_noise", noises[0], "disturbances: force_step", acting and acting.force_step, 2),
-        ("torque_noise", noises[0], "sensor: resolution", sensor and sensor.resolution, 2),
-        ("torque_noise", noises[0], "sensor: bias", sensor and sensor.bias, 1),
-    )
+    torque, angle = spec.monitoring.torque_noise, spec.monitoring.angle_noise
+    named: list[tuple[str, Quantity, str, Quantity | None, int]] = []
+    if spec.disturbances is not None:
+        steps = spec.disturbances.encoder_step, spec.disturbances.force_step
+        named += (("angle_noise", angle, "disturbances: encoder_step", steps[0], 2),)
+        named += (("torque_noise", torque, "disturbances: force_step", steps[1], 2),)
+    if spec.sensor is not None:
+        named += (("torque_noise", torque, "sensor: resolution", spec.sensor.resolution, 2),)
+        named += (("torque_noise", torque, "sensor: bias", spec.sensor.bias, 1),)
     for key, noise, name, error, parts in named:
         if error is not None and noise.not_below < error.not_above / parts:
             return key, noise.text, f"{'half of ' * (parts > 1)}`{name}`, {error.text}"

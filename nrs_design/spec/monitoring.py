@@ -1,4 +1,4 @@
-"""What readings of a running loop are worth: bounds on their noise, and where the surface may be."""
+"""What readings of a running loop are worth: bounds on their noise, and where the surface is."""
 
 from __future__ import annotations
 

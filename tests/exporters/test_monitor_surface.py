@@ -1,7 +1,6 @@
 """The monitor tells no stiffness inside its range, and every one outside that its header names."""
 
 import ctypes
-from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, floor, inf
 
 import numpy as np
@@ -119,7 +120,7 @@ def _contacts(log: RunLog, certain: Flags, sector: Sector) -> Iterator[tuple[int
     breaks = np.flatnonzero(log.gaps) + 1
     for begin, end in runs(certain):
         cuts = [begin, *breaks[(breaks > begin) & (breaks < end)].tolist(), end]
-        for part, (first, last) in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
+        for part, (first, last) in enumerate(pairwise(cuts)):
             # The last row in the air tells where the surface is not, unless a gap follows it.
             still = sector.surface == "free" and not part and first > 0 and first not in breaks
             yield first - still, last
@@ -144,9 +145,8 @@ def _one_surface(
 def _stiffness(
     log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
 ) -> Check:
-    within = (
-        f"within {float(JUDGED):g} times the range for certain in {_percent(share)} of the rows"
-    )
+    near = f"within {float(JUDGED):g} times the range for certain"
+    within = f"{near} in {floor(1000 * share) / 10:g} % of the rows"
     if first == inf:
         words = f"the range explains every row; {within}"
         return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)
@@ -176,7 +176,3 @@ def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Ch
     words = f"{size[at - 1]:.3g} rad in {step[at - 1]:.3g} s"
     first = Violation(log.begin + float(log.time[at]), words)
     yield Check(name, BoundStatus.OUTSIDE, measured, f"up to {limit:.4g} rad/s", basis, first)
-
-
-def _percent(share: float) -> str:
-    return f"{floor(1000 * share) / 10:g} %"

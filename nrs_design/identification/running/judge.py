@@ -10,7 +10,7 @@ from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.contact import ESTIMATE, estimate_contact
 from nrs_design.identification.running.log import RunLog
-from nrs_design.identification.running.sector import judge_sector
+from nrs_design.identification.running.sector import hint, judge_sector
 from nrs_design.identification.running.signals import (
     judge_delay,
     judge_force,
@@ -49,6 +49,11 @@ class RunJudgement:
         names = ", ".join(c.name for c in self.checks if c.status is BoundStatus.ESTIMATED)
         told = f"stiffness or free motion shows in {share:g} % of the time"
         return f"estimated, not judged: {names}: {ESTIMATE}; {told}" if names else told
+
+    @property
+    def hint(self) -> str:
+        """Why the stiffness is not tested, and how it would be; empty if it is."""
+        return hint(self.log, self.bounds)
 
     @property
     def verdict(self) -> str:

@@ -14,12 +14,15 @@ from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import span
 
 # What double precision loses of an angle, and of a number of the size of the noise.
 _ROUNDED = 2.0**-48
 # Rows that are further apart than so many periods leave samples out.
 _SAME = 1.5
+# In so many standard deviations a normal noise stays over an hour of samples, nearly always.
+_SCATTERS = 6.0
 # Of a row: an age that is no longer than a whole number of rows but for that is one.
 _EVEN = 0.05
 
@@ -77,6 +80,27 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
     share = float((judged & certain).mean())
     check = _stiffness(log, columns[1], first, share, allowed, basis)
     return SectorJudgement((check, *_speed(log, columns[0], sector, basis)), share)
+
+
+def hint(log: RunLog, bounds: RunBounds) -> str:
+    """Say why the stiffness is not tested, and what the log would let a spec say; else nothing.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    """
+    columns = _columns(log, bounds)
+    if not isinstance(bounds.sector, str) or columns is None:
+        return ""
+    angle, torque = (_SCATTERS * float(np.sqrt(noise_variance(column))) for column in columns)
+    return (
+        f"stiffness not tested: {bounds.sector}; from row to row this log scatters within "
+        f"`torque_noise: {torque:.2g} N*m, angle_noise: {angle:.2g} rad` ({_SCATTERS:g} standard "
+        "deviations; bias, drift and what bends come on top)"
+    )
 
 
 def _columns(log: RunLog, bounds: RunBounds) -> tuple[Array, Array] | None:

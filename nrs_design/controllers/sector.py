@@ -20,7 +20,7 @@ from nrs_design.spec.controllers import contact_names
 from nrs_design.spec.monitoring import Surface
 from nrs_design.spec.quantity import Quantity
 
-# Of the range: within which a sample must show the stiffness to be counted as judged.
+# Of the range: a sample counts as judged if it would have told so much, by those before it.
 JUDGED = Fraction(3, 2)
 
 

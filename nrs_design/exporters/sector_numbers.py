@@ -40,7 +40,11 @@ def sector_macros(sector: Sector) -> Iterator[Macro]:
     yield "ROUNDING", ROUNDING, "of an angle, single precision"
     yield "YIELD_MOST", _more(1 / sector.low), "rad/(N*m), at the least stiffness"
     yield "YIELD_LEAST", _less(1 / sector.high), "rad/(N*m), at the largest stiffness"
-    yield "JUDGED_HIGH", _less(JUDGED * sector.high, 4), "N*m/rad, below it for certain is judged"
+    yield (
+        "JUDGED_HIGH",
+        _less(JUDGED * sector.high, 4),
+        "N*m/rad, below it for certain counts as judged",
+    )
     yield "JUDGED_LOW", _more(sector.low / JUDGED, 4), "N*m/rad, and above it"
     if sector.surface_speed:
         yield "SURFACE_SPEED", _more(sector.surface_speed), "rad/s, of the surface"
@@ -87,7 +91,8 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
         more = _need(sector, factor, travel) - need
         yield f"c = {float(factor):g}: N = {upper(need, 3)} N*m, and {upper(more, 2)} N*m for d"
     yield (
-        f"`judged` of `sample` samples show a stiffness within {float(JUDGED):g} times the range."
+        f"In `judged` of `sample` samples {float(JUDGED):g} times the range would have been told, "
+        "whatever the noise: the stiffness was nearer, if it was in its range before."
     )
 
 

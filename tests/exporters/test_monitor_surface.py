@@ -56,6 +56,11 @@ class Monitor:
         self.kinds = {int(words[2][:-1]): words[1].removeprefix("NRS_X_LEFT_") for words in told}
         self.begin()
 
+    @property
+    def judged(self):
+        """What it counted: behind five words and the flags stands `touched`, then `judged`."""
+        return self._memory[6], self._memory[7]
+
     def begin(self):
         self._init(self._memory, 1e-4)
 
@@ -247,6 +252,23 @@ def test_an_old_torque_belongs_to_the_angle_of_then(monitor):
         watching.begin()
         readings = zip((0.0, 0.005, 0.0075), (0.0, 0.0, 0.215), ages, strict=True)
         assert [watching.read(a, t, age) for a, t, age in readings][-1] == kind
+
+
+@pytest.mark.parametrize("case", ["fixed", "free", "touched"])
+def test_what_is_judged_is_within_the_factor(monitor, case):
+    """After samples in range, one beyond the factor is never counted, and one in range is."""
+    watching, sector = monitor(CASES[case][0]), sector_of(CASES[case][0])
+    low, high = float(sector.low), float(sector.high)
+    e, a = float(sector.torque_noise), float(sector.angle_noise)
+    for k, some in ((1.501 * high, 0), (low / 1.501, 0), (high, 1), (low, 1)):
+        for before, way in product((low, high), (-1.0, 0.0, 1.0)):
+            watching.begin()
+            for torque in (0.0, 0.0, 0.02):
+                watching.read(1.0 + torque / before - way * a, torque + way * e)
+            assert watching.judged == (1, 0)
+            watching.read(1.0 + 0.25 / k - way * a, 0.25 + way * e)
+            assert watching.judged[1] <= some
+            assert watching.judged[1] == some or way
 
 
 @pytest.mark.parametrize(("surface", "kind"), [("fixed", "STIFFNESS"), ("free", "NONE")])

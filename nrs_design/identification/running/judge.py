@@ -33,7 +33,7 @@ class RunJudgement:
     checks: tuple[Check, ...]  # One for each bound
     windows: tuple[Window, ...]  # Stiffness at the pivot in N m/rad, estimated
     share: float  # Of the time of the log, in which stiffness or free motion could be estimated
-    # Of the rows, in which the stiffness is for certain near its range; None if nothing tells.
+    # Of the rows, in which a stiffness far off would have been told; None if nothing tells.
     judged: float | None = None
 
     @property

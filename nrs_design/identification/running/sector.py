@@ -32,7 +32,7 @@ class SectorJudgement:
     """What the rows of a log leave of the surface."""
 
     checks: tuple[Check, ...]  # Of the stiffness, and of the speed where the spec bounds it
-    judged: float  # Share of rows in which the stiffness is for certain near its range
+    judged: float  # Share of rows in which `JUDGED` times the range would have been told
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,6 +77,8 @@ def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
         first = min(first, left)
     pulled = np.flatnonzero((rows.most < 0) & (not sector.kept))
     first = min(first, float(pulled[0]) if len(pulled) else inf)
+    # From then on nothing is told of the surface.
+    judged[int(min(first, len(judged))) :] = False
     share = float((judged & certain).mean())
     check = _stiffness(log, columns[1], first, share, allowed, basis)
     return SectorJudgement((check, *_speed(log, columns[0], sector, basis)), share)
@@ -156,21 +158,24 @@ def _one_surface(
     """Return the first row that leaves no surface (else infinity), and which rows are judged."""
     part = slice(*ends)
     moved = float(sector.surface_speed) * log.time[part]
-    lowest = np.maximum.accumulate(rows.lowest[part] + moved) - moved
-    highest = np.minimum.accumulate(rows.highest[part] - moved) + moved
-    empty = np.flatnonzero(lowest > highest)
+    lowest = np.maximum.accumulate(rows.lowest[part] + moved)
+    highest = np.minimum.accumulate(rows.highest[part] - moved)
+    empty = np.flatnonzero(lowest - moved > highest + moved)
+    # What the rows before leave: a row that is off would move its own.
+    before = np.concatenate([[-inf], lowest[:-1]]) - moved
+    after = np.concatenate([[inf], highest[:-1]]) + moved
     factor, low, high = float(JUDGED), float(sector.low), float(sector.high)
     with np.errstate(invalid="ignore"):
-        below = rows.most[part] < factor * high * (rows.first[part] - highest)
-        above = rows.least[part] > low / factor * (rows.last[part] - lowest)
+        below = rows.most[part] < factor * high * (rows.first[part] - after)
+        above = rows.least[part] > low / factor * (rows.last[part] - before)
     return ends[0] + float(empty[0]) if len(empty) else inf, below & above
 
 
 def _stiffness(
     log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
 ) -> Check:
-    near = f"within {float(JUDGED):g} times the range for certain"
-    within = f"{near} in {floor(1000 * share) / 10:g} % of the rows"
+    percent = floor(1000 * share) / 10
+    within = f"{float(JUDGED):g} times the range would have been told in {percent:g} % of the rows"
     if first == inf:
         words = f"the range explains every row; {within}"
         return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)

@@ -58,7 +58,7 @@ def test_a_stiffness_inside_is_never_told(tmp_path, kind, surface):
     found = judged(tmp_path, pressed(KINDS[kind], seed=len(kind)), bounds(surface))
     stiffness = check(found, "stiffness")
     assert (str(stiffness.status), stiffness.first) == ("undecided", None)
-    assert stiffness.measured.startswith("the range explains every row; within 1.5 times")
+    assert stiffness.measured.startswith("the range explains every row; 1.5 times the range would")
     assert found.judged > 0.3
     assert found.verdict == "inconclusive"
 
@@ -141,6 +141,9 @@ def test_without_bounds_or_columns_the_stiffness_is_estimated(tmp_path):
     found = judged(tmp_path, runs.run(), unknown)
     assert str(check(found, "stiffness").status) == "estimated"
     assert found.judged is None
+    # Six standard deviations of 0.5 mN m, and what it is written with: 1e-7 rad.
+    assert "`torque_noise: 0.003 N*m, angle_noise: 1." in found.hint
+    assert judged(tmp_path, pressed(), bounds()).hint == ""
     record = log(tmp_path, runs.run())
     columns = {key: values for key, values in record.columns.items() if key != "torque"}
     assert judge_sector(replace(record, columns=columns), bounds()) is None

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.sector_numbers import FACTORS, sector_words
+from nrs_design.identification.running import bounds_of_spec, read_run
+from nrs_design.identification.running.sector import judge_sector
 from tests.exporters.monitor_study import (
     SAMPLING,
     TEXT,
@@ -22,6 +24,7 @@ from tests.exporters.monitor_study import (
     study,
 )
 from tests.exporters.programs import CORTEX, STRICT, built, check_with_misra, compiler, emulated
+from tests.identification import runs
 
 SPEEDS = "  speed: 0.5 rad/s\n"
 VISCOUS_TEXT = TEXT.replace("    model: elastic", VISCOUS) + SAMPLING
@@ -90,8 +93,8 @@ def test_no_alarm_while_what_is_told_holds(tmp_path, sampled_export, case):
     """Whatever the stiffness does in its range; the theorem is in docs/exports/monitor.md."""
     found = runs_of(tmp_path, sampled_export, case, 450, 1)
     assert len(found) == 9
-    for runs, alarms, touched, judged, samples in found.values():
-        assert (runs, alarms) == (50, 0)
+    for count, alarms, touched, judged, samples in found.values():
+        assert (count, alarms) == (50, 0)
         assert touched > samples / 10
         assert judged > touched / 2
 
@@ -101,7 +104,7 @@ def test_no_alarm_while_what_is_told_holds(tmp_path, sampled_export, case):
 def test_no_alarm_in_a_hundred_thousand_runs(tmp_path, sampled_export, case):
     count = 100_000 if case == "fixed" else 20_000
     found = runs_of(tmp_path, sampled_export, case, count, 7)
-    assert sum(runs for runs, *_ in found.values()) == count
+    assert sum(drawn for drawn, *_ in found.values()) == count
     assert sum(alarms for _, alarms, *_ in found.values()) == 0
 
 
@@ -278,6 +281,28 @@ def test_a_surface_that_moves_in_the_air(monitor, surface, kind):
         for depth in (-0.001, 0.002, 0.004):
             last = watching.read(place + depth, 43.0 * max(depth, 0.0))
     assert last == kind
+
+
+@pytest.mark.parametrize("surface", ["fixed", "free", "touched"])
+@pytest.mark.parametrize("factor", [0.5, 1.0, 1.2, 2.0])
+def test_audit_tells_the_same_of_a_log(monitor, tmp_path, surface, factor):
+    """The same row is the first one, or none."""
+    spec = monitored(surface, text=TEXT + "sampling: {period: 2 ms, delay: 0}\n")
+    watching, random = monitor(spec), np.random.default_rng(3)
+    t = 0.002 * np.arange(2500)
+    depth = 0.001 + 0.003 * np.sin(2 * np.pi * 0.9 * t) + 0.0004 * np.sin(2 * np.pi * 3.1 * t)
+    k = np.where(t > 1.5, factor, 1.0) * runs.STIFFNESS
+    noise = random.uniform(-1, 1, (2, len(t)))
+    torque = k * np.maximum(depth, 0.0) + 0.0019 * noise[0]
+    angle = 0.3 + depth + np.radians(0.0043) * noise[1]
+    file = tmp_path / "run.csv"
+    file.write_text(runs.text(t, angle, torque, np.zeros_like(t), np.full(len(t), "insertion")))
+    log = read_run(file)
+    columns = zip(log.columns["angle"], log.columns["torque"], strict=True)
+    told = [row for row, read in enumerate(columns) if watching.read(*read) != "NONE"][:1]
+    first = judge_sector(log, bounds_of_spec(spec)).checks[0].first
+    assert (first is None) == (told == []) == (factor == 1.0)
+    assert first is None or first.time == pytest.approx(log.time[told[0]])
 
 
 @pytest.mark.parametrize(

@@ -81,7 +81,8 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
     )
     yield (
         "Found for certain: a stiffness c times the end of the range beyond which it is, from the "
-        f"torque N on, where contact is made while the monitor runs. N = {_formula(sector)}; e and "
+        "torque N on (k times the deflection, without damping), where contact is made while the "
+        f"monitor runs. N = {_formula(sector)}; e and "
         "a are the noise of torque and angle, l and h the ends of the range, d is the travel of "
         f"the joint between two torques that are read, {upper(travel, 3)} rad at the velocity "
         f"limit.{_moving(sector)}"

@@ -11,10 +11,10 @@ import numpy as np
 
 from nrs_design.controllers.sector import JUDGED, Sector
 from nrs_design.identification.numeric import Array, Flags, runs
+from nrs_design.identification.rounding import resolution
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
-from nrs_design.identification.running.stiffness import noise_variance
 from nrs_design.identification.statistics import span
 
 # What double precision loses of an angle, and of a number of the size of the noise.
@@ -97,12 +97,19 @@ def hint(log: RunLog, bounds: RunBounds) -> str:
     columns = _columns(log, bounds)
     if not isinstance(bounds.sector, str) or columns is None:
         return ""
-    angle, torque = (_SCATTERS * float(np.sqrt(noise_variance(column))) for column in columns)
+    angle, torque = (_SCATTERS * _scatter(column) for column in columns)
     return (
         f"stiffness not tested: {bounds.sector}; from row to row this log scatters within "
         f"`torque_noise: {torque:.2g} N*m, angle_noise: {angle:.2g} rad` ({_SCATTERS:g} standard "
         "deviations; bias, drift and what bends come on top)"
     )
+
+
+def _scatter(x: Array) -> float:
+    """Return the standard deviation of white noise on a smooth signal, jumps aside."""
+    # Binomial coefficients 1, 3, 3, 1, and the quartile of a normal distribution.
+    rough = float(np.median(np.abs(np.diff(x, 3)))) / np.sqrt(20) / 0.6745
+    return float(np.hypot(rough, resolution(x) / np.sqrt(12)))
 
 
 def _columns(log: RunLog, bounds: RunBounds) -> tuple[Array, Array] | None:

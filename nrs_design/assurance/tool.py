@@ -97,7 +97,7 @@ def _installed() -> tuple[tuple[SourceFile, ...], tuple[str, ...], Mapping[str, 
     return files, tuple(sorted(foreign)), believed
 
 
-def write_record(counts: Mapping[str, int]) -> None:
+def keep_record(counts: Mapping[str, int]) -> None:
     """Keep how a run over all mutants of these files ended.
 
     Parameters

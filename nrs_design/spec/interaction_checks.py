@@ -103,6 +103,25 @@ def _undriven(spec: Spec) -> str | None:
     return next(acting, None) if spec.sampling is None else None
 
 
+def _understated(spec: Spec) -> tuple[str, str, str] | None:
+    """Return a noise of readings that is below an error that the spec names elsewhere."""
+    if spec.monitoring is None:
+        return None
+    torque, angle = spec.monitoring.torque_noise, spec.monitoring.angle_noise
+    named: list[tuple[str, Quantity, str, Quantity | None, int]] = []
+    if spec.disturbances is not None:
+        steps = spec.disturbances.encoder_step, spec.disturbances.force_step
+        named += (("angle_noise", angle, "disturbances: encoder_step", steps[0], 2),)
+        named += (("torque_noise", torque, "disturbances: force_step", steps[1], 2),)
+    if spec.sensor is not None:
+        named += (("torque_noise", torque, "sensor: resolution", spec.sensor.resolution, 2),)
+        named += (("torque_noise", torque, "sensor: bias", spec.sensor.bias, 1),)
+    for key, noise, name, error, parts in named:
+        if error is not None and noise.not_below < error.not_above / parts:
+            return key, noise.text, f"{'half of ' * (parts > 1)}`{name}`, {error.text}"
+    return None
+
+
 @dataclass(frozen=True, slots=True)
 class _Goals:
     """Goals of all controllers or of one, and the laws that they are for."""
@@ -337,6 +356,12 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         ),
         "the sensor says how far its signal is off, and force_step does, too",
         "move it to `sensor: {{resolution: ...}}`",
+    ),
+    Row(
+        "monitoring.{0}",
+        _understated,
+        "{1!r} is below {2}",
+        "write the largest error of a reading, all causes together",
     ),
     *each(_commands, IN_ITS_UNIT),
     Row(

@@ -22,6 +22,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
@@ -84,6 +85,10 @@ class AbstractInteractionSpec(SpecModel):
     sensor: SensorSpec | None = optional(
         "the force signal: its filter is a part of the loop, its errors bound the "
         "creep; without it the force is taken for exact"
+    )
+    monitoring: MonitoringSpec | None = optional(
+        "what readings of a running loop are worth, for `export --format monitor` and `audit`; no "
+        "proof depends on it"
     )
     contact: Literal["losable", "kept"] | None = optional(
         "whether a proof must hold while contact is lost and made again (losable), or "

@@ -34,7 +34,7 @@ def test_a_record_is_read_back(monkeypatch, tmp_path):
     path = tmp_path / "mutation.toml"
     monkeypatch.setattr(tool, "MUTATION", path)
     assert tool.decider().mutation is None
-    tool.write_record(COUNTS)
+    tool.keep_record(COUNTS)
     found = tool.decider()
     assert found.examined
     assert found.mutation == tool.MutationRecord(found.sha256, **COUNTS)

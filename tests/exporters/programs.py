@@ -117,8 +117,11 @@ def built(*command: str | Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def emulated(folder: Path, law: Path, *others: str | Path) -> str:
-    """Compile a law as for the robot, and return what its program says on an emulated STM32F405."""
+def emulated(folder: Path, law: Path, *others: str | Path, counted: bool = False) -> str:
+    """Compile a law as for the robot, and return what its program says on an emulated STM32F405.
+
+    Where it is `counted`, the clock of the emulator advances by 256 ns with each instruction.
+    """
     gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     compiled, program = folder / "compiled.o", folder / "program.elf"
     built(gcc, *CORTEX, *STRICT, "-O2", "-c", law, "-o", compiled)
@@ -126,7 +129,8 @@ def emulated(folder: Path, law: Path, *others: str | Path) -> str:
     flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
     linked = run(gcc, *flags, compiled, *others, *start, "-lm", "-o", program)
     assert linked.returncode == 0, linked.stderr
-    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
+    clock = ("-icount", "shift=8,align=off,sleep=off") if counted else ()
+    done = run(emulator, *MACHINE, *clock, *SEMIHOSTING, "-kernel", program)
     # The emulator prints what the program says beside its own messages; its exit code stands first.
     return f"{done.returncode}: {done.stderr}"
 

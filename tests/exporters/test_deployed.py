@@ -14,6 +14,7 @@ from nrs_design.exporters.formats.json import render as render_json
 from nrs_design.exporters.formats.monitor import render as render_monitor
 from nrs_design.spec import read_spec
 from nrs_design.spec.coupling import CouplingSpec
+from nrs_design.spec.monitoring import MonitoringSpec
 from tests.support import ROBOT, ROOT, SOFT_TISSUE, ends_soon
 
 
@@ -252,6 +253,31 @@ def test_a_monitor_of_coupled_axes_keeps_their_speed(sampled, sampled_export, tm
     (found,) = differences("_monitor.h", line, f"{line.split('_SPEED')[0]}_SPEED 0x1.0p-2F")
     assert "MONITOR_SPEED" in found
     for old, new in (("in->speed", "in->step"), ("_MONITOR_SPEED)", "_MONITOR_TORQUE)")):
+        assert len(differences("_monitor.c", old, new)) == 1
+
+
+def test_a_monitor_that_tests_the_stiffness_keeps_its_numbers(sampled, sampled_export, tmp_path):
+    said = {"torque_noise": "2 N*mm", "angle_noise": "0.005 deg", "surface": "free"}
+    told = MonitoringSpec.model_validate(said | {"speed": "1 rad/s", "surface_speed": "1e-3 rad/s"})
+    spec = sampled.spec.model_copy(update={"monitoring": told, "contact": "losable"})
+    files = render_monitor(replace(sampled_export, spec=spec))
+
+    def differences(ending, old="", new=""):
+        text = files[ending].decode()
+        assert old in text
+        (tmp_path / f"law{ending}").write_text(text.replace(old, new, 1))
+        return find_differences(tmp_path / f"law{ending}", spec, sampled_export.certificate)
+
+    assert differences("_monitor.h") == differences("_monitor.c") == []
+    for line in files["_monitor.h"].decode().splitlines():
+        if "0x1." in line and "_MONITOR_" in line:
+            assert len(differences("_monitor.h", line, line.replace("0x1.", "0x1.8", 1))) == 1
+    for old, new in (
+        ("m->low > m->high", "m->low < m->high"),
+        ("_YIELD_MOST", "_YIELD_LEAST"),
+        ("angle - (deep", "angle + (deep"),
+        ("larger(m->low", "smaller(m->low"),
+    ):
         assert len(differences("_monitor.c", old, new)) == 1
 
 

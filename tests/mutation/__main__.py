@@ -19,7 +19,7 @@ from time import process_time
 import hypothesis
 import pytest
 
-from nrs_design.assurance.tool import write_record
+from nrs_design.assurance.tool import keep_record
 from tests.mutation.graft import graft
 from tests.mutation.mutants import Mutant, mutants
 
@@ -134,7 +134,7 @@ def main(names: list[str]) -> int:
     print(in_words(total))
     if not names:
         # A folder of evidence quotes it.
-        write_record(total)
+        keep_record(total)
     return total["unnoticed"]
 
 

@@ -60,8 +60,7 @@ def table(o, rows, columns):
     return {(i,): {(j,): F(x, q) for j, x in enumerate(row)} for i, row in enumerate(N)}
 
 
-def form(rows, n, d=1, kept=64):
-    """Read a form on the monomials of n states; those of the first states are kept."""
+def form(rows, n, d=1, kept=64):  # On the monomials of n states; those of the first are kept
     basis = list(combinations_with_replacement(range(n), d))
     full = {a: dict(zip(basis, row, strict=True)) for a, row in zip(basis, rows, strict=True)}
     return {a: {b: full[a][b] for b in basis if max(b) < kept} for a in basis if max(a) < kept}
@@ -127,6 +126,7 @@ def steps_in_contact(lost, active):
 
 def steps_by_mode(leaving, rate):
     """Yield every step of a system that keeps rules of switching; its places are the modes."""
+    need({r[k] for r in rules.get("resets", []) for k in ("source", "target")} <= names, "a reset")
     for a in names - leaving:
         yield Step(a, a, a, len(A[a]), A[a], flow, [], 1, 1)
     for a, b in product(names, names):
@@ -225,8 +225,8 @@ text = json.dumps(signed, sort_keys=True, separators=(",", ":"))
 if hashlib.sha256(text.encode()).hexdigest() != o["id"]:
     sys.exit("it was altered")
 sys.tracebacklimit = 0  # What is wrong is said in one line
-need(o["schema"] == "nrs-design/certificate/8", "it is of another schema")
-n, flow, contact = len(o["states"]), o["time"] == "continuous", o.get("contact", {})
+need(o["schema"][-2:] == "/8" and o["time"] in ("continuous", "discrete"), "another schema")
+n, contact, flow = len(o["states"]), o.get("contact", {}), o["time"] == "continuous"
 rules, required = {} if o["switching"] == "arbitrary" else o["switching"], contact.get("required")
 count, every = len(o["modes"]), o["modes"] + contact.get("free", [])
 A = {m["name"]: table(m, k, k) for m in every for k in [len(m["numerators"])]}
@@ -245,6 +245,6 @@ for statement in o["statements"]:
         code, words = 3, f"not checked here ({error})"
     except (ArithmeticError, LookupError, TypeError, ValueError) as error:
         code, words = 1, f"DOES NOT HOLD: {error}"
-    codes.add(code)
     print(f"{kind}: {words}")
+    codes.add(code)
 sys.exit(1 if 1 in codes else 3 if 3 in codes else o["verdict"] != verdict)

@@ -4,12 +4,11 @@
 const check = (() => {
   class Unchecked extends Error {}
   const need = (truth, words, Kind = Error) => { if (!truth) throw new Kind(words); }, known = (truth, words) => need(truth, words, Unchecked);
-  const abs = (x) => (x < 0n ? -x : x), larger = (a, b) => (a > b ? a : b), add = (a, b) => a + b;
+  const abs = (x) => (x < 0n ? -x : x), larger = (a, b) => (a > b ? a : b), add = (a, b) => a + b, one = (key) => new Map([[`${key}`, [1n, 1n]]]);
   const gcd = (a, b) => { while (b) [a, b] = [b, a % b]; return abs(a); }, lcm = (a, b) => a / gcd(a, b) * b, range = (n) => [...Array(Number(n)).keys()];
   const times = (A, B) => A.map((row) => B[0].map((_, j) => row.reduce((sum, x, k) => sum + x * B[k][j], 0n)));
   const unit = (n, one = 1n) => range(n).map((i) => range(n).map((j) => (i === j ? one : 0n)));
   const size = (A) => A.map((row) => row.map(abs).reduce(add)).reduce(larger);
-  const one = (key) => new Map([[`${key}`, [1n, 1n]]]);
   const total = (entries) => entries.reduce((sum, [key, x]) => sum.set(key, (sum.get(key) ?? 0n) + x), new Map());
   const sorted = (...keys) => keys.join().split(",").map(Number).sort((a, b) => a - b).join();
   const multiplied = (left, right) => total([...left].flatMap(([a, x]) => [...right].map(([b, y]) => [sorted(a, b), x * y])));
@@ -21,8 +20,7 @@ const check = (() => {
   // JSON whose numbers are integers of any length; texts are marked, so that none of them is taken for a number.
   function parse(text) {
     const marked = text.replace(/"(?:[^"\\]|\\.)*"|-?\d[\d.eE+-]*/g, (m) => (m[0] === '"' ? `"$${m.slice(1)}` : `"${m}"`));
-    const unmarked = (v) => Array.isArray(v) ? v.map(unmarked) : typeof v === "string" ? (v[0] === "$" ? v.slice(1) : BigInt(v))
-      : v && typeof v === "object" ? Object.fromEntries(Object.entries(v).map(([key, x]) => [key.slice(1), unmarked(x)])) : v;
+    const unmarked = (v) => Array.isArray(v) ? v.map(unmarked) : typeof v === "string" ? (v[0] === "$" ? v.slice(1) : BigInt(v)) : v && typeof v === "object" ? Object.fromEntries(Object.entries(v).map(([key, x]) => [key.slice(1), unmarked(x)])) : v;
     return unmarked(JSON.parse(marked));
   }
   // Whether the sum of w a'b over terms [w, a, b] of integers is positive (semi)definite: elimination as by Bareiss.
@@ -91,7 +89,7 @@ const check = (() => {
   }
   function read(o) {
     const contact = o.contact ?? {}, every = [...o.modes, ...(contact.free ?? [])], n = o.states.length, count = o.modes.length;
-    need(["continuous", "discrete"].includes(o.time), "its time is odd");
+    need(["continuous", "discrete"].includes(o.time) && (o.switching === "arbitrary" || o.switching instanceof Object), "its time or switching is odd");
     const S = { o, n, count, flow: o.time === "continuous", rules: o.switching === "arbitrary" ? {} : o.switching, required: contact.required === true };
     S.A = every.map((mode) => table(mode, mode.numerators.length, mode.numerators.length));
     Object.assign(S, { names: every.map((mode) => mode.name), uniform: S.A.every(({ N }) => N.length === n) });
@@ -141,6 +139,7 @@ const check = (() => {
   // Every step of a system that keeps rules of switching: its places are the modes.
   function stepsByMode(S, leaving, [p, q]) {
     const steps = [], { transitions, resets = [], stays = [], dwell_time: dwell = "0" } = S.rules, names = S.names.slice(0, S.count);
+    need(resets.every((r) => names.includes(r.source) && names.includes(r.target)), "a reset is of no mode");
     names.forEach((name, k) => { if (!leaving.includes(name)) steps.push(step(name, name, name, S.A[k], S.flow, 1)); });
     names.forEach((a, k) => names.forEach((b, l) => {
       if (a === b || (transitions && !transitions.some(([from, to]) => from === a && to === b))) return;
@@ -212,6 +211,7 @@ const check = (() => {
   }
   function noCommonQuadratic(S, { factors }) {
     need(S.uniform && factors.every(([name, L]) => S.names.indexOf(name) in S.o.modes && L.length === S.n), "the factors are not those of modes");
+    need(factors.every(([, L, ...more]) => L.every((row) => row.length === L[0].length) && !more.length), "a factor has no shape");
     const used = factors.map(([name, L]) => [S.A[S.names.indexOf(name)], L]), common = used.map(([{ d }]) => d).reduce(lcm);
     need(definite(used.flatMap(([{ N, d }, L]) => L[0].flatMap((_, j) => {
       const x = L.map((row) => [row[j]]), [X, Y] = [x, times(N, x)].map((v) => new Map(v.map(([e], i) => [i, e]))), w = common / d;

@@ -17,7 +17,7 @@ from nrs_design.certificates.certificate import canonical
 from nrs_design.thesis.figures import draw_counterparts, gallery_page
 from nrs_design.thesis.page import render_page
 from nrs_design.thesis.table import reproduce
-from tests.certificates.attacks import ATTACKS, DEAR_ATTACKS, SHIPPED, shipped
+from tests.certificates.attacks import ATTACKS, DEAR_ATTACKS, SHIPPED, named, shipped
 from tests.reporting.conftest import KINDS
 from tests.support import program_named
 
@@ -304,11 +304,11 @@ def test_the_page_refuses_forgeries(decide):
 
 
 @pytest.mark.slow
-def test_the_page_refuses_forgeries_of_sampled_loops(decide):
-    for name, change in DEAR_ATTACKS:
-        forged = shipped(name)
-        change(forged)
-        assert not decide(forged), (name, change.__name__)
+@pytest.mark.parametrize(("name", "change"), DEAR_ATTACKS, ids=named)
+def test_the_page_refuses_forgeries_of_sampled_loops(decide, name, change):
+    forged = shipped(name)
+    change(forged)
+    assert not decide(forged)
 
 
 @pytest.mark.slow

@@ -247,4 +247,4 @@ for statement in o["statements"]:
         code, words = 1, f"DOES NOT HOLD: {error}"
     print(f"{kind}: {words}")
     codes.add(code)
-sys.exit(1 if 1 in codes else 3 if 3 in codes else o["verdict"] != verdict)
+sys.exit(1 if 1 in codes or not codes else 3 if 3 in codes else o["verdict"] != verdict)

@@ -153,3 +153,7 @@ def test_dwell_times(judge, dwell, code):
     document = shipped("geromel-colaneri")
     document["switching"]["dwell_time"] = dwell
     assert judge(document) == code
+
+
+def test_nothing_said_is_nothing_shown(judge):
+    assert judge({**shipped(QUADRATIC), "statements": [], "verdict": "inconclusive"}) == 1

@@ -144,7 +144,7 @@ const check = (() => {
     names.forEach((a, k) => names.forEach((b, l) => {
       if (a === b || (transitions && !transitions.some(([from, to]) => from === a && to === b))) return;
       const { N, d } = S.A[k], n = N.length, ways = resets.filter((r) => r.source === a && r.target === b), left = leaving.includes(a);
-      const own = Object.fromEntries(stays)[a] ?? { shortest: dwell }, shortest = ratio(own.shortest ?? "0"), first = S.flow || shortest[0] ? shortest : [1n, 1n];
+      const own = Object.fromEntries(stays)[a] ?? { shortest: dwell }, shortest = ratio(own.shortest ?? "0"), first = S.flow || shortest[0] >= shortest[1] ? shortest : [1n, 1n];
       const last = left ? ratio(own.longest) : first;
       need(first[0] * last[1] <= last[0] * first[1] && (S.flow || first[1] * last[1] === 1n), "a stay is odd");
       known(!(S.flow && left), "stays of any length in continuous time");

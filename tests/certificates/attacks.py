@@ -5,6 +5,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
+from nrs_design.certificates.certificate import Certificate, to_document
+from tests.proof.systems import genuine
 from tests.support import ROOT
 
 SHIPPED = sorted((ROOT / "reports").glob("*.cert.json"))
@@ -289,6 +291,34 @@ ATTACKS: list[tuple[str, Change]] = [
 DEAR_ATTACKS: list[tuple[str, Change]] = [
     (name, change) for name, changes in LARGE.items() for change in changes
 ]
+
+
+# Shapes that do not ship, by their names in `tests.proof.systems`: what both checkers know, and
+# what a page knows alone.
+BOTH = (
+    "conewise-polynomial",
+    "conewise-quadratic, discrete",
+    "coupled-axes, steps",
+    "coupled-axes, kept in steps",
+    "mode-quadratic, one way",
+    "mode-quadratic, rectangular",
+    "mode-quadratic, steps",
+    "mode-quadratic, left",
+    "mode-quadratic, two ways",
+    "no-common-quadratic, discrete",
+)
+PAGE_ALONE = (
+    "common-polynomial, discrete",
+    "mode-polynomial",
+    "periodic-quadratic",
+    "periodic-quadratic, rounding",
+)
+
+
+def found(example):
+    """Return the certificate of what a search finds for an example."""
+    system, evidence = genuine(example)
+    return to_document(Certificate("family", "0" * 64, None, {}, system, (evidence,), "0.1.0"))
 
 
 def named(value):

@@ -14,11 +14,14 @@ from nrs_design.certificates.certificate import content_id
 from nrs_design.certificates.prove import prove
 from tests.certificates.attacks import (
     ATTACKS,
+    BOTH,
     DEAR_ATTACKS,
+    PAGE_ALONE,
     POLYNOMIAL,
     QUADRATIC,
     SHIPPED,
     call_it_discrete,
+    found,
     named,
     shipped,
 )
@@ -157,3 +160,21 @@ def test_dwell_times(judge, dwell, code):
 
 def test_nothing_said_is_nothing_shown(judge):
     assert judge({**shipped(QUADRATIC), "statements": [], "verdict": "inconclusive"}) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", BOTH)
+def test_shapes_that_do_not_ship(judge, example):
+    document = found(example)
+    assert judge(document) == 0
+    statement = document["statements"][0]
+    if statement["kind"] == "graph":
+        statement["nodes"][-1]["form"][0][0] *= -1
+    else:
+        statement["factors"].pop()
+    assert judge(document) == 1
+
+
+@pytest.mark.parametrize("example", PAGE_ALONE[:1])
+def test_shapes_that_are_not_checked(judge, example):
+    assert judge(found(example)) == 3

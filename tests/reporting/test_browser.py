@@ -7,6 +7,7 @@ import io
 import json
 import os
 import re
+from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,7 +18,16 @@ from nrs_design.certificates.certificate import canonical
 from nrs_design.thesis.figures import draw_counterparts, gallery_page
 from nrs_design.thesis.page import render_page
 from nrs_design.thesis.table import reproduce
-from tests.certificates.attacks import ATTACKS, DEAR_ATTACKS, SHIPPED, named, shipped
+from tests.certificates.attacks import (
+    ATTACKS,
+    BOTH,
+    DEAR_ATTACKS,
+    PAGE_ALONE,
+    SHIPPED,
+    found,
+    named,
+    shipped,
+)
 from tests.reporting.conftest import KINDS
 from tests.support import program_named
 
@@ -294,6 +304,20 @@ def test_the_page_agrees_on_what_ships(decide):
 @pytest.mark.slow
 def test_the_page_agrees_on_what_ships_with_many_modes(decide):
     assert [path for path in SHIPPED if not decide(json.loads(path.read_text()))] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", [*BOTH, *PAGE_ALONE])
+def test_the_page_agrees_on_shapes_that_do_not_ship(decide, example):
+    document = found(example)
+    assert decide(document)
+    statement = document["statements"][0]
+    faster = Fraction(1, 2) if document["time"] == "discrete" else 100
+    if statement["kind"] == "graph":
+        statement["rate"] = str(Fraction(statement["rate"]) * faster)
+    else:
+        statement["factors"].pop()
+    assert decide(document) is False
 
 
 def test_the_page_refuses_forgeries(decide):

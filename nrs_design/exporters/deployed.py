@@ -10,13 +10,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
 
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
-from nrs_design.exporters import rendered
+from nrs_design.exporters import format_names, format_of, rendered
 from nrs_design.exporters.build import build_record
 from nrs_design.exporters.deployed_c import code_differences, line_differences
 from nrs_design.exporters.deployed_model import model_differences
@@ -74,7 +75,7 @@ def compare_deployed(
     if not place.is_dir():
         return DeployedFiles((place,), tuple(find_differences(place, spec, certificate)), ())
     files = sorted(path for path in place.iterdir() if path.is_file())
-    known = {file: end for end in _WAYS if (file := place / f"{spec.name}{end}") in files}
+    known = {file: end for end in _ways() if (file := place / f"{spec.name}{end}") in files}
     exports = _Exports(spec, certificate)
     told = [f"{file.name}: {each}" for file in known for each in exports.differences(file)]
     told += [f"{spec.name}{end}: it is missing" for end in _missing({*known.values()})]
@@ -124,13 +125,13 @@ class _Exports:
 
     def differences(self, file: Path) -> list[str]:
         """Return in what a file differs from its export."""
-        ending = max((end for end in _WAYS if file.name.endswith(end)), key=len, default=None)
+        ending = max((end for end in _ways() if file.name.endswith(end)), key=len, default=None)
         if ending is None and file.suffix != ".json":
             raise _something_else(file)
         if ending in (None, ".export.json"):
             proved = _record(self.spec, self.certificate)
             return [*record_differences(_text(file), proved, file)]
-        format_, differences = _WAYS[ending]
+        format_, differences = _ways()[ending]
         export = _exported(self.spec, self.certificate, file)
         if ending.endswith(".fmu"):
             return [*model_differences(_read(file), export)]
@@ -154,25 +155,25 @@ def _vector_differences(text: str, wanted: str) -> Iterator[str]:
             yield f"its field {name!r} is not what the export has"
 
 
-# The format of each file that is compared, by its ending, and how its text is compared.
-_WAYS: Mapping[str, tuple[str, Callable[[str, str], Iterator[str]]]] = MappingProxyType(
+# How the text of a file is compared, by its suffix; a model has a way of its own.
+_BY_SUFFIX: Mapping[str, Callable[[str, str], Iterator[str]]] = MappingProxyType(
     {
-        ".h": ("c", code_differences),
-        ".c": ("c", code_differences),
-        ".cmake": ("cmake", line_differences),
-        "_test.h": ("vectors", code_differences),
-        "_test.c": ("vectors", code_differences),
-        "_test.py": ("vectors", line_differences),
-        ".vectors.csv": ("vectors", line_differences),
-        ".vectors.json": ("vectors", _vector_differences),
-        "_monitor.h": ("monitor", code_differences),
-        "_monitor.c": ("monitor", code_differences),
-        # These have ways of their own.
-        ".export.json": ("json", line_differences),
-        ".fmu": ("fmu", line_differences),
-        ".fmi3.fmu": ("fmu3", line_differences),
+        **dict.fromkeys((".h", ".c"), code_differences),
+        **dict.fromkeys((".cmake", ".csv", ".py", ".fmu"), line_differences),
+        ".json": _vector_differences,
     }
 )
+
+
+@cache
+def _ways() -> Mapping[str, tuple[str, Callable[[str, str], Iterator[str]]]]:
+    """Return the format of each file that is compared, by its ending, and how that is done."""
+    endings = ((end, name) for name in format_names() for end in format_of(name).files)
+    return {
+        end: (name, _BY_SUFFIX[suffix])
+        for end, name in endings
+        if "/" not in end and (suffix := Path(f"law{end}").suffix) in _BY_SUFFIX
+    }
 
 
 def _something_else(file: Path) -> NrsDesignError:

@@ -92,7 +92,7 @@ CHANGES = [
     ("the order of columns", ".vectors.csv", "angle,torque", "torque,angle"),
     ("a tolerance in Python", "_test.py", "packed.hex\\(\\) == bits", "True"),
     ("a limit of the monitor", "_monitor.h", r"(MONITOR_TORQUE) \S+", r"\1 0x1.0p+9F"),
-    ("a check of the monitor", "_monitor.c", r"LEFT_NONE\)\) \{", "LEFT_INPUT)) {"),
+    ("a check of the monitor", "_monitor.c", "m->left == ", "m->left != "),
     ("a flag", ".cmake", "-ffp-contract=off", "-ffast-math"),
 ]
 

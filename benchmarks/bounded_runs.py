@@ -135,7 +135,6 @@ def _choices(
 ) -> Choices:
     """Return random choices, half of them those of an adversary with some changed."""
     count, shape = len(designed.design.controllers), (runs, STEPS)
-    low, high = 41.5, 44.2
     stiffness = designed.plant.environment("soft").stiffness
     low, high = float(stiffness.low), float(stiffness.high)
     held = np.arange(STEPS) // rng.integers(1, 80, (runs, 1))

@@ -141,13 +141,7 @@ def time_side_by_side(
 
     Taking turns spreads a disturbance of the machine over all sides.
     """
-    times: list[list[float]] = [[] for _ in functions]
-    results: list[object] = [None] * len(functions)
-    for _ in range(repeats):
-        for i, function in enumerate(functions):
-            start = perf_counter()
-            results[i] = function()
-            times[i].append(perf_counter() - start)
+    times, results = _in_turn(perf_counter, repeats, functions)
     return [median(series) for series in times], results
 
 
@@ -158,14 +152,21 @@ def least_side_by_side(
 
     For work of some milliseconds: what else the machine does makes it longer, never shorter.
     """
+    times, results = _in_turn(process_time, repeats, functions)
+    return [min(series) for series in times], results
+
+
+def _in_turn(
+    clock: Callable[[], float], repeats: int, functions: Sequence[Callable[[], object]]
+) -> tuple[list[list[float]], list[object]]:
     times: list[list[float]] = [[] for _ in functions]
     results: list[object] = [None] * len(functions)
     for _ in range(repeats):
         for i, function in enumerate(functions):
-            start = process_time()
+            start = clock()
             results[i] = function()
-            times[i].append(process_time() - start)
-    return [min(series) for series in times], results
+            times[i].append(clock() - start)
+    return times, results
 
 
 def prove(system: SwitchedSystem) -> Certification:

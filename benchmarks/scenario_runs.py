@@ -23,10 +23,9 @@ from nrs_design.models.plant import Plant
 from nrs_design.pipeline import Designed, run_design
 from nrs_design.robot.pipeline import run_robot
 from nrs_design.robot.simulation.robot_body import Arm
-from nrs_design.simulation.bodies import simulate_on_body
+from nrs_design.simulation.bodies import SAMPLED, simulate_on_body
 from nrs_design.simulation.build_scenario import default_scenario
 from nrs_design.simulation.exact import simulate_exactly
-from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Array, Control, Profile, Scenario
 from nrs_design.spec import InteractionDesignSpec, read_spec
 from nrs_design.spec.sampling import SamplingSpec
@@ -62,7 +61,7 @@ def run(size: Size) -> tuple[Comparison | Finding, ...]:
     work = f"{length:.0f} s of the switched loop in tissue"
     long = replace(sampled, profile=exact.profile, duration=size.pick(20.0, 20.0, 0.5))
     start = process_time()
-    simulate_sampled(*given, long)
+    simulate_on_body(*given, (long,), SAMPLED)
     seconds = process_time() - start
     share = long.duration / seconds
     return (

@@ -212,7 +212,7 @@ def test_clocks_are_read_by_the_fuse_and_for_the_eye_only():
         "nrs_design.cli.gate",
     }
     limited = {name for name in FILES if "time_limit" in FILES[name].read_text(encoding="utf-8")}
-    assert limited == {"nrs_design.search.sdp", "nrs_design.search.raw"}
+    assert limited == {"nrs_design.search.sdp"}
 
 
 def test_the_proof_stands_on_itself():
@@ -317,13 +317,11 @@ def test_only_the_pipeline_calls_the_stages():
 SHARED = {
     # Modules of a table offer them all.
     *("render", "header_text", "source_text"),
-    *("rows", "choose", "analyze"),
+    *("results", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),
     # One operation on numbers of other types, one question to another noun.
     *("add", "multiply", "is_stable", "read_integer", "content_id", "too_stiff"),
-    # In continuous time, and sampled.
-    "force_rows",
 }
 
 

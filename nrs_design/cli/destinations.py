@@ -80,10 +80,10 @@ class Destinations:
         caveats : iterable of str
             What to say instead where the result is merged: a proof will rest on it.
         """
-        refused, merged = None, None
-        if merge is not None and self.spec is not None:
+        spec, refused, merged = self.spec, None, None
+        if merge is not None and spec is not None:
             try:
-                merged = merge(self.spec)
+                merged = merge(spec)
             except NrsDesignError as error:
                 # What was found is printed all the same: it took its time.
                 refused = error
@@ -92,19 +92,20 @@ class Destinations:
             with progress("figures"):
                 _write_page(self.report, page(), self.date)
             note(f"page written to {self.report}")
-        if self.spec is not None and merged is not None:
-            doubts = caveats
         if refused is None:
             # No option silences this.
-            for doubt in doubts:
+            for doubt in doubts if merged is None else caveats:
                 insist(f"warning: {doubt}")
-        if self.spec is not None and merged is not None:
-            _write_spec(self.spec, merged)
-        if self.spec is not None:
-            not_written = None if refused is None else error_summary(refused)
-            facts = answer.facts
-            answer = replace(answer, facts=lambda: facts() | {"not_written": not_written})
-        return answer if refused is None else replace(answer, code=exit_codes.USAGE)
+        if spec is None:
+            return answer
+        if merged is not None:
+            _write_spec(spec, merged)
+        not_written = None if refused is None else error_summary(refused)
+        return replace(
+            answer,
+            facts=lambda: answer.facts() | {"not_written": not_written},
+            code=answer.code if refused is None else exit_codes.USAGE,
+        )
 
 
 def _write_page(path: Path, report: Report, date: datetime | None) -> None:

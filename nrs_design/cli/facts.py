@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.command import spec_facts
+from nrs_design.proof.bounds import lower_float, upper_float
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -60,8 +61,6 @@ def certification_facts(result: Result, path: Path | None) -> dict[str, Any]:
 
 def rate_facts(certification: Certification) -> dict[str, Any]:
     """Return the facts of the proved rate and its limit."""
-    from nrs_design.proof.bounds import lower_float, upper_float
-
     evidence, system = certification.evidence, certification.system
     rate = None if evidence is None else evidence.proved_rate(system)
     continuous = system.time == "continuous"
@@ -74,8 +73,6 @@ def rate_facts(certification: Certification) -> dict[str, Any]:
 
 def margins_facts(margins: ProofMargins) -> dict[str, Any]:
     """Return the facts of the margins that were asked for."""
-    from nrs_design.proof.bounds import lower_float, upper_float
-
     content: dict[str, Any] = {}
     if (box := margins.box) is not None:
         content["margin"] = {
@@ -101,14 +98,10 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
 
 def loop_facts(margins: MarginBrackets) -> dict[str, Any]:
     """Return the facts of the margins of delay, period and disturbances."""
-    from nrs_design.proof.bounds import lower_float, upper_float
-
+    brackets = {"delay": (margins.delay, "samples"), "period": (margins.period, "s")}
     content: dict[str, Any] = {
         name: {**_ends(bracket), "unit": unit}
-        for name, bracket, unit in (
-            ("delay", margins.delay, "samples"),
-            ("period", margins.period, "s"),
-        )
+        for name, (bracket, unit) in brackets.items()
         if bracket is not None
     }
     if margins.command is not None:
@@ -129,8 +122,6 @@ def loop_facts(margins: MarginBrackets) -> dict[str, Any]:
 
 
 def _ends(bracket: Bracket) -> dict[str, float | str | None]:
-    from nrs_design.proof.bounds import lower_float, upper_float
-
     proved, refuted = bracket.proved, bracket.refuted
     return {
         "proved": None if proved is None else lower_float(proved),

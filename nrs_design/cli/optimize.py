@@ -12,9 +12,11 @@ from nrs_design.cli.goals import design_answer, goals_summary
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.tables import print_table
+from nrs_design.proof.bounds import lower, lower_float, upper_float
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
+    from nrs_design.design.measures import Measure
     from nrs_design.design.sampled_passivity import SampledBand
     from nrs_design.pipeline import Designed
     from nrs_design.spec import InteractionDesignSpec
@@ -75,15 +77,10 @@ def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
 
 
 def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:
-    from nrs_design.design.measures import (
-        DELAY_MARGIN,
-        DISK_MARGIN,
-        GAIN_MARGIN,
-        PASSIVITY_NOT_COMPUTED,
-        PHASE_MARGIN,
-        SENSITIVITY_PEAK,
-    )
-    from nrs_design.proof.bounds import lower_float, upper_float
+    from nrs_design.design import measures
+
+    def worst(measure: Measure) -> float | None:
+        return finite(item.worst(measure).value)
 
     band = item.band
     passive, broken = (None, None) if band is None else (band.passive, band.broken)
@@ -98,11 +95,11 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "cost": item.cost,
         "given": [gain for gain in ("Mt", "Bt") if getattr(item.given, gain).fixed],
         "optimum": {"Mt": item.optimum.Mt, "Bt": item.optimum.Bt, "cost": item.optimum.cost},
-        "sensitivity_peak": finite(item.worst(SENSITIVITY_PEAK).value),
-        "gain_margin": finite(item.worst(GAIN_MARGIN).value),
-        "phase_margin_rad": finite(item.worst(PHASE_MARGIN).value),
-        "delay_margin_s": finite(item.worst(DELAY_MARGIN).value),
-        "disk_margin": finite(item.worst(DISK_MARGIN).value),
+        "sensitivity_peak": worst(measures.SENSITIVITY_PEAK),
+        "gain_margin": worst(measures.GAIN_MARGIN),
+        "phase_margin_rad": worst(measures.PHASE_MARGIN),
+        "delay_margin_s": worst(measures.DELAY_MARGIN),
+        "disk_margin": worst(measures.DISK_MARGIN),
         "stiffness_limit": finite(item.lowest_limit),
         "stiffness_limit_at": item.limit_at,
         "over": [*meanings(spec)],
@@ -112,7 +109,7 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "not_passive_at_rad_s": broken and upper_float(broken),
         "passivity_not_computed": None
         if item.sampled or spec.sampling is None
-        else PASSIVITY_NOT_COMPUTED,
+        else measures.PASSIVITY_NOT_COMPUTED,
         "sampled_passivity": [_band(band) for band in item.sampled],
         "creep": _creep(item),
         "goals": goals_summary(item),
@@ -128,8 +125,6 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
 
 def _band(band: SampledBand) -> dict[str, Any]:
     """Return where a sampled law is passive, and the exact witness that it is not beyond."""
-    from nrs_design.proof.bounds import lower_float, upper_float
-
     between = band.broken and [lower_float(band.broken[0]), upper_float(band.broken[1])]
     return {
         "delay": band.age,
@@ -141,8 +136,6 @@ def _band(band: SampledBand) -> dict[str, Any]:
 
 def _sensor(designed: Designed) -> dict[str, Any]:
     """Return what may last of the errors of the force signal, N m, rounded up."""
-    from nrs_design.proof.bounds import upper_float
-
     sensor = designed.design.sensor
     return {
         "lasting_error": upper_float(sensor.lasting),
@@ -153,8 +146,6 @@ def _sensor(designed: Designed) -> dict[str, Any]:
 
 def _creep(item: ImpedanceAnalysis) -> dict[str, Any] | None:
     """Return the bounds on the creep, rounded up; None without a sensor whose errors are known."""
-    from nrs_design.proof.bounds import upper_float
-
     if item.creep is None:
         return None
     angle = item.creep.angle
@@ -221,8 +212,6 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
 
 def _limit(value: float) -> str:
     """Write a limit of stiffness, rounded down."""
-    from nrs_design.proof.bounds import lower
-
     if math.isnan(value):
         return "not computed"
     return "unlimited" if math.isinf(value) else lower(Fraction(value), 4)

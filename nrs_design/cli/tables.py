@@ -83,7 +83,7 @@ def _print(title: str, columns: Cells, rows: Sequence[Cells], width: int | None)
     table = Table(title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     table.title = printable(title) or None
     least = _least_widths([columns, *rows])
-    fits = width is None or sum(least) + _GAP * len(least) - 1 <= width
+    fits = width is None or _least_width([columns, *rows]) <= width
     for column, narrowest in zip(columns, least, strict=True):
         table.add_column(column, overflow="fold", min_width=narrowest if fits else None)
     for row in rows:

@@ -66,39 +66,6 @@ class Term:
         return Term(prefix + self.name, combine((factor, self.form)), self.roundings + more)
 
 
-def linear_forms(law: StepLaw, mode: int, given: Mapping[str, LinearForm]) -> dict[str, LinearForm]:
-    """Return every value of a step as a linear form, computed without rounding or saturation.
-
-    Parameters
-    ----------
-    law : StepLaw
-        The law.
-    mode : int
-        Which controller is in force.
-    given : mapping of str to LinearForm
-        Inputs and states in coordinates of the caller's choice.
-
-    Raises
-    ------
-    ValueError
-        If the law is not linear.
-    """
-    _check_linear(law)
-    held: dict[str, LinearForm] = {c.name: [c.of(mode)] for c in law.coefficients}
-    found = law.read(held | dict(given), _FORMS)
-    return {name: form for name, form in found.items() if name not in held}
-
-
-_FORMS: Mapping[Kind, Callable[[LinearForm, LinearForm], LinearForm]] = MappingProxyType(
-    {
-        "add": lambda left, right: combine((ONE, left), (ONE, right)),
-        "subtract": lambda left, right: combine((ONE, left), (-ONE, right)),
-        "multiply": lambda left, right: combine((left[0], right)),
-        "saturate": lambda _, right: right,
-    }
-)
-
-
 def _check_linear(law: StepLaw) -> None:
     others = {operation.kind for operation in law.operations} - LINEAR
     if others:

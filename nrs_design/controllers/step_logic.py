@@ -1,8 +1,7 @@
 """The mode logic as a processor runs it: comparisons in single precision, and a count of samples.
 
-`nrs_design.controllers.threshold_logic` is the same in seconds and doubles. Thresholds are rounded
-away from each other here, too, and times up to whole samples, so what is shown for those of the
-spec holds for these.
+Thresholds are rounded away from each other, and times up to whole samples: what is shown for those
+of the spec holds for these.
 """
 
 from __future__ import annotations

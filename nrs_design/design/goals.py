@@ -212,12 +212,15 @@ class Requirement(AbstractRequirement):
         """
         if self.axis is None or (corner.Kt and self.axis.period is not None):
             return None
-        gains = _gains(corner, np.array([Mt]), np.array([Bt]))
+        (found,) = self._shown(corner, np.array([Mt]), np.array([Bt])).response(omega)
+        return np.asarray(found)
+
+    def _shown(self, corner: ContactCorner, Mt: FloatArray, Bt: FloatArray) -> Loops:
+        """Return the displayed impedances at a corner, as what is open."""
+        gains = _gains(corner, Mt, Bt)
         loops = self.loops(corner, *gains)
         above, below = self.family(corner).over_admittance(*gains)
-        shown = Loops(multiply(loops.numerator, above), multiply(loops.closed, below), loops.period)
-        (found,) = shown.response(omega)
-        return np.asarray(found)
+        return Loops(multiply(loops.numerator, above), multiply(loops.closed, below), loops.period)
 
     def stiffness_limits(
         self, Mt: float, Bt: float, *, retuned: bool = True
@@ -272,9 +275,8 @@ class Requirement(AbstractRequirement):
             return _margin(loops, measure)
         if corner.Kt:  # Towards rest the robot displays the spring, and no damping.
             return np.full(len(Mt), np.inf)
-        above, below = self.family(corner).over_admittance(Mt, Bt)
-        displayed = multiply(loops.numerator, above), multiply(loops.closed, below)
-        low, high = gain_extremes(*displayed, self._seen_bandwidth)
+        shown = self._shown(corner, Mt, Bt)
+        low, high = gain_extremes(shown.numerator, shown.denominator, self._seen_bandwidth)
         error = np.maximum(high / self.desired, self.desired / low)
         return np.where(loops.stable, error, np.inf)
 

@@ -18,6 +18,7 @@ from nrs_design.design.impedance_optimum import (
     impedance_cost,
     optimize_impedance,
 )
+from nrs_design.design.polynomials import all_roots
 from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
 
@@ -77,15 +78,11 @@ def map_cost(problem: ImpedanceProblem, requirement: Requirement, Mt: float, Bt:
 
 
 def _abscissa(requirement: Requirement, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
-    """Return the largest real part of the roots, as eigenvalues of companion matrices."""
+    """Return the largest real part of the roots."""
     found = []
     for corner in requirement.nominal:
         closed = requirement.loops(corner, Mt.ravel(), Bt.ravel()).closed
-        order = closed.shape[-1] - 1
-        companion = np.zeros((len(closed), order, order))
-        companion[:, 0, :] = -closed[:, 1:] / closed[:, :1]
-        companion[:, range(1, order), range(order - 1)] = 1.0
-        found.append(np.linalg.eigvals(companion).real.max(axis=-1))
+        found.append(np.nanmax(all_roots(closed).real, axis=-1))
     return np.asarray(np.max(found, axis=0).reshape(Mt.shape), dtype=np.float64)
 
 

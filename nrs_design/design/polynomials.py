@@ -89,15 +89,15 @@ def squared(polynomials: FloatArray) -> FloatArray:
 
 def frequencies(polynomials: FloatArray) -> FloatArray:
     """Return the square roots of the positive roots of polynomials in x; NaN fills the rows."""
-    roots = _roots(polynomials)
-    real = (np.abs(roots.imag) <= _REAL * np.abs(roots)) & (roots.real > 0)
-    return np.sqrt(np.where(real, roots.real, np.nan))
+    found = all_roots(polynomials)
+    real = (np.abs(found.imag) <= _REAL * np.abs(found)) & (found.real > 0)
+    return np.sqrt(np.where(real, found.real, np.nan))
 
 
-def _roots(polynomials: FloatArray) -> ComplexArray:
+def all_roots(polynomials: FloatArray) -> ComplexArray:
     """Return all roots as eigenvalues of companion matrices; NaN fills the rows."""
     count, degree = len(polynomials), polynomials.shape[1] - 1
-    roots = np.full((count, degree), np.nan, dtype=np.complex128)
+    found = np.full((count, degree), np.nan, dtype=np.complex128)
     size = np.abs(polynomials)
     known = size > _NEGLIGIBLE * size.max(axis=1, keepdims=True)
     leading = np.where(known.any(axis=1), known.argmax(axis=1), degree)
@@ -107,5 +107,5 @@ def _roots(polynomials: FloatArray) -> ComplexArray:
         companion = np.zeros((len(rows), order, order))
         companion[:, 1:, :-1] = np.eye(order - 1)
         companion[:, 0, :] = -polynomials[rows, first + 1 :] / polynomials[rows, first : first + 1]
-        roots[rows, :order] = np.linalg.eigvals(companion)
-    return roots
+        found[rows, :order] = np.linalg.eigvals(companion)
+    return found

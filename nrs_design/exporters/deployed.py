@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.certificates.units import gain_units
 from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
 from nrs_design.exporters.build import build_record
@@ -159,7 +158,7 @@ def _of_record(
             remedy="export it again with --format json",
         ) from error
     proved = _record(spec, certificate)
-    told = [*_of_numbers(record, proved, certificate)]
+    told = [*_of_numbers(record, proved)]
     yield from told
     if told:
         return
@@ -169,33 +168,29 @@ def _of_record(
             yield f"its field {name!r} is not what the certificate says"
 
 
-def _of_numbers(
-    record: ExportRecord, proved_record: ExportRecord, certificate: Certificate
-) -> Iterator[str]:
+def _of_numbers(record: ExportRecord, proved: ExportRecord) -> Iterator[str]:
     """Yield what can be said of gains, and of what runs beside them."""
-    if record.spec.sha256 != certificate.spec_sha256:
+    if record.spec.sha256 != proved.spec.sha256:
         yield "it is of another spec, or of an earlier text of it"
-    parts = [("motion", record.motion.gains), *((c.name, c.gains) for c in record.controllers)]
-    names = [(name, gain.name) for name, gains in parts for gain in gains]
-    if len({*names}) < len(names) or len({name for name, _ in parts}) < len(parts):
+    listed, names = _gains_of(record), ["motion", *(c.name for c in record.controllers)]
+    mine, wanted = dict(listed), dict(_gains_of(proved))
+    if len(mine) < len(listed) or len({*names}) < len(names):
         yield "a controller or a gain is there twice"
-    held = {
-        name: {gain.name: f"{gain.exact} {gain.unit}" for gain in gains} for name, gains in parts
-    }
-    units = gain_units(certificate)
-    for name in sorted(held.keys() | certificate.gains.keys()):
-        gains = certificate.gains.get(name, {})
-        mine = held.get(name, {})
-        proved = {gain: f"{value} {units[name][gain]}" for gain, value in gains.items()}
-        for gain in sorted(mine.keys() | proved.keys()):
-            if mine.get(gain) != proved.get(gain):
-                has = proved.get(gain, "no such gain")
-                found = mine.get(gain, "missing")
-                yield f"{gain} of {name} is {found}, and the certificate has {has}"
-    proved_rest = _rest_of(proved_record)
-    for name, found in _rest_of(record).items():
-        if found != proved_rest[name]:
-            yield f"{name}: {found}, and the certificate has {proved_rest[name]}"
+    for at in sorted(mine.keys() | wanted.keys()):
+        found, has = mine.get(at, "missing"), wanted.get(at, "no such gain")
+        if found != has:
+            name, gain = at
+            yield f"{gain} of {name} is {found}, and the certificate has {has}"
+    rest = _rest_of(proved)
+    for what, found in _rest_of(record).items():
+        if found != rest[what]:
+            yield f"{what}: {found}, and the certificate has {rest[what]}"
+
+
+def _gains_of(record: ExportRecord) -> list[tuple[tuple[str, str], str]]:
+    """Return every gain with its unit, by controller and name."""
+    parts = [("motion", record.motion.gains), *((c.name, c.gains) for c in record.controllers)]
+    return [((name, gain.name), _said(gain)) for name, gains in parts for gain in gains]
 
 
 def _rest_of(record: ExportRecord) -> dict[str, str]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,8 +15,6 @@ from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.design.linear_parts import LinearPart
-
-Rows = Sequence[Sequence[Fraction]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +50,8 @@ def mode_state_spaces(system: SwitchedSystem) -> dict[str, Any]:
 
 def _of_mode(system: SwitchedSystem, index: int, mode: Mode) -> Any:
     n = len(mode.A.numerators)
-    A = _array(mode.A.fractions())
-    columns = [_array(channel.columns[index].fractions()) for channel in system.channels]
+    A = np.array(mode.A.floats())
+    columns = [np.array(channel.columns[index].floats()) for channel in system.channels]
     B = np.hstack(columns) if columns else np.zeros((n, 0))
     dt: float | bool = 0
     if system.time is Time.DISCRETE:
@@ -72,10 +69,6 @@ def _state_space(A: Any, B: Any, C: Any, D: Any, dt: float | bool, **names: Any)
     from nrs_design.control_library import control
 
     return control.StateSpace(A, B, C, D, dt, remove_useless_states=False, **names)
-
-
-def _array(rows: Rows) -> Any:
-    return np.array([[float(entry) for entry in row] for row in rows])
 
 
 def _plain(name: str) -> str:

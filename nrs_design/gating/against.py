@@ -208,15 +208,9 @@ def _with(spec: SpecOutcome, changes: Sequence[Change]) -> SpecOutcome:
     broken = []
     for change in changes:
         if change.weaker:
-            caution = _caution(spec, change)
-            where = ".".join(map(str, change.at)) or "spec"
-            status = Status.MISSED
-            broken.append(
-                Obligation(
-                    *(NOT_WEAKER, spec.path, where, status, caution.message),
-                    *(caution.line, caution.column),
-                )
-            )
+            at, where = _caution(spec, change), ".".join(map(str, change.at)) or "spec"
+            place = (at.message, at.line, at.column)
+            broken.append(Obligation(NOT_WEAKER, spec.path, where, Status.MISSED, *place))
     return replace(spec, obligations=(*spec.obligations, *broken))
 
 

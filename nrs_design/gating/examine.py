@@ -20,7 +20,7 @@ from nrs_design.certificates.certificate import (
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.certificates.units import gain_units
 from nrs_design.errors import DesignError
-from nrs_design.gating.obligations import Caution, Obligation, SpecOutcome, Status
+from nrs_design.gating.obligations import Caution, Findings, Obligation, SpecOutcome, Status
 from nrs_design.gating.places import Places
 from nrs_design.gating.rules import (
     CERTIFICATE_HOLDS,
@@ -156,9 +156,7 @@ class Examiner:
         proved = evidence is not None and evidence.shows is Shows.STABILITY
         lasting = {mode.name for mode in system.lasting_modes()}
         modes = tuple(
-            self._mode(mode, system, proved=proved, affordable=fits)
-            if mode.name in lasting
-            else self._left_mode(mode, system.time, affordable=fits)
+            self._mode(mode, system, proved=proved, affordable=fits, lasts=mode.name in lasting)
             for mode, fits in affordable(system.modes)
         )
         if evidence is None:
@@ -178,34 +176,28 @@ class Examiner:
         return self.obligation(SWITCHING_STABLE, "system", status, message, ("switching",))
 
     def _mode(
-        self, mode: Mode, system: SwitchedSystem, *, proved: bool, affordable: bool
+        self, mode: Mode, system: SwitchedSystem, *, proved: bool, affordable: bool, lasts: bool
     ) -> Obligation:
-        time = system.time
+        """Say whether a mode is stable; one with a longest dwell time need not be."""
+        name, time = f"mode {mode.name}", system.time
         region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
         # Staying in a mode is a switching signal: a proof covers it, no need to decide again.
-        if not (proved or affordable):
+        if (proved and lasts) or (affordable and is_stable(mode.A, time)):
+            status, message = Status.PROVED, f"{name} is {region}"
+        elif not lasts:
+            unstable = f"is not {region}, but it must be left in time"
+            message = f"{name} {unstable if affordable else 'must be left in time, stable or not'}"
+            status = Status.MET
+        elif not affordable:
             status = Status.INCONCLUSIVE
-            message = f"the numbers of mode {mode.name} are too large to decide"
-        elif proved or is_stable(mode.A, time):
-            status, message = Status.PROVED, f"mode {mode.name} is {region}"
+            message = f"the numbers of {name} are too large to decide"
         else:
             status = Status.REFUTED
             eigenvalue = worst_eigenvalue(mode.A, time)
-            message = f"mode {mode.name} is not {region} (eigenvalue about {eigenvalue})"
+            message = f"{name} is not {region} (eigenvalue about {eigenvalue})"
             if not decides(system, mode.name):
                 status = Status.INCONCLUSIVE
                 message += ", which is growth for which the environment would have to pull"
-        return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
-
-    def _left_mode(self, mode: Mode, time: Time, *, affordable: bool) -> Obligation:
-        """Say of a mode with a longest dwell time whether it is stable, which it need not be."""
-        region = "Hurwitz" if time is Time.CONTINUOUS else "Schur"
-        status, message = Status.MET, f"mode {mode.name} must be left in time, stable or not"
-        if affordable:
-            status, message = Status.PROVED, f"mode {mode.name} is {region}"
-            if not is_stable(mode.A, time):
-                status = Status.MET
-                message = f"mode {mode.name} is not {region}, but it must be left in time"
         return self.obligation(MODE_STABLE, mode.name, status, message, self.places.mode(mode.name))
 
     def nothing_to_certify(self) -> SpecOutcome:
@@ -216,11 +208,10 @@ class Examiner:
 
     def certificate(self, file: Path, fault: str | None) -> Obligation:
         """Return NRS104 from the outcome of a re-check; None says that the certificate holds."""
-        if fault is None:
-            status, message = Status.MET, f"{file.as_posix()} holds, checked exactly"
-        else:
-            status, message = Status.MISSED, f"{file.as_posix()} is rejected: {fault}"
-        return self.obligation(CERTIFICATE_HOLDS, "certificate", status, message, ("name",))
+        holds = fault is None
+        said = "holds, checked exactly" if holds else f"is rejected: {fault}"
+        message = f"{file.as_posix()} {said}"
+        return self.obligation(CERTIFICATE_HOLDS, "certificate", _met(holds), message, ("name",))
 
     def no_margins(self, error: DesignError) -> Obligation:
         """Return NRS103 for a design that is unstable at nominal stiffness, so has no margins."""
@@ -270,9 +261,9 @@ class Examiner:
                     f"{found.where if isnan(found.value) else reached}; "
                     f"{measure.goal_text(found.goal)} is wanted (floating point, not a proof)"
                 )
-                status = Status.MET if found.met else Status.MISSED
+                subject = f"{item.name}: {measure.goal}"
                 place = self.places.goal(item.name, measure.goal)
-                yield self.obligation(GOAL, f"{item.name}: {measure.goal}", status, message, place)
+                yield self.obligation(GOAL, subject, _met(found.met), message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for torque, rate, delay, rest and start that the spec wants to be proved."""
@@ -297,10 +288,9 @@ class Examiner:
                 f"{upper(Fraction(peak))} {unit}, its limit {limit:.6g} {unit}{early} "
                 f"({run.engine} engine, floating point: one run, not a proof)"
             )
-            status = Status.MET if met else Status.MISSED
             place = ("scenarios", name, "limits", quantity)
             subject = f"{scenario.name}: {quantity}"
-            yield self.obligation(SCENARIO_LIMIT, subject, status, message, place)
+            yield self.obligation(SCENARIO_LIMIT, subject, _met(met), message, place)
 
     def no_scenario(self, name: str, error: DesignError) -> Obligation:
         """Return NRS109 for a scenario with limits that cannot be simulated."""
@@ -310,19 +300,16 @@ class Examiner:
 
     def robot_bounds(self, file: Path, faults: Sequence[str]) -> Obligation:
         """Return NRS111 from what is wrong with the bounds, all of which were computed again."""
-        status, message = Status.MET, f"{file.as_posix()} holds: every bound was computed again"
+        said = "holds: every bound was computed again"
         if faults:
-            status = Status.MISSED
-            message = f"{file.as_posix()} claims what does not hold: {'; '.join(faults)}"
-        return self._of_bounds(status, message)
+            said = f"claims what does not hold: {'; '.join(faults)}"
+        return self._of_bounds(_met(not faults), f"{file.as_posix()} {said}")
 
     def undecided_bounds(self, error: DesignError) -> Obligation:
         """Return NRS111 for bounds that were neither shown nor refuted."""
         return self._of_bounds(Status.INCONCLUSIVE, error.message)
 
-    def known_bounds(
-        self, robot: Path, locked: LockedGoal | None
-    ) -> tuple[Obligation, tuple[Caution]]:
+    def known_bounds(self, robot: Path, locked: LockedGoal | None) -> Findings:
         """Return NRS111 as it is locked, unless a pose exceeds a bound; and that it is on trust.
 
         Parameters
@@ -339,12 +326,13 @@ class Examiner:
             "coupling",
             "robot",
         )
-        if faults:
-            return self._of_bounds(Status.MISSED, "; ".join(faults)), (caution,)
-        if locked is None:
+        status, message = Status.MISSED, "; ".join(faults)
+        if not faults and locked is not None:
+            status, message = Status(locked.status), locked.message
+        elif not faults:
             message = "the lock file does not say that the bounds were computed again"
-            return self._of_bounds(Status.MISSED, f"{message} (run nrs-design gate)"), (caution,)
-        return self._of_bounds(Status(locked.status), locked.message), (caution,)
+            message += " (run nrs-design gate)"
+        return (self._of_bounds(status, message),), (caution,)
 
     def _of_bounds(self, status: Status, message: str) -> Obligation:
         return self.obligation(ROBOT_BOUNDS, "bounds", status, message, ("coupling", "robot"))
@@ -358,12 +346,10 @@ class Examiner:
             if not item.doubts:
                 continue
             message = f"the identification of {at[-1]} is in doubt: {'; '.join(item.doubts)}"
-            key, status = "doubts", Status.MISSED
-            if item.accept_doubt is not None:
-                key, status = "accept_doubt", Status.MET
-                message += f"; accepted because: {item.accept_doubt}"
-            place = (*at, key)
-            yield self.obligation(NOT_DOUBTED, at[-1], status, message, place)
+            accepted, key = item.accept_doubt is not None, "doubts"
+            if accepted:
+                key, message = "accept_doubt", f"{message}; accepted because: {item.accept_doubt}"
+            yield self.obligation(NOT_DOUBTED, at[-1], _met(accepted), message, (*at, key))
 
     def contact(self, certificate: Certificate | None) -> Iterator[Caution]:
         """Yield that contact must be kept, where the spec does not say whether it is."""
@@ -385,12 +371,15 @@ class Examiner:
             yield self.caution(str(doubt), *doubt.at)
 
 
+def _met(reached: bool) -> Status:
+    return Status.MET if reached else Status.MISSED
+
+
 def certified_rate(certificate: Certificate | None) -> tuple[str | None, str | None]:
     """Return the certified rate as text and its name; None where nothing is proved."""
-    evidence = None if certificate is None else certificate.evidence
-    if certificate is None or evidence is None:
+    if certificate is None or certificate.evidence is None:
         return None, None
-    rate, time = evidence.proved_rate(certificate.system), certificate.system.time
+    time, rate = certificate.system.time, certificate.evidence.proved_rate(certificate.system)
     if rate is None:
         return None, None
     return rate_text(rate, time), "alpha" if time is Time.CONTINUOUS else "rho"

@@ -12,7 +12,7 @@ from nrs_design.certificates.verify import verify
 from nrs_design.gating.examine import Examiner, certified_rate
 from nrs_design.gating.lock import Lock, LockedGoal, LockedSpec, relative_to_lock
 from nrs_design.gating.obligations import (
-    Caution,
+    Findings,
     GateOutcome,
     Obligation,
     SpecOutcome,
@@ -146,26 +146,21 @@ def _confirmed(
     examiner: Examiner, certificate: Certificate, entry: LockedSpec, place: Path, file: Path
 ) -> SpecOutcome:
     stability = examiner.stability(certificate.system, certificate.statements, "as locked")
-    shown = (*stability, examiner.certificate(place, None))
     others, on_trust = _others(examiner, certificate, entry, file)
+    found = (*stability, examiner.certificate(place, None), *others)
     cautions = (*on_trust, *examiner.cautions(None))
-    return examiner.outcome(certificate, place, certificate, (*shown, *others), cautions)
+    return examiner.outcome(certificate, place, certificate, found, cautions)
 
 
 def _others(
     examiner: Examiner, certificate: Certificate | None, entry: LockedSpec, file: Path
-) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
+) -> Findings:
     """Return the obligations beside stability, and that bounds of a robot are on trust."""
-    bounds, on_trust = _bounds(examiner, entry)
+    robot, locked = examiner.loaded.robot, entry.goal_of(ROBOT_BOUNDS)
+    bounds, on_trust = ((), ()) if robot is None else examiner.known_bounds(robot, locked)
     agrees = examiner.obligation(LOCKED, "lock", Status.MET, f"as in {file.name}", ("name",))
-    found = (
-        *examiner.certified_goals(certificate),
-        *_goals(examiner, entry),
-        *bounds,
-        *examiner.identified(),
-        agrees,
-    )
-    return found, on_trust
+    goals = (*examiner.certified_goals(certificate), *_goals(examiner, entry))
+    return (*goals, *bounds, *examiner.identified(), agrees), on_trust
 
 
 def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
@@ -180,17 +175,6 @@ def _goals(examiner: Examiner, entry: LockedSpec) -> Iterator[Obligation]:
             f"{goal.message} (as locked; not computed again)",
             _place(goal),
         )
-
-
-def _bounds(
-    examiner: Examiner, entry: LockedSpec
-) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
-    """Return NRS111 of a spec that names a robot, and that its bounds are on trust."""
-    robot = examiner.loaded.robot
-    if robot is None:
-        return (), ()
-    bounds, cautions = examiner.known_bounds(robot, entry.goal_of(ROBOT_BOUNDS))
-    return (bounds,), cautions
 
 
 def _place(goal: LockedGoal) -> tuple[str, ...]:

@@ -48,9 +48,7 @@ class Obligation:
     @property
     def severity(self) -> int:
         """0 if fulfilled; then inconclusive, missed or refuted, error, internal error."""
-        if self.rule is INTERNAL:
-            return 4
-        return _SEVERITY[self.status]
+        return 4 if self.rule is INTERNAL else _SEVERITY[self.status]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +70,10 @@ _SEVERITY = {
     Status.REFUTED: 2,
     Status.ERROR: 3,
 }
+
+
+# Obligations of a part, and what is doubtful about it.
+Findings = tuple[tuple[Obligation, ...], tuple[Caution, ...]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ from nrs_design.gating.lock import (
     read_lock_if_any,
     relative_to_lock,
 )
-from nrs_design.gating.obligations import GateOutcome, Obligation, SpecOutcome, Status
+from nrs_design.gating.obligations import GateOutcome, SpecOutcome, Status
 from nrs_design.gating.rules import ROBOT_BOUNDS
 from nrs_design.output import LOCK, alone_in, write_output
 
@@ -68,7 +68,8 @@ def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome
     for spec in outcome.specs:
         _check_kept(spec)
     fresh = make_lock(outcome.specs, file).specs
-    present = filter(_is_there, outcome.specs)
+    # A spec that is gone keeps its entry.
+    present = (spec for spec in outcome.specs if os.path.isfile(spec.path))
     examined = {relative_to_lock(spec.path, file): spec for spec in present}
     locked = read_lock_if_any(file).specs
     old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
@@ -111,11 +112,6 @@ def _check_kept(spec: SpecOutcome) -> None:
         path=spec.certificate,
         remedy="let it end, then run nrs-design gate again",
     )
-
-
-def _is_there(spec: SpecOutcome) -> bool:
-    """Tell whether the spec exists; a spec that is gone keeps its entry."""
-    return os.path.isfile(spec.path)
 
 
 def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
@@ -172,18 +168,16 @@ def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
             "rate": spec.rate,
             "certificate": certificate,
             "gains": {name: dict(gains) for name, gains in spec.gains.items()},
-            "goals": [_goal(item) for item in spec.obligations if item.rule not in DECIDED_AGAIN],
+            "goals": [
+                {
+                    "rule": item.rule.id,
+                    "subject": item.subject,
+                    "status": str(item.status),
+                    "message": item.message,
+                }
+                for item in spec.obligations
+                if item.rule not in DECIDED_AGAIN
+            ],
             "recorded": dict(spec.recorded),
-        }
-    )
-
-
-def _goal(item: Obligation) -> LockedGoal:
-    return LockedGoal.model_validate(
-        {
-            "rule": item.rule.id,
-            "subject": item.subject,
-            "status": str(item.status),
-            "message": item.message,
         }
     )

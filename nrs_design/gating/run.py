@@ -14,7 +14,7 @@ from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
 from nrs_design.gating.obligations import (
-    Caution,
+    Findings,
     GateOutcome,
     Obligation,
     SpecOutcome,
@@ -39,7 +39,6 @@ from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
-    from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.gating.lock import LockedGoal
 
 
@@ -200,7 +199,8 @@ def _examine(
         return Examiner.of(loaded).nothing_to_certify()
     files.check_owner(loaded.path, loaded.spec.name)
     # Refuse what cannot be written before minutes of search.
-    check_place(files.certificate(loaded.spec.name), CERTIFICATE)
+    place = files.certificate(loaded.spec.name)
+    check_place(place, CERTIFICATE)
     if files.html:
         check_place(files.report(loaded.spec.name), PAGE)
     limits = search_limits(loaded.spec, overrides)
@@ -211,13 +211,11 @@ def _examine(
     tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
     searched = "; ".join((*tried, *(() if subsets is None else subset_lines(subsets))))
     obligations = examiner.stability(certification.system, certification.statements, searched)
-    file = None
+    file = None if certificate is None else place
     if certificate is not None:
-        file = files.certificate(loaded.spec.name)
-        text = dump(certificate, origin_of(loaded.path, file))
-        write_output(file, text, replaces=CERTIFICATE)
+        write_output(place, dump(certificate, origin_of(loaded.path, place)), replaces=CERTIFICATE)
         progress("re-check")
-        obligations += (examiner.certificate(file, run_verification(file, result).fault),)
+        obligations += (examiner.certificate(place, run_verification(place, result).fault),)
     bounds, on_trust = _bounds(loaded, files, examiner, progress, robots)
     recorded = hash_recorded(loaded)
     simulated = tuple(_scenarios(result, examiner, progress))
@@ -244,14 +242,13 @@ def _examine(
 
 def _bounds(
     loaded: LoadedSpec, files: Files, examiner: Examiner, progress: Progress, robots: Robots
-) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
+) -> Findings:
     """Return NRS111 of a spec that names a robot, and whether its bounds are on trust."""
     if loaded.robot is None:
         return (), ()
     if loaded.sha256 not in files.bounds:
         return (robots.bounds(loaded.robot, examiner, progress),), ()
-    bounds, on_trust = examiner.known_bounds(loaded.robot, files.bounds[loaded.sha256])
-    return (bounds,), on_trust
+    return examiner.known_bounds(loaded.robot, files.bounds[loaded.sha256])
 
 
 def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:
@@ -281,15 +278,16 @@ def _goals_and_report(
     files: Files,
     progress: Progress,
     subsets: tuple[Subset, ...] | None,
-) -> tuple[tuple[Obligation, ...], tuple[Caution, ...]]:
-    analysis: DesignAnalysis | None = None
-    missed: tuple[Obligation, ...] = ()
+) -> Findings:
+    analysis, found = None, tuple[Obligation, ...]()
     if result.designed is not None:
         progress("margins")
         try:
             analysis = run_analysis(result.designed)
         except DesignError as error:
-            missed = (examiner.no_margins(error),)
+            found = (examiner.no_margins(error),)
+        else:
+            found = (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis))
     if files.html:
         progress("report")
         # Drawing costs seconds to import; a run without reports must not pay for it.
@@ -299,7 +297,4 @@ def _goals_and_report(
         origin = origin_of(result.loaded.path, page)
         html = render_html(build_report(result, analysis, subsets=subsets), origin)
         write_output(page, html, replaces=PAGE)
-    cautions = (*examiner.contact(result.certificate), *examiner.cautions(analysis))
-    if analysis is None:
-        return missed, cautions
-    return (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis)), cautions
+    return found, (*examiner.contact(result.certificate), *examiner.cautions(analysis))

@@ -11,11 +11,9 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Rows
 from nrs_design.models.recursion import run_first_order
-
-Array = NDArray[np.float64]
 
 # Poles that are nearer to each other are taken apart by so much.
 _APART = 1e-4
@@ -27,7 +25,7 @@ class Held:
 
     grid: Array  # Shape (m,). Times in s.
     command: Array  # Shape (m - 1,). From each time to the next.
-    samples: NDArray[np.int64]  # Shape (n,). Where the samples are in the grid.
+    samples: Rows  # Shape (n,). Where the samples are in the grid.
 
     @classmethod
     def of(cls, time: Array, command: Array, delay: float) -> Self:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array, Flags, usual_step
 
 # Changes of a rounded signal are whole numbers of its step: so near, and so many of them.
 _WHOLE = 0.06
@@ -52,7 +51,7 @@ def resolution(readings: Array) -> float:
     return found
 
 
-def _are_whole(sizes: Array, step: float) -> NDArray[np.bool_]:
+def _are_whole(sizes: Array, step: float) -> Flags:
     """Tell which sizes are whole numbers of a step, and not none."""
     ratios = sizes / step
     whole = np.round(ratios)
@@ -64,7 +63,7 @@ def rounding_of_velocity(time: Array, readings: Array) -> float:
 
     A rounding error has the variance ``q^2/12``, a difference over two steps twice that.
     """
-    noise = resolution(readings) ** 2 / 6 / (2 * float(np.median(np.diff(time)))) ** 2
+    noise = resolution(readings) ** 2 / 6 / (2 * usual_step(time)) ** 2
     return noise / float(np.mean(np.gradient(readings, time) ** 2))
 
 

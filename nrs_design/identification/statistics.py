@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array, Rows
 
 CONFIDENCE = 0.95
 _DIGITS = 5
@@ -60,8 +59,8 @@ class Estimate:
 
     def outward(self, digits: int = _DIGITS) -> Estimate:
         """Return the estimate with ends rounded outwards to so many digits."""
-        low = _rounded(self.low, digits, ROUND_FLOOR)
-        return Estimate(self.value, low, _rounded(self.high, digits, ROUND_CEILING))
+        low = few_digits(self.low, digits, ROUND_FLOOR)
+        return Estimate(self.value, float(low), float(few_digits(self.high, digits, ROUND_CEILING)))
 
     def covers(self, value: float) -> bool:
         """Tell whether a value lies in the interval."""
@@ -258,11 +257,22 @@ def span(low: float, high: float, unit: str = "", digits: int = 4) -> str:
     return f"{' to '.join(ends)} {unit}".rstrip()
 
 
-def _rounded(value: float, digits: int, rounding: str) -> float:
-    return float(Context(prec=digits, rounding=rounding).create_decimal(Decimal(value)))
+def few_digits(value: float, digits: int, rounding: str) -> Decimal:
+    """Round a number to so many significant digits.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        How many are left.
+    rounding : str
+        To which side, as `decimal` calls it.
+    """
+    return Context(prec=digits, rounding=rounding).create_decimal(Decimal(value))
 
 
-def _jackknife(J: Array, residuals: Array, edges: NDArray[np.int64], bread: Array) -> Array:
+def _jackknife(J: Array, residuals: Array, edges: Rows, bread: Array) -> Array:
     """Return the scatter of the parameters when each batch in turn is left out (first order)."""
     count, p = len(edges), J.shape[1]
     shifts = []

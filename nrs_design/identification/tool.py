@@ -11,15 +11,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import PoseRecord, Source
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import Estimate, student_quantile
-from nrs_design.identification.tool_causes import likely_cause
 from nrs_design.spec.plausible import doubt_size
-
-Array = NDArray[np.float64]
 
 # Three poses determine all; from so many on, an error of one of them shows.
 _FEWEST, _ENOUGH = 3, 6
@@ -29,6 +26,10 @@ _ALIKE, _FLAT = 0.1, 0.02
 _MISSED = 0.02
 # In standard deviations.
 _OUTLIER = 5.0
+# A cause is named where it leaves less than this part of the errors.
+_LEAVES = 0.5
+# A smaller angle, in rad, is within the tolerance of mounting.
+_STRAIGHT = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,10 +85,7 @@ def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentifi
     DataError
         If the poses do not determine the tool, or its mass would not be positive.
     """
-    down, force, torque = (
-        np.concatenate([getattr(record, name) for record in records])
-        for name in ("down", "force", "torque")
-    )
+    down, force, torque = _columns(records)
     spread = _spread(down, records)
     weight = gravity * down
     n, unit = len(down), np.tile(np.eye(3), (len(down), 1))
@@ -100,7 +98,7 @@ def identify_tool(records: Sequence[PoseRecord], gravity: float) -> ToolIdentifi
     mass = forces.estimates()[0]
     if mass.value <= 0:
         against = f"the forces point against the weight: the mass would be {mass.value:.4g} kg"
-        cause = likely_cause(records, forces.errors)
+        cause = _likely_cause(records, forces.errors)
         raise DataError(
             against if cause is None else f"{against}; {cause}",
             path=records[0].source.path,
@@ -201,7 +199,7 @@ def _doubts(
     center: Sequence[Estimate],
 ) -> Iterator[str]:
     count = len(errors[0])
-    cause = likely_cause(records, errors[0])
+    cause = _likely_cause(records, errors[0])
     if count < _ENOUGH:
         yield f"{count} poses are few: an error in one of them hardly shows"
     if spread[1] < _ALIKE:
@@ -223,3 +221,59 @@ def _doubts(
         usual = float(np.sqrt(np.mean(others**2)))
         if count >= _ENOUGH and worst[row] > _OUTLIER * usual > 0:
             yield f"pose {row + 1} is off in {name}: leave it out, or record it again"
+
+
+def _columns(records: Sequence[PoseRecord]) -> tuple[Array, Array, Array]:
+    """Return directions of gravity, forces and torques of all poses."""
+    down, force, torque = (
+        np.concatenate([getattr(record, name) for record in records])
+        for name in ("down", "force", "torque")
+    )
+    return down, force, torque
+
+
+def _likely_cause(records: Sequence[PoseRecord], errors: Array) -> str | None:
+    """Name what would explain the forces far better, with what it leaves; or None.
+
+    All causes are common: the rotation is written the other way round, the wrench is given along
+    the axes of the world, or the sensor is mounted askew on the frame whose orientation is
+    recorded.
+    """
+    if errors.size < 3 * _ENOUGH:
+        return None
+    left, weight, words = min(_causes(records), default=(math.inf, 1.0, ""))
+    if left > _LEAVES * float(np.sqrt(np.mean(errors**2))) or weight <= 0:
+        return None
+    return f"likely {words}: then it would miss {100 * left / weight:.2g} %"
+
+
+def _causes(records: Sequence[PoseRecord]) -> Iterator[tuple[float, float, str]]:
+    """Yield what each cause leaves, the weight by it, both in N, and its words."""
+    down, force, _ = _columns(records)
+    askew, *found = _turned(down, force)
+    if askew > _STRAIGHT:
+        words = f"the sensor is mounted askew by {math.degrees(askew):.3g} deg"
+        yield found[0], found[1], words
+    turns = [record.turns for record in records if record.turns is not None]
+    if len(turns) < len(records):
+        return
+    turn = np.concatenate(turns)
+    yield *_left(-turn[:, :, 2], force), "the orientation is that of the world in the sensor"
+    along = np.einsum("nji,nj->ni", turn, force)
+    yield *_left(down, along), "the wrench is given along the axes of the world"
+
+
+def _left(down: Array, force: Array) -> tuple[float, float]:
+    """Return what a weight and a bias along the axes of the sensor leave, and that weight."""
+    D, F = down - down.mean(axis=0), force - force.mean(axis=0)
+    weight = float(np.sum(D * F) / np.sum(D * D))
+    return float(np.sqrt(np.mean((F - weight * D) ** 2))), weight
+
+
+def _turned(down: Array, force: Array) -> tuple[float, float, float]:
+    """Return the angle of the rotation that fits best, what it leaves, and the weight by it."""
+    D, F = down - down.mean(axis=0), force - force.mean(axis=0)
+    U, _, Vt = np.linalg.svd(F.T @ D)
+    Q = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
+    angle = math.acos(min(max((float(np.trace(Q)) - 1) / 2, -1.0), 1.0))
+    return angle, *_left(down @ Q.T, force)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
+from collections.abc import Callable, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from math import hypot, isfinite
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
 from nrs_design.identification.finding import Finding
 from nrs_design.identification.spec_document import SpecDocument
-from nrs_design.identification.statistics import Estimate, span
+from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tissue import TissueIdentification
 from nrs_design.identification.tissue.tangent import Tangent
 from nrs_design.identification.tool import ToolIdentification
@@ -74,14 +74,9 @@ def merge_tissue(
     node = document.root["environments"][name]
     power = found.tangent is not None and has_place(found.tangent)
     if found.tangent is not None and power:
-        put = _PUT_BY_TANGENT[model.law.name]
-        kept = put(document, node, found.tangent, law, rotational=found.rotational)
+        kept = _put_power_law(document, node, found.tangent, law, rotational=found.rotational)
     else:
-        document.put(node, "model", law.name)
-        units = law.units(rotational=found.rotational)
-        for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
-            _put_range(document, node, key, _ranged(estimate, unit, key))
-        kept = law.keys
+        kept = _put_law(document, node, law.name, law, ranges, rotational=found.rotational)
     known = {key for other in LINEAR_LAWS.values() for key in other.keys}
     for key in known.union(_POWER_KEYS).difference(kept):
         document.drop(node, key)
@@ -93,12 +88,10 @@ def merge_tissue(
     if found.tangent is None or power:
         document.drop(node, "linearized_about")
     else:
-        document.put(node, "linearized_about", _preload(found))
+        ends = span(found.tangent.low, found.tangent.high, "rad" if found.rotational else "m", 6)
+        document.put(node, "linearized_about", f"deflections of {ends}")
     _put_origin(document, node, found)
-    document.drop(node, "range_id")
-    written = parse_spec(document.text())
-    assert isinstance(written, InteractionDesignSpec)
-    document.put(node, "range_id", written.environments[name].values_id())
+    document.put(node, "range_id", _rewritten(document, node).environments[name].values_id())
     return document.text()
 
 
@@ -134,7 +127,7 @@ def law_to_write(
         If the law has no place in a spec.
     """
     name = _place(loaded, environment, arm, rotational=rotational)
-    declared = _interaction(loaded).environments[name]
+    declared = check_interaction(loaded).environments[name]
     law = asked or declared.model
     if law not in LAWS:
         raise SpecError(
@@ -161,7 +154,7 @@ def _place(
     loaded: LoadedSpec, environment: str | None, arm: str | None, *, rotational: bool
 ) -> str:
     """Return the name of the environment, which a lever arm leads to."""
-    spec = _interaction(loaded)
+    spec = check_interaction(loaded)
     name = _environment(spec, environment, loaded.path)
     if not rotational and arm is None and spec.environments[name].lever_arm is None:
         raise SpecError(
@@ -189,15 +182,29 @@ def _exponent_range(estimate: Estimate) -> tuple[Decimal, Decimal]:
     )
 
 
+def _put_law(
+    document: SpecDocument,
+    node: Any,
+    name: str,
+    law: AbstractLinearLaw,
+    ranges: Sequence[Estimate],
+    *,
+    rotational: bool,
+) -> tuple[str, ...]:
+    """Write the ranges of the parameters of a law under its name; return their keys."""
+    document.put(node, "model", name)
+    units = law.units(rotational=rotational)
+    for key, unit, estimate in zip(law.keys, units, ranges, strict=True):
+        _put_range(document, node, key, _ranged(estimate, unit, key))
+    return law.keys
+
+
 def _put_power_law(
     document: SpecDocument, node: Any, about: Tangent, law: AbstractLinearLaw, *, rotational: bool
 ) -> tuple[str, ...]:
     """Write a Hunt-Crossley law by its tangent; return the keys that it has."""
-    document.put(node, "model", HuntCrossley.name)
-    units = law.units(rotational=rotational)
     *tangent, exponent = about.power
-    for key, unit, estimate in zip(law.keys, units, tangent, strict=True):
-        _put_range(document, node, key, _ranged(estimate, unit, key))
+    keys = _put_law(document, node, HuntCrossley.name, law, tangent, rotational=rotational)
     low, high = _exponent_range(exponent)
     nominal = min(max(round(Decimal(exponent.value), 3), low), high)
     written = {"nominal": str(nominal), "range": [str(low), str(high)]}
@@ -205,17 +212,7 @@ def _put_power_law(
     length = "rad" if rotational else "m"
     document.put(node, "about", f"{about.about!r} {length}")
     document.put(node, "preload", [f"{end!r} {length}" for end in (about.low, about.high)])
-    return (*law.keys, *_POWER_KEYS)
-
-
-# How a law that is not linear is written, by its name.
-_PUT_BY_TANGENT = {HuntCrossley.name: _put_power_law}
-
-
-def _preload(found: TissueIdentification) -> str:
-    assert found.tangent is not None
-    about, unit = found.tangent, "rad" if found.rotational else "m"
-    return f"deflections of {span(about.low, about.high, unit, 6)}"
+    return (*keys, *_POWER_KEYS)
 
 
 def _put_origin(document: SpecDocument, node: Any, found: Finding) -> None:
@@ -279,12 +276,18 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
         document.drop(node, "range_covers")
         document.put(node, "intervals", intervals)
     _put_origin(document, node, found)
-    document.drop(node, "range_id")
+    rewritten = _rewritten(document, node)
     if covered:
-        again = parse_spec(document.text())
-        assert isinstance(again, InteractionDesignSpec)
-        document.put(node, "range_id", again.actuator.values_id())
+        document.put(node, "range_id", rewritten.actuator.values_id())
     return document.text()
+
+
+def _rewritten(document: SpecDocument, node: Any) -> InteractionDesignSpec:
+    """Return the new spec, in which a node has no identity of its range yet."""
+    document.drop(node, "range_id")
+    written = parse_spec(document.text())
+    assert isinstance(written, InteractionDesignSpec)
+    return written
 
 
 def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
@@ -295,7 +298,7 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
     SpecError
         If it is no interaction design, or its gains would be in the wrong unit.
     """
-    spec = _interaction(loaded)
+    spec = check_interaction(loaded)
     friction = None if spec.disturbances is None else spec.disturbances.friction
     written = {
         "derivative_gain": spec.motion_loop.derivative_gain,
@@ -353,7 +356,7 @@ def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
     SpecError
         If it is no interaction design, or not about a sampled loop.
     """
-    sampling = _interaction(loaded).sampling
+    sampling = check_interaction(loaded).sampling
     if sampling is None:
         raise SpecError(
             "the spec has no sampling, and a delay counts in its periods",
@@ -376,7 +379,7 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
     DataError
         If the interval of the mass reaches zero.
     """
-    spec = check_tool(loaded)
+    spec = check_interaction(loaded)
     document = SpecDocument(loaded)
     sensor = document.child(document.root, "sensor", ("bias", "tool"))
     document.put(sensor, "bias", _left(found.torque_bias, "N*m"))
@@ -386,32 +389,35 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
     _put_range(document, tool, "mass", _ranged(found.mass, "kg", "mass"))
     center = document.child(tool, "center_of_mass", "xyz")
     for axis, estimate in zip("xyz", found.center, strict=True):
-        _put_range(document, center, axis, _signed(estimate, "m"))
+        _put_range(document, center, axis, _outwards(estimate, "m", _exponential))
     document.put(tool, "gravity", f"{found.gravity!r} m/s^2")
     _put_origin(document, tool, found)
     return document.text()
 
 
-def check_tool(loaded: LoadedSpec) -> InteractionDesignSpec:
-    """Refuse, before a fit, a spec that no tool can go into: one that is no interaction design."""
-    return _interaction(loaded)
-
-
 def _left(bias: Sequence[Estimate], unit: str) -> str:
     """Write how far a bias may be from its estimate, rounded up."""
     half = hypot(*((estimate.high - estimate.low) / 2 for estimate in bias))
-    return f"{_plain(_decimal(half, ROUND_CEILING))} {unit}"
+    return f"{_plain(few_digits(half, _DIGITS, ROUND_CEILING))} {unit}"
 
 
-def _signed(estimate: Estimate, unit: str) -> dict[str, Any]:
-    """Write an estimate of either sign with ends rounded outwards."""
-    low, high = _decimal(estimate.low, ROUND_FLOOR), _decimal(estimate.high, ROUND_CEILING)
-    nominal = min(max(_decimal(estimate.value, ROUND_HALF_EVEN), low), high)
-    texts = [f"{number.normalize():e} {unit}" for number in (nominal, low, high)]
+def _outwards(estimate: Estimate, unit: str, write: Callable[[Decimal], str]) -> dict[str, Any]:
+    """Write an estimate of either sign with ends rounded outwards, so that nothing is lost."""
+    low = few_digits(estimate.low, _DIGITS, ROUND_FLOOR)
+    high = few_digits(estimate.high, _DIGITS, ROUND_CEILING)
+    nominal = min(max(few_digits(estimate.value, _DIGITS, ROUND_HALF_EVEN), low), high)
+    texts = [f"{write(number)} {unit}" for number in (nominal, low, high)]
     return {"nominal": texts[0], "range": texts[1:]}
 
 
-def _interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
+def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
+    """Refuse, before a fit, a spec that is no interaction design.
+
+    Raises
+    ------
+    SpecError
+        With its kind.
+    """
     if not isinstance(loaded.spec, InteractionDesignSpec):
         raise SpecError(
             f"a spec of kind {loaded.spec.kind} has no place for identified values",
@@ -450,29 +456,25 @@ def _put_range(document: SpecDocument, node: Any, key: str, value: dict[str, Any
 
 
 def _ranged(estimate: Estimate, unit: str, name: str) -> dict[str, Any]:
-    """Write an estimate with ends rounded outwards, so that nothing is lost."""
+    """Write a positive estimate; refuse one that the records do not tell."""
     if not _is_limited(estimate):
         raise DataError(
             f"the interval of the {name} is unlimited or reaches 0: the records do not tell it",
             remedy="choose a simpler law with --model, or record more",
         )
-    low = _decimal(estimate.low, ROUND_FLOOR)
-    high = _decimal(estimate.high, ROUND_CEILING)
-    nominal = min(max(_decimal(estimate.value, ROUND_HALF_EVEN), low), high)
-    texts = [f"{_plain(number)} {unit}" for number in (nominal, low, high)]
-    return {"nominal": texts[0], "range": texts[1:]}
+    return _outwards(estimate, unit, _plain)
 
 
 def _is_limited(estimate: Estimate) -> bool:
     return isfinite(estimate.high) and estimate.low > 0
 
 
-def _decimal(value: float, rounding: str) -> Decimal:
-    return Context(prec=_DIGITS, rounding=rounding).create_decimal(Decimal(value))
-
-
 def _plain(number: Decimal) -> str:
-    return f"{number:f}" if 1e-3 <= number < 10**_DIGITS else f"{number.normalize():e}"
+    return f"{number:f}" if 1e-3 <= number < 10**_DIGITS else _exponential(number)
+
+
+def _exponential(number: Decimal) -> str:
+    return f"{number.normalize():e}"
 
 
 def _provenance(source: Source) -> dict[str, str]:

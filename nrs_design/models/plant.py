@@ -18,9 +18,8 @@ class Plant:
     actuator: Actuator  # Identified model
     # In the order of the spec, and after them those that are several of them, touched at once.
     environments: tuple[Environment, ...]
+    actuator_ranges: ActuatorRanges  # Where the actuator may be
     given_loop: MotionLoop | None = None  # The closed motion loop, if the spec states it
-    # Where the actuator may be, if that is more than a point.
-    actuator_ranges: ActuatorRanges | None = None
     # Inertia at the joint in kg m^2 against which the torque of an environment works; None where
     # that torque is left out.
     load_inertia: Fraction | None = None
@@ -58,5 +57,5 @@ class Plant:
         environments = (
             e.scaled(scale) if e.parts or e.name in touched else e for e in self.environments
         )
-        ranges = self.actuator_ranges and self.actuator_ranges.scaled(scale)
+        ranges = self.actuator_ranges.scaled(scale)
         return replace(self, environments=tuple(environments), actuator_ranges=ranges)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline.certification import Result
 from nrs_design.pipeline.design import Designed
@@ -70,15 +71,16 @@ def _find_obstacle(designed: Designed, system: SwitchedSystem) -> str | None:
 
 def _sampled(designed: Designed, system: SwitchedSystem) -> Outputs:
     """Return what a sampled loop shows; its state holds velocity and deflection."""
-    from nrs_design.switched.sampled_inputs import force_rows
+    from nrs_design.switched.free_motion import force_rows
 
     touched = designed.plant.among(designed.design.contacts)
     states = system.states
+    velocity = coordinates(system.order)[states.index("omega [rad/s]")]
     return _outputs(
         designed,
         system,
-        [row for environment in touched for row in force_rows(states, environment)],
-        [_unit(system, "omega [rad/s]")],
+        list(force_rows(velocity, states, touched)),
+        [[float(x) for x in velocity]],
         _unit(system, _DEFLECTION),
         [float(name in (_DEFLECTION, _REFERENCE)) for name in states],
     )
@@ -94,8 +96,9 @@ def _following_velocities(designed: Designed, system: SwitchedSystem) -> Outputs
     loop = realize(plant.motion_loop(motion.Kp, motion.Kd)) if joint is None else joint.nominal
     first = touched[0].law.states[0]
     pressed = _unit(system, first)
-    rows = list(force_rows(loop, system.states, touched))
-    velocity = [float(x) for x in loop.output(system.order)]
+    output = loop.output(system.order)
+    rows = list(force_rows(output, system.states, touched))
+    velocity = [float(x) for x in output]
     deflection = pressed if first == _DEFLECTION else None
     return _outputs(designed, system, rows, [velocity], deflection, pressed)
 

@@ -114,8 +114,11 @@ def _commanded(designed: Designed) -> SwitchedSystem:
     if spec.sampling is not None:
         return assemble_spec(designed.loaded, replace(designed, spec=spec), at)
     # In continuous time a run may be on tissue for which no bound is stated.
+    from nrs_design.spec.build_plant import build_conditions
     from nrs_design.switched.assemble import state_of
     from nrs_design.switched.commanded import with_command
 
-    state = state_of(spec, designed.plant, designed.design, at)
-    return with_command(assemble_spec(designed.loaded, designed, at), state, spec)
+    conditions = build_conditions(spec)
+    state = state_of(conditions, designed.plant, designed.design, at)
+    system = assemble_spec(designed.loaded, designed, at)
+    return with_command(system, state, disturbances.bounds(), conditions.torque)

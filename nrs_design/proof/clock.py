@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import compress
+from itertools import compress, pairwise
 
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
@@ -25,13 +25,12 @@ def on_turn(system: SwitchedSystem, clock: Clock, step: int) -> SwitchedSystem:
     step : int
         Zero for the first.
     """
-    free = () if system.contact is None else system.contact.free
     first = frozenset(clock.first)
-    kept = [(mode.name in first) == (step == 0) for mode in (*system.modes, *free)]
+    kept = [(mode.name in first) == (step == 0) for mode in system.every_mode]
     flying = kept[len(system.modes) :]
     contact = system.contact
     if contact is not None:
-        contact = replace(contact, free=tuple(compress(free, flying)))
+        contact = replace(contact, free=tuple(compress(contact.free, flying)))
     roundings = (
         replace(
             item,
@@ -64,20 +63,15 @@ def keeps_turns(clock: Clock, steps: Sequence[tuple[str, Fraction]]) -> bool:
     steps : sequence of (str, Fraction)
         Modes with whole numbers of steps, in order.
     """
-    first = frozenset(clock.first)
-    # What comes before the first of them ends the last round, as it is a period.
-    rounds, ahead = list[Fraction](), Fraction(0)
+    first, at, begins = frozenset(clock.first), Fraction(0), list[Fraction]()
     for name, count in steps:
-        if name not in first:
-            if rounds:
-                rounds[-1] += count
-            else:
-                ahead += count
-        elif count != 1:
-            return False
-        else:
-            rounds.append(Fraction(1))
-    if not rounds:
+        if name in first:
+            if count != 1:
+                return False
+            begins.append(at)
+        at += count
+    if not begins:
         return False
-    rounds[-1] += ahead
-    return all(count == clock.length for count in rounds)
+    # After the end of the signal, it begins again.
+    rounds = pairwise((*begins, begins[0] + at))
+    return all(end - begin == clock.length for begin, end in rounds)

@@ -52,13 +52,13 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
     begin, end : Fraction
         The first and the last time, in s.
     """
-    from flint import arb, arb_mat, fmpq
+    from flint import arb_mat, fmpq
 
     middle, half = (begin + end) / 2, (end - begin) / 2
     exact = _fmpq_matrix(A)
     E = arb_mat(exact * fmpq(middle.numerator, middle.denominator)).exp()
     if half > 0:
-        ball = arb(fmpq(half.numerator, half.denominator))
+        ball = _ball(half)
         E = (arb_mat(exact) * (-ball).union(ball)).exp() * E
     return E
 
@@ -75,9 +75,7 @@ def overlap(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
     error : Fraction
         The radius.
     """
-    from flint import arb, fmpq
-
-    radius, ours = arb(fmpq(error.numerator, error.denominator)), balls(M)
+    radius, ours = _ball(error), balls(M)
     around, (rows, columns) = (-radius).union(radius), M.shape
     return all(
         (ours[i, j] + around).overlaps(enclosed[i, j]) for i in range(rows) for j in range(columns)
@@ -103,9 +101,7 @@ def characteristic_sign(M: Any, number: Fraction) -> int:
     number : Fraction
         Real.
     """
-    from flint import arb, fmpq
-
-    value = M.charpoly()(arb(fmpq(number.numerator, number.denominator)))
+    value = M.charpoly()(_ball(number))
     return 1 if value > 0 else -1 if value < 0 else 0
 
 
@@ -123,12 +119,11 @@ def eigenvector(M: Any, low: Fraction, high: Fraction) -> Any:
     low, high : Fraction
         The numbers.
     """
-    from flint import arb, arb_mat, fmpq
+    from flint import arb_mat
 
     if characteristic_sign(M, low) * characteristic_sign(M, high) >= 0:
         return None
-    ends = (arb(fmpq(end.numerator, end.denominator)) for end in (low, high))
-    z, n, coefficients = next(ends).union(next(ends)), M.nrows(), M.charpoly().coeffs()
+    z, n, coefficients = _ball(low).union(_ball(high)), M.nrows(), M.charpoly().coeffs()
     v = w = u = arb_mat(n, 1, [1] * n)
     # Horner's scheme, with w_(n-1) = u and w_(j-1) = M w_j + c_j u.
     for c in coefficients[n - 1 : 0 : -1]:
@@ -183,6 +178,13 @@ def _fraction(ball: Any) -> Fraction:
     if int(mantissa).bit_length() + int(exponent) < -RANGE_LOG2:
         return Fraction(0)
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _ball(number: Fraction) -> Any:
+    """Return a ball around a number, at the current precision."""
+    from flint import arb, fmpq
+
+    return arb(fmpq(number.numerator, number.denominator))
 
 
 def _fmpq_matrix(A: RationalMatrix) -> Any:

@@ -228,13 +228,9 @@ def lyapunov_factor(denominator: int, rate: Fraction) -> int:
 
 
 def stein_decrease(
-    N: IntegerMatrix,
-    denominator: int,
-    Q: IntegerMatrix,
-    factor: Fraction,
-    multiply: Product = multiply,
+    N: IntegerMatrix, denominator: int, Q: IntegerMatrix, factor: Fraction
 ) -> list[list[int]]:
-    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times `stein_factor`.
+    """Form ``factor^2 Q - A'QA`` for ``A = N / denominator``, times a positive integer.
 
     Parameters
     ----------
@@ -244,38 +240,9 @@ def stein_decrease(
         Positive.
     factor : Fraction
         The claimed contraction rho per step.
-    multiply : callable
-        How matrices are multiplied; only a search has reason to ask for another way.
-    """
-    return step_decrease(Q, congruence(N, Q, multiply), denominator, factor)
-
-
-def step_decrease(
-    before: IntegerMatrix, image: IntegerMatrix, denominator: int, factor: Fraction
-) -> list[list[int]]:
-    """Form ``factor^2 before - A' after A`` for ``A = N / denominator``, times `stein_factor`.
-
-    Parameters
-    ----------
-    before : integer matrix, shape (n, n)
-        Of the function before the step.
-    image : integer matrix, shape (n, n)
-        The ``N' after N``.
-    denominator : int
-        Positive.
-    factor : Fraction
-        The claimed contraction over the step.
     """
     p, q = (factor.numerator * denominator) ** 2, factor.denominator**2
-    return [
-        [p * entry - q * moved for entry, moved in zip(*rows, strict=True)]
-        for rows in zip(before, image, strict=True)
-    ]
-
-
-def stein_factor(denominator: int, factor: Fraction) -> int:
-    """Return the positive integer that `stein_decrease` multiplies with."""
-    return (denominator * factor.denominator) ** 2
+    return add(scaled(Q, p), congruence(N, Q), -q)
 
 
 def characteristic_polynomial(N: IntegerMatrix) -> list[int]:
@@ -332,25 +299,14 @@ def is_schur(N: IntegerMatrix, denominator: int) -> bool:
     the polynomial ``(1 - s)^n p((1 + s) / (1 - s))`` is tested for the Hurwitz property. Its
     leading coefficient vanishes iff -1 is an eigenvalue.
     """
-    n = len(N)
-    scaled = [c * denominator ** (n - k) for k, c in enumerate(characteristic_polynomial(N))]
-    mapped = [0] * (n + 1)
-    for k, c in enumerate(scaled):
-        for j, term in enumerate(_multiply(_power((1, 1), n - k), _power((-1, 1), k))):
-            mapped[j] += c * term
+    # Horner's scheme on ``sum c_k (d (1 + s))^(n - k) (1 - s)^k``.
+    mapped, power = [1], [1]
+    for c in characteristic_polynomial(N)[1:]:
+        power, moved = _times_binomial(power, -1), _times_binomial(mapped, 1)
+        mapped = [denominator * a + c * b for a, b in zip(moved, power, strict=True)]
     return mapped[0] != 0 and is_hurwitz_polynomial(mapped)
 
 
-def _power(binomial: Sequence[int], exponent: int) -> list[int]:
-    product = [1]
-    for _ in range(exponent):
-        product = _multiply(product, binomial)
-    return product
-
-
-def _multiply(left: Sequence[int], right: Sequence[int]) -> list[int]:
-    product = [0] * (len(left) + len(right) - 1)
-    for i, a in enumerate(left):
-        for j, b in enumerate(right):
-            product[i + j] += a * b
-    return product
+def _times_binomial(polynomial: Sequence[int], slope: int) -> list[int]:
+    """Return the product with ``slope s + 1``, the highest power first."""
+    return [slope * a + b for a, b in zip([*polynomial, 0], [0, *polynomial], strict=True)]

@@ -90,6 +90,11 @@ def _integer_ratio(number: Fraction | float) -> tuple[int, int]:
     return index(numerator), index(denominator)
 
 
+def identity(n: int) -> RationalMatrix:
+    """Return the identity matrix of n rows."""
+    return RationalMatrix(tuple(tuple(int(i == j) for j in range(n)) for i in range(n)))
+
+
 def multiply(left: Rows, right: Rows) -> list[list[Fraction]]:
     """Return the exact matrix product ``left @ right``."""
     columns = list(zip(*right, strict=True))
@@ -118,6 +123,22 @@ def with_crossing(M: Sequence[Sequence[Entry]], k: int, row: Sequence[Entry]) ->
         rows[k][j] += entry
         rows[j][k] += entry
     return rows
+
+
+def bordered(Q: Rows, row: Sequence[Fraction], corner: Fraction) -> RationalMatrix:
+    """Return ``[[Q, r'], [r, corner]]``.
+
+    Parameters
+    ----------
+    Q : matrix, shape (n, n)
+        Numbers.
+    row : sequence of number, shape (n,)
+        The r.
+    corner : Fraction
+        The last entry.
+    """
+    rows = [[*above, entry] for above, entry in zip(Q, row, strict=True)]
+    return RationalMatrix.from_rows([*rows, [*row, corner]])
 
 
 def _to_float(numerator: int, denominator: int) -> float:

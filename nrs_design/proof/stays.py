@@ -15,7 +15,7 @@ from functools import lru_cache
 from math import comb
 
 from nrs_design.proof.exact import MAX_WORK, IntegerMatrix
-from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.matrix import RationalMatrix, identity
 from nrs_design.proof.matrix import multiply as rational_product
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import Stays, Step, flow_step, map_step
@@ -121,7 +121,7 @@ def steps_of_stays(
         elif stay.shortest > 0:
             yield EnclosedStep(where, edge, stay.shortest, stay.shortest)
         else:
-            jump = edge.map or power(edge.source.A, 0)
+            jump = edge.map or identity(edge.source.A.shape[0])
             at_once = f"at the switch from {name} to {edge.target.name}"
             yield map_step(at_once, name, (name, edge.target.name), jump, 1, time=0)
 
@@ -203,8 +203,7 @@ def _power_is_too_large(
 @lru_cache(maxsize=256)
 def power(A: RationalMatrix, exponent: int) -> RationalMatrix:
     """Return the power of a square matrix."""
-    n = A.shape[0]
-    result = RationalMatrix.from_rows([[int(i == j) for j in range(n)] for i in range(n)])
+    result = identity(A.shape[0])
     for bit in bin(exponent)[2:]:
         result = RationalMatrix.from_rows(rational_product(result.fractions(), result.fractions()))
         if bit == "1":

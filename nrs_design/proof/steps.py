@@ -34,7 +34,7 @@ from math import gcd, isqrt, lcm
 
 from nrs_design.proof.channels import Coupling, Rounding
 from nrs_design.proof.exact import IntegerMatrix, Product, add, congruence, multiply, transpose
-from nrs_design.proof.matrix import RationalMatrix, with_crossing
+from nrs_design.proof.matrix import RationalMatrix, identity, with_crossing
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
@@ -257,12 +257,9 @@ def steps_of(system: SwitchedSystem, acting: Acting, grain: int, *, lost: bool) 
             yield replace(inner, where=surface, target=CONTACT)
         yield from _lagging(system, step, flows=flows)
     if contact is not None and flows:
-        units = RationalMatrix(
-            tuple(tuple(int(i == j) for j in range(n - 1)) for i in range(n - 1))
-        )
-        for where, *places in (("lost", CONTACT, FREE), ("made", FREE, CONTACT)):
-            at_once = f"where contact is {where} at the surface"
-            yield map_step(at_once, "", (places[0], places[1]), units, 1, time=0)
+        for word, places in (("lost", (CONTACT, FREE)), ("made", (FREE, CONTACT))):
+            where = f"where contact is {word} at the surface"
+            yield map_step(where, "", places, identity(n - 1), 1, time=0)
 
 
 def _lagging(system: SwitchedSystem, step: Step, *, flows: bool) -> Iterator[Step]:
@@ -373,25 +370,3 @@ def multiplier_names(system: SwitchedSystem) -> tuple[str, ...]:
         name for k in pulls for name in (f"{PULL} {k}", f"{PULL} {k} {LOST}", f"{LOST} {PULL} {k}")
     )
     return (LOST, *own)
-
-
-def find_odd_multipliers(multipliers: Sequence[int], system: SwitchedSystem) -> str | None:
-    """TRUSTED: say why multipliers do not belong to the lost contact of a system, or None.
-
-    There are none where contact is kept.
-    """
-    if len(multipliers) != len(multiplier_names(system)):
-        return "there is not one multiplier for each condition that needs it"
-    return "a multiplier is negative" if any(entry < 0 for entry in multipliers) else None
-
-
-def find_odd_roundings(roundings: tuple[int, ...], system: SwitchedSystem) -> str | None:
-    """TRUSTED: say why multipliers do not belong to the roundings of a system, or None.
-
-    There are none for exact arithmetic.
-    """
-    if roundings and len(roundings) != len(system.roundings):
-        return "there is not one multiplier for each rounding"
-    if any(entry < 0 for entry in roundings):
-        return "the multiplier of a rounding is negative"
-    return None

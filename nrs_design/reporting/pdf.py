@@ -13,7 +13,6 @@ from nrs_design.reporting.document import (
     Bullets,
     Derived,
     Illustration,
-    Light,
     Linked,
     Listing,
     Paragraph,
@@ -92,7 +91,14 @@ def _content(report: Report) -> dict[str, Any]:
         "date": day and {"year": day.year, "month": day.month, "day": day.day},
         "claim": drawable(report.claim),
         "summary": [_said(sentence, report) for sentence in report.summary],
-        "lights": [_light(light) for light in report.lights],
+        "lights": [
+            {
+                "name": drawable(light.name),
+                "text": drawable(light.text),
+                "tint": _SHOWN[light.state],
+            }
+            for light in report.lights
+        ],
         "remarks": [drawable(remark) for remark in report.remarks],
         "facts": [[drawable(label), _said(value, report)] for label, value in report.facts],
         "sections": [
@@ -104,14 +110,6 @@ def _content(report: Report) -> dict[str, Any]:
             for number, part in enumerate(report.sections, 1)
         ],
         "footer": drawable(report.footer),
-    }
-
-
-def _light(light: Light) -> dict[str, str]:
-    return {
-        "name": drawable(light.name),
-        "text": drawable(light.text),
-        "tint": _SHOWN[light.state],
     }
 
 

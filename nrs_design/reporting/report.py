@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nrs_design.reporting.document import Report, Section
+from nrs_design.reporting.document import Report
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
 from nrs_design.reporting.sections.goals import goal_facts, goals_section
@@ -78,6 +78,23 @@ def build_report(
     """
     spec, certification, designed = result.loaded.spec, result.certification, result.designed
     system = certification.system
+    sections = (
+        proof_section(result),
+        remedies_section(result, margins, subsets),
+        stability_map_section(result.loaded, stability_map) if stability_map else None,
+        *(design_sections(designed, analysis) if designed else ()),
+        goals_section(result, analysis),
+        logic_section(designed.spec) if designed else None,
+        modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
+        *evidence_sections(certification),
+        release_section(result),
+        worst_case_section(result),
+        assumptions_section(result),
+        rungs_section(certification, times=times),
+        methods_section(comparison, times=times) if comparison else None,
+        recheck_section(result),
+        spec_section(result.loaded),
+    )
     return Report(
         name=spec.name,
         title=spec.title,
@@ -85,32 +102,8 @@ def build_report(
         claim=claim_of(certification),
         remarks=remarks_of(certification),
         facts=(*facts(result), *goal_facts(result, analysis)),
-        sections=(
-            proof_section(result),
-            *_present(remedies_section(result, margins, subsets)),
-            *(
-                ()
-                if stability_map is None
-                else (stability_map_section(result.loaded, stability_map),)
-            ),
-            *(() if designed is None else design_sections(designed, analysis)),
-            *_present(goals_section(result, analysis)),
-            *_present(None if designed is None else logic_section(designed.spec)),
-            modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
-            *evidence_sections(certification),
-            *_present(release_section(result)),
-            *_present(worst_case_section(result)),
-            assumptions_section(result),
-            rungs_section(certification, times=times),
-            *((methods_section(comparison, times=times),) if comparison else ()),
-            recheck_section(result),
-            spec_section(result.loaded),
-        ),
+        sections=tuple(section for section in sections if section is not None),
         summary=summary_of(result),
         lights=lights_of(result, analysis),
         date=date,
     )
-
-
-def _present(section: Section | None) -> tuple[Section, ...]:
-    return () if section is None else (section,)

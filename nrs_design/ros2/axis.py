@@ -23,6 +23,7 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.ros2.law import AdmittanceLaw, Axis
+from nrs_design.ros2.quantities import Range
 from nrs_design.switched.parameter_box import Box
 
 ONE = Fraction(1)
@@ -39,10 +40,10 @@ class Surroundings:
     delays: tuple[int, int]
     # stiffness, rotational: range of the environment for translations in N/m, and for rotations in
     # N*m/rad.
-    stiffness: tuple[Fraction, Fraction] | None
-    rotational: tuple[Fraction, Fraction] | None
+    stiffness: Range | None
+    rotational: Range | None
     # Smallest and largest time constant in s with which the robot follows its command.
-    lag: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
+    lag: Range = (Fraction(0), Fraction(0))
 
     @property
     def kept(self) -> Interval:
@@ -53,7 +54,7 @@ class Surroundings:
         ]
         return Interval(shares[0][0], shares[0][0], shares[1][1])
 
-    def of(self, axis: Axis) -> tuple[Fraction, Fraction] | None:
+    def of(self, axis: Axis) -> Range | None:
         """Return the range that an axis meets; None where nothing is said of it."""
         if not axis.selected:
             return Fraction(0), Fraction(0)

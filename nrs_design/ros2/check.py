@@ -25,7 +25,7 @@ from nrs_design.ros2.managers import (
     managers_of,
 )
 from nrs_design.ros2.parameters import RosNode, read_integer, read_nodes, texts
-from nrs_design.ros2.quantities import RATE, ROTATIONAL, STIFFNESS
+from nrs_design.ros2.quantities import RATE, ROTATIONAL, STIFFNESS, Range
 from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.certify import certify
@@ -35,11 +35,6 @@ from nrs_design.search.margin import find_margin
 MARGIN_BUDGET = 2.0
 # Of the ends of a range that was looked for.
 DIGITS = 3
-_STATUS = {
-    "proved": Status.PROVED,
-    "refuted": Status.REFUTED,
-    "inconclusive": Status.INCONCLUSIVE,
-}
 # The worst first: what a file is called where its axes differ.
 _ORDER = (Status.ERROR, Status.MISSED, Status.REFUTED, Status.INCONCLUSIVE, Status.PROVED)
 
@@ -50,11 +45,11 @@ class Question:
 
     delays: tuple[int, int]  # Smallest and largest age of what is measured, in periods
     # stiffness, rotational: what translations meet in N/m, and rotations in N*m/rad.
-    stiffness: tuple[Fraction, Fraction] | None
-    rotational: tuple[Fraction, Fraction] | None
+    stiffness: Range | None
+    rotational: Range | None
     rate: Fraction | None = None  # Of the control loop in 1/s; None for what the file says
     # Smallest and largest time constant of the robot in s.
-    lag: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0))
+    lag: Range = (Fraction(0), Fraction(0))
 
     def around(self, period: Fraction) -> Surroundings:
         """Return what a controller of this period runs in."""
@@ -102,11 +97,11 @@ class _Asker:
         law: AdmittanceLaw,
         axis: Axis,
         around: Surroundings,
-        met: tuple[Fraction, Fraction],
+        met: Range,
     ) -> tuple[Status, str]:
         system = close_axis(law, axis, around)
         found = certify(system, limits=self.limits)
-        status = _STATUS[str(found.verdict)]
+        status = Status(str(found.verdict))
         unit = "N*m/rad" if axis.rotates else "N/m"
         where = "by itself (no force acts on it)" if not axis.selected else _range(met, unit)
         evidence = found.evidence
@@ -131,7 +126,7 @@ class _Asker:
         law: AdmittanceLaw,
         axis: Axis,
         around: Surroundings,
-        met: tuple[Fraction, Fraction],
+        met: Range,
         known: Certification,
         unit: str,
     ) -> str:
@@ -353,7 +348,7 @@ def _digits(number: Fraction, rounding: str) -> str:
     return f"{few:f}"
 
 
-def _range(met: tuple[Fraction, Fraction], unit: str) -> str:
+def _range(met: Range, unit: str) -> str:
     low, high = met
     if low == high:
         return f"at {nearly(low, unit)}"

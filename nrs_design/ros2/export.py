@@ -25,6 +25,7 @@ from nrs_design.proof.text import exact_text
 from nrs_design.ros2.axis import Surroundings, close_axis
 from nrs_design.ros2.law import AXES, AdmittanceLaw, read_law
 from nrs_design.ros2.parameters import parse_nodes
+from nrs_design.ros2.quantities import Range
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
 from nrs_design.spec.sampling import SamplingSpec
@@ -50,7 +51,7 @@ class RosExport:
 
 
 def export_controllers(
-    designed: Designed, axis: str, lag: tuple[Fraction, Fraction], limits: Limits
+    designed: Designed, axis: str, lag: Range, limits: Limits
 ) -> Iterator[RosExport]:
     """Yield every controller of a design with its proof.
 
@@ -181,7 +182,7 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
     return 1 - low_pass.discretize(sampling.period.exact).p
 
 
-def _met(designed: Designed, controller: Controller) -> tuple[Fraction, Fraction]:
+def _met(designed: Designed, controller: Controller) -> Range:
     """Return the stiffness that a controller may touch, in N m/rad."""
     touched = designed.plant.among(controller.contacts)
     soft = next((item for item in touched if item.parameters.keys() != {"k"}), None)
@@ -235,7 +236,7 @@ def _header(
     designed: Designed,
     controller: Controller,
     sampling: SamplingSpec,
-    met: tuple[Fraction, Fraction],
+    met: Range,
     certificate: Certificate,
 ) -> str:
     system, evidence = certificate.system, certificate.evidence

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.mode import Time
-from nrs_design.search.balance import mean_norm, mean_norm_coordinates, scale_states
+from nrs_design.search.balance import mean_norm
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
 from nrs_design.search.decay import fastest_first, rate_of
 from nrs_design.search.draw import one_form
 from nrs_design.search.family import Family
-from nrs_design.search.lmi import find_common_quadratic, margins, solve_by_clarabel
+from nrs_design.search.lmi import find_common_quadratic, margins
 from nrs_design.search.rounding import BITS, claims, digits, rate_at, round_rate, unscale
 from nrs_design.work import Allowance, NotAffordableError
 
@@ -96,39 +96,6 @@ def search_by_gradient(family: Family) -> Candidates[FormsOnGraph]:
         if faster.Q is not None:
             yield from _at_own_rate(family, faster.Q, f"{words}, {more}")
     yield from _at_own_rate(family, result.Q, words)
-    return None
-
-
-def search_raw(family: Family) -> Candidates[FormsOnGraph]:
-    """Search by CVXPY in the coordinates of the spec, without balancing."""
-    from nrs_design.search.raw import find_raw_quadratic
-
-    time = family.system.time
-    if not np.isfinite(family.limit):
-        return OUT_OF_RANGE
-    matrices = scale_states(family.matrices, -family.exponents)
-    least = rate_at(0.0, family.limit, time)
-    Q = find_raw_quadratic(matrices, time, least, family.allowance)
-    if Q is None:
-        return NO_MARGIN
-    shifts = family.exponents[:, None] + family.exponents[None, :]
-    yield from _at_own_rate(family, np.ldexp(Q, shifts))
-    return None
-
-
-def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
-    """Search by a general solver after a change to the mean of the modes' own norms."""
-    time = family.system.time
-    if not np.isfinite(family.limit):
-        return OUT_OF_RANGE
-    T = mean_norm_coordinates(family.matrices, time)
-    inverse = np.linalg.inv(T)
-    least = rate_at(0.0, family.limit, time)
-    matrices = inverse @ family.matrices @ T
-    Q = find_common_quadratic(matrices, time, least, solve_by_clarabel, family.allowance)
-    if Q is None:
-        return NO_MARGIN
-    yield from _at_own_rate(family, inverse.T @ Q @ inverse)
     return None
 
 

@@ -1,7 +1,7 @@
 """Search for a function that shows that contact settles under a constant force (untrusted).
 
 Margin form: maximize t subject to ``0 <= Q <= I``, a bounded slope, and every condition of
-`nrs_design.proof.evidence.constant_force` with at least t to spare. All of them are of one order.
+`nrs_design.proof.evidence.constant_force` with at least t to spare.
 """
 
 from __future__ import annotations
@@ -12,23 +12,19 @@ from numpy.typing import NDArray
 from nrs_design.proof.evidence import ConstantForce
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_program import (
-    FEWEST_STEPS,
-    LARGEST_MULTIPLIER,
-    SMALLEST_MARGIN,
-    START_FLOOR,
-    Motions,
-    separating_coordinates,
-)
-from nrs_design.search.conewise_quadratic import numerators
 from nrs_design.search.family import Family
-from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.lmi import time_unit
+from nrs_design.search.motions import Motions, numerators, separating_coordinates
 from nrs_design.search.rounding import digits, unscale
-from nrs_design.search.sdp import pack, symmetric_basis
-from nrs_design.work import Allowance, Cost
+from nrs_design.search.sdp import solve_blocks, symmetric_basis
+from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
+
+# The slope lies between 0 and this, in coordinates where all numbers are of like size.
+LARGEST_SLOPE = 64.0
+# Rounding takes about as much as a smaller margin gives.
+SMALLEST_MARGIN = 1e-10
 
 
 def search_constant_force(
@@ -84,31 +80,21 @@ def find_constant_force(A: Array, allowance: Allowance | None = None) -> tuple[A
     NotAffordableError
         If work or memory do not suffice.
     """
-    allowance, (m, n) = allowance or Allowance(), A.shape[:2]
-    basis = symmetric_basis(n)
-    moving, crossing = A.copy(), np.zeros_like(A)
-    moving[:, -1] = 0.0
+    n, basis = A.shape[-1], symmetric_basis(A.shape[-1])
+    unknowns, one = len(basis) + 2, np.ones((1, 1))
+    number, crossing = np.zeros((unknowns, 1, 1)), np.zeros_like(A)
+    number[-2] = 1.0
     crossing[:, -1] = A[:, -1]
-    moves = np.concatenate([A, moving])
-    half = basis[:, None] @ moves
-    # Decreases in contact and free, then Q, I - Q and the slope within its bounds.
-    images, counted = np.zeros((len(basis) + 2, 2 * m + 3, n, n)), 2 * m
-    images[: len(basis), :counted] = -(half + np.swapaxes(half, -1, -2))
-    images[: len(basis), counted], images[: len(basis), counted + 1] = basis, -basis
-    images[-2, m:counted] = -(crossing + np.swapaxes(crossing, -1, -2))
-    images[-2, counted + 2, 0, 0], images[-2, counted + 2, 1, 1] = 1.0, -1.0
-    images[-1, :counted] = -np.eye(n)
-    constant = np.zeros(images.shape[1:])
-    constant[counted + 1 :] = np.eye(n)
-    constant[-1, 0, 0], constant[-1, 1, 1] = 0.0, LARGEST_MULTIPLIER
-    step = step_cost(len(images), len(constant), n)
-    described = f"a program of {len(images)} unknowns and {len(constant)} blocks"
-    allowance.require(Cost(FEWEST_STEPS * step.work, step.memory), described)
-    cones = Cones(constant, images)
-    start = np.concatenate([pack(np.eye(n) / 2), [1.0, 0.0]])
-    here = cones.at(start)[:counted]
-    start[-1] = np.linalg.eigvalsh(here).min() - max(0.1 * np.abs(here).max(), START_FLOOR)
-    y = maximize_last(cones, start, lambda: allowance.goes_on(step.work), SMALLEST_MARGIN)
-    if not y[-1] > 0:
+    bounded = np.zeros((unknowns, n, n))
+    bounded[:-2] = basis
+    blocks = [(0 * one, number), (LARGEST_SLOPE * one, -number)]
+    blocks += [(np.zeros((n, n)), bounded), (np.eye(n), -bounded)]
+    for moves, slope in [(A, 0 * A), (A - crossing, crossing)]:
+        for M, C in zip(moves, slope, strict=True):
+            half = basis @ M
+            images = np.concatenate([half, C[None], np.eye(n)[None] / 2])
+            blocks.append((np.zeros((n, n)), -(images + np.swapaxes(images, -1, -2))))
+    x = solve_blocks(blocks, allowance or Allowance())
+    if x is None or x[-1] <= SMALLEST_MARGIN:
         return None
-    return np.asarray(np.tensordot(y[: len(basis)], basis, axes=1)), float(y[-2])
+    return np.asarray(np.tensordot(x[:-2], basis, axes=1)), float(x[-2])

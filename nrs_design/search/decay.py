@@ -47,7 +47,6 @@ def fastest_first(
     resolution: float = RESOLUTION,
     smallest: float = SMALLEST,
     nearest: float = 1.0,
-    few: bool = False,
 ) -> Iterator[tuple[Solution, Fraction]]:
     """Yield solutions with the rates to claim, from just below the largest one that is found.
 
@@ -65,7 +64,7 @@ def fastest_first(
         Work and memory.
     resolution, smallest
         As for `bisect_position`.
-    nearest, few
+    nearest
         As for `nrs_design.search.rounding.claims`.
 
     Raises
@@ -79,7 +78,7 @@ def fastest_first(
         resolution,
         smallest,
     )
-    for claim in claims(best, limit, time, nearest, few=few):
+    for claim in claims(best, limit, time, nearest):
         if (solution := solve(float(claim), allowance)) is not None:
             yield solution, claim
 

@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Time
-from nrs_design.search.conewise_program import Motions
-from nrs_design.search.conewise_quadratic import in_numerators, multiplied, numerators
 from nrs_design.search.family import Family, to_floats
+from nrs_design.search.motions import Motions, in_numerators, multiplied, numerators
 from nrs_design.search.rounding import unscale
 
 Array = NDArray[np.float64]

@@ -12,7 +12,6 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import exp, inf, isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,11 +24,11 @@ from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import COUPLING, ROUNDING, Step
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import NEARLY
-from nrs_design.search.lifted import products, vanishing_basis
+from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import time_unit
-from nrs_design.search.polynomial import make_vanish
 from nrs_design.search.rounding import round_form, round_rate
 from nrs_design.search.sdp import (
+    Sparse,
     begin,
     maximize_margin,
     pack,
@@ -38,9 +37,6 @@ from nrs_design.search.sdp import (
     triangle,
 )
 from nrs_design.work import Allowance, Cost
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_matrix
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -53,6 +49,10 @@ LARGEST_MULTIPLIER = 64.0
 LOST_TO_ERRORS = 1.25
 # Times at which a stay of any length in a range is looked at.
 SAMPLES = 17
+# With so many edges a program begins.
+FIRST_EDGES = 8
+# Forms reach up to the identity where there are any; all of them below this are zero.
+NOTHING = 1e-4
 # What floating point hides where a form need not decrease, relative to its size.
 SLACK = 1e-9
 
@@ -179,6 +179,10 @@ class FormsProgram:
         self.bounded = [
             fact for fact in self.scales if not fact[0].startswith((ROUNDING, COUPLING))
         ]
+        count = len(self.edges)
+        few = count if self.degree > 1 else min(count, FIRST_EDGES)
+        # The edges that solutions are sought for; what one violates is added, and stays.
+        self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
 
@@ -203,16 +207,16 @@ class FormsProgram:
             if len(monomials(n, self.degree)) == size
         )
 
-    def cost(self) -> tuple[Cost, str]:
-        """Predict what one solution takes; say for what."""
+    def cost(self, active: Sequence[int]) -> tuple[Cost, str]:
+        """Predict what a solution for some edges takes; say for what."""
         own = [n * (n + 1) // 2 for n in self.sizes]
         shared, cones = sum(own) + len(self.scales) + 1, []
-        for edge, forms in zip(self.edges, self._vanishing, strict=True):
+        for edge, forms in ((self.edges[k], self._vanishing[k]) for k in active):
             touched = own[edge.before] + len(forms)
             touched += own[edge.after] * (edge.after != edge.before)
             cones.append((edge.size, touched))
         cones += [(n, width) for n, width in zip(self.sizes, own, strict=True) for _ in (0, 1)]
-        unknowns = shared + sum(map(len, self._vanishing))
+        unknowns = shared + sum(len(self._vanishing[k]) for k in active)
         return program_cost(unknowns, shared, cones), f"a program with {len(cones)} blocks"
 
     @cached_property
@@ -222,19 +226,35 @@ class FormsProgram:
     def solve(self, rate: float, allowance: Allowance) -> Solution | None:
         """Maximize the margin at a rate; None if it is not positive.
 
+        Of many edges of quadratic forms, only those that the last solution violates are kept.
+
         Raises
         ------
         NotAffordableError
             If work or memory do not suffice.
         """
-        begun = begin(allowance, *self.cost())
+        while True:
+            solution = self._solve_for(self.active, rate, allowance)
+            if solution is None or len(self.active) == len(self.edges):
+                return solution
+            margins, known = self._margins(solution, rate), set(self.active)
+            violated = [k for k in np.argsort(margins) if not margins[k] > 0 and k not in known]
+            if not violated:
+                return solution
+            self.active = sorted([*known, *violated[: len(known)]])
+
+    def _solve_for(
+        self, active: Sequence[int], rate: float, allowance: Allowance
+    ) -> Solution | None:
+        """Solve for some of the edges."""
+        begun = begin(allowance, *self.cost(active))
         factors = [
             2 * self.degree * float(np.ldexp(rate, self.unit))
             if edge.is_flow
             else edge.weight(rate, self.degree, self.time)
             for edge in self.edges
         ]
-        x = maximize_margin(self._built.rows(factors), self._built.offset, self._built.cones, begun)
+        x = maximize_margin(*self._built.of_edges(factors, active), begun)
         if x is None or x[-1] <= 0:
             return None
         parts = np.split(x[:-1], self._built.ends)
@@ -242,6 +262,8 @@ class FormsProgram:
             np.tensordot(part, symmetric_basis(n), axes=1)
             for part, n in zip(parts, self.sizes, strict=False)
         ]
+        if max(np.abs(Q).max() for Q in forms) < NOTHING:
+            return None
         # Inequalities of maps have been divided by what is left of the form after a step.
         keeps = [
             1.0 if edge.is_flow else 1 / f for edge, f in zip(self.edges, factors, strict=True)
@@ -253,16 +275,37 @@ class FormsProgram:
         share = 1.0 if self.time is Time.CONTINUOUS else float(rate ** (2 * self.degree))
         return Solution(forms, share * parts[-1], vanishing)
 
-    def _rest(self, edge: Inequality, solution: Solution, N: Array) -> Array:
+    def _form(self, edge: Inequality, solution: Solution, N: Array) -> Array:
         """Return the inequality of an edge without what counts for the rate."""
         Q = solution.forms[edge.after][np.ix_(edge.left, edge.left)]
         form = -np.ldexp(edge.changed(Q), self.unit if edge.is_flow else 0) + N
         place = {fact: k for k, fact in enumerate(self.scales)}
         for fact, own in edge.facts:
             form = form + solution.multipliers[place[fact]] * own
-        n = len(edge.kept)
+        return np.asarray(form)
+
+    def _margins(self, solution: Solution, rate: float) -> Array:
+        """Return the smallest eigenvalue of every inequality; it may be a little below zero.
+
+        That is where a form need not decrease.
+        """
+        margins = []
+        for edge, N in zip(self.edges, solution.vanishing, strict=True):
+            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
+            if edge.is_flow:
+                keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
+            else:
+                keeps = 1 / edge.weight(rate, self.degree, self.time)
+            form = self._form(edge, solution, N) + keeps * edge.padded(Q)
+            slack = 0.0 if edge.is_strict else SLACK * np.abs(Q).max()
+            margins.append(float(np.linalg.eigvalsh(form)[0]) + slack)
+        return np.array(margins)
+
+    def _rest(self, edge: Inequality, solution: Solution, N: Array) -> Array:
+        """Return the same for the state alone, with the worst of the errors."""
+        form, n = self._form(edge, solution, N), len(edge.kept)
         if n == edge.size:
-            return np.asarray(form)
+            return form
         coupled = form[:n, n:] @ np.linalg.inv(form[n:, n:]) @ form[n:, :n]
         return np.asarray(form[:n, :n] - coupled)
 
@@ -279,20 +322,6 @@ class FormsProgram:
             elif edge.lasts:
                 rates.append(max(-least, 0.0) ** (0.5 / (self.degree * edge.lasts)))
         return min(rates) if self.time is Time.CONTINUOUS else max(rates)
-
-    def _seems_to_hold(self, solution: Solution, rate: float) -> bool:
-        """Tell in floating point whether forms are worth the time of the exact check."""
-        for edge, N in zip(self.edges, solution.vanishing, strict=True):
-            Q = solution.forms[edge.before][np.ix_(edge.kept, edge.kept)]
-            if edge.is_flow:
-                keeps = -2 * self.degree * float(np.ldexp(rate, self.unit))
-            else:
-                keeps = 1 / edge.weight(rate, self.degree, self.time)
-            form = self._rest(edge, solution, N) + keeps * Q
-            least = 0.0 if edge.is_strict else -SLACK * np.abs(Q).max()
-            if not np.linalg.eigvalsh(form)[0] >= least:
-                return False
-        return True
 
     def roundings(
         self,
@@ -335,7 +364,7 @@ class FormsProgram:
             if bits != digits[-1] and not errors:
                 coarse = [_rounded(Q, bits - exponent) for Q in balanced]
                 own = [one.T.T @ Q @ one.T for one, Q in zip(coordinates, coarse, strict=True)]
-                if not self._seems_to_hold(replace(solution, forms=own), float(claim)):
+                if not self._margins(replace(solution, forms=own), float(claim)).min() > 0:
                     continue
             log2 = bits + 2 * top
             whole = [
@@ -421,11 +450,22 @@ class _Built:
     ends: Indices  # Where forms, vanishing forms and multipliers end, but the last
     shape: tuple[int, int]
 
-    def rows(self, factors: list[float]) -> csc_matrix[np.float64]:
-        from scipy import sparse
-
+    def of_edges(
+        self, factors: list[float], active: Sequence[int]
+    ) -> tuple[Sparse, Array, list[int]]:
+        """Return rows, offset and cones for some of the edges, whose cones are the last ones."""
+        first = len(self.cones) - len(factors)
+        cones = [*range(first), *(first + k for k in active)]
+        ends = np.cumsum([n * (n + 1) // 2 for n in self.cones])
+        kept = np.concatenate([np.arange(ends[k - 1] if k else 0, ends[k]) for k in cones])
+        row = np.full(self.shape[0], -1)
+        row[kept] = np.arange(len(kept))
         values = self.fixed + self.varying * np.array([*factors, 0.0])[self.edges]
-        return sparse.csc_matrix((values, self.places), shape=self.shape)
+        rows, columns = row[self.places[0]], self.places[1]
+        used = rows >= 0
+        shape = len(kept), self.shape[1]
+        matrix = Sparse.of(values[used], rows[used], columns[used], shape)
+        return matrix, self.offset[kept], [self.cones[k] for k in cones]
 
     @classmethod
     def of(cls, program: FormsProgram) -> _Built:

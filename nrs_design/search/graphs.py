@@ -15,23 +15,26 @@ from nrs_design.proof.evidence import FormsOnGraph
 from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING
-from nrs_design.proof.switching import Clock
+from nrs_design.proof.spectrum import is_stable
+from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays
+from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.search.balance import own_norm, scale_states
+from nrs_design.search.balance import balance, own_norm, scale_states
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_program import Motions, separating_coordinates
-from nrs_design.search.conewise_quadratic import WITH_ERRORS
 from nrs_design.search.decay import RESOLUTION, SMALLEST, bisect_position, limit_rate
 from nrs_design.search.family import Family, stand_ins, to_floats
 from nrs_design.search.forms import Drawing, FormCoordinates, FormsProgram
 from nrs_design.search.lifted import monomial_weights
+from nrs_design.search.motions import Motions, separating_coordinates
+from nrs_design.search.polynomial import conewise_cost, family_cost, functions_cost, work_of_checks
 from nrs_design.search.rounding import BACK_OFFS, claims, digits, rate_at
 from nrs_design.work import Cost, NotAffordableError
 
 Array = NDArray[np.float64]
 Exponents = NDArray[np.int64]
 
+# Few roundings with errors: more digits at once, as every check takes longer.
+WITH_ERRORS = (24, 32, 40, 50, 60)
 # Work for each edge, to have it in floating point.
 PER_EDGE = 5e-5
 # Programs take the steps of a system in units that suit this rate.
@@ -40,6 +43,10 @@ ANY_RATE = Fraction(1)
 KEPT = 0.99
 # Where more conditions than this are to be checked, what the arithmetic rounds is left out.
 MOST_ROUNDED = 250
+# Numbers of steps that are each shown for a mode that is stable, too.
+FEW_STAYS = 64
+# How finely the stays of a mode that must be left are enclosed.
+PIECES = (32, 256, 1024)
 
 
 @dataclass(frozen=True)
@@ -57,13 +64,23 @@ class Rates:
     words: str = "found with the largest decay rate"
 
 
+# Solutions take time: the largest rate is bracketed roughly, and a little less is claimed.
+POLYNOMIAL = Rates(
+    resolution=2.0**-8,
+    smallest=2.0**-10,
+    nearest=0.998,
+    bits=digits(10),
+    words="found with a decay rate near the largest",
+)
+
+
 def propose(
     programs: Sequence[FormsProgram],
     family: Family,
     limit: float,
     rates: Rates,
     *,
-    errors: bool = False,
+    covers: int = 0,
 ) -> Candidates[FormsOnGraph]:
     """Solve for any rate; then, if asked to, for the largest, which is proposed first.
 
@@ -77,8 +94,8 @@ def propose(
         The rate that no form can beat.
     rates : Rates
         How the largest rate is looked for.
-    errors : bool
-        Whether all but the last leave room for errors that they do not solve for.
+    covers : int
+        So many of them, the first ones, leave room for errors that they do not solve for.
 
     Raises
     ------
@@ -92,13 +109,14 @@ def propose(
     part = allowance.part(rates.share)
     if family.optimize_rate or rates.always:
         half = part.part(0.5)
+
         best = bisect_position(
             lambda s: asked.solve(rate_at(s, limit, time), half) is not None,
             rates.resolution,
             rates.smallest,
         )
     for k, program in enumerate(programs, 1):
-        covered = errors and k < len(programs)
+        covered = k <= covers
         bits = WITH_ERRORS if covered else rates.bits
         try:
             for claim in claims(best, limit, time, rates.nearest, few=rates.few):
@@ -191,7 +209,7 @@ def search_periodic_quadratic(family: Family) -> Candidates[FormsOnGraph]:
     # At the largest rate itself there is no room for rounding.
     rates = Rates(0.5, resolution=2.0**-5, nearest=0.99, few=True, bits=digits(24))
     programs, limit = [FormsProgram(drawing)] * ways, _limit(family, clock)
-    return (yield from propose(programs, family, limit, rates, errors=True))
+    return (yield from propose(programs, family, limit, rates, covers=ways - 1))
 
 
 def draw_turns(family: Family, clock: Clock) -> Drawing:
@@ -259,6 +277,109 @@ def _free(system: SwitchedSystem) -> tuple[Mode, ...]:
     return (system.contact or Contact(())).free
 
 
+def search_modes(family: Family, degree: int = 1) -> Candidates[FormsOnGraph]:
+    """Search for a form for each mode, under its rules of switching.
+
+    Parameters
+    ----------
+    family : Family
+        The modes, of any sizes, and their switching.
+    degree : int
+        Half the degree of the forms; beyond 1 for discrete time.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice for another solution.
+    """
+    system, allowance = family.system, family.allowance
+    cost, what = functions_cost(system, degree)
+    checked = replace(cost, work=cost.work + work_of_checks(system, degree))
+    allowance.require(checked, f"{what}, with the exact check of what it finds,")
+    drawing = draw_each_mode(family, degree)
+    if not drawing.is_finite:
+        return OUT_OF_RANGE
+    left = drawing.graph.stays is not None and drawing.graph.stays.leaving
+    rates = Rates(nearest=0.999, bits=digits(6))
+    if left and system.time is Time.CONTINUOUS:
+        # Enclosures take time: few attempts, and wider gaps.
+        rates = Rates(nearest=0.9, few=True, bits=digits(12, few=True), pieces=PIECES)
+    always = family.optimize_rate or not family.stand_ins()
+    rates = replace(rates, always=always, words="found")
+    return (yield from propose([FormsProgram(drawing)], family, family.limit, rates))
+
+
+def draw_each_mode(family: Family, degree: int) -> Drawing:
+    """Draw a node for each mode, as a place of its own."""
+    system = family.system
+    like = family.stand_ins() or {mode.name: mode.name for mode in system.modes}
+    number = {name: k for k, name in enumerate(dict.fromkeys(like.values()))}
+    matrices = {mode.name: np.array(mode.A.floats()) for mode in system.modes}
+    shared = [balance(np.array(list(matrices.values())))] if system.is_uniform else []
+    coordinates = []
+    for name in number:
+        d = shared[0] if shared else balance(matrices[name][None])
+        coordinates.append(lifted_coordinates(d, degree))
+    leaving = tuple(
+        mode.name for mode in system.modes if _is_left(system, mode, system.stays()[mode.name])
+    )
+    graph = FormsOnGraph(
+        tuple(Node(mode.name, ()) for mode in system.modes),
+        0,
+        ANY_RATE,
+        degree,
+        stays=Stays(leaving),
+    )
+    forms = tuple(number[like[mode.name]] for mode in system.modes)
+    return Drawing(system, graph, forms, tuple(coordinates))
+
+
+def search_together(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes, in contact and free.
+
+    Where the arithmetic rounds, forms that cover that are tried before others.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    lost, rounds = family.system.contact is not None, bool(family.system.roundings)
+    return (yield from _together(family, rounds + lost, rounds, lost=lost))
+
+
+def search_raw(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes in the coordinates of the spec, without balancing."""
+    n = family.system.order
+    raw = FormCoordinates(np.zeros(n, dtype=np.int64), np.eye(n))
+    return (yield from _together(family, coordinates=raw))
+
+
+def search_preconditioned(family: Family) -> Candidates[FormsOnGraph]:
+    """Search for a form for all modes in coordinates in which their own norms are round."""
+    return (yield from _together(family))
+
+
+def _together(
+    family: Family,
+    times: int = 1,
+    covers: int = 0,
+    *,
+    lost: bool = False,
+    coordinates: FormCoordinates | None = None,
+) -> Candidates[FormsOnGraph]:
+    """Ask one program so many times, the first times for forms that cover errors."""
+    if not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    drawing = draw_together(family, 1, lost=lost)
+    if coordinates is not None:
+        drawing = replace(drawing, coordinates=(coordinates,))
+    if not drawing.is_finite:
+        return OUT_OF_RANGE
+    programs = [FormsProgram(drawing)] * times
+    return (yield from propose(programs, family, family.limit, Rates(share=0.5), covers=covers))
+
+
 def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
     """Search for a form for all axes that act on each other.
 
@@ -279,6 +400,32 @@ def search_coupled_axes(family: Family) -> Candidates[FormsOnGraph]:
     rates = Rates(resolution=2.0**-9, smallest=2.0**-12, bits=(16, 24, 32, 40, 50, 60))
     programs = [FormsProgram(drawing) for drawing in drawings]
     return (yield from propose(programs, family, family.limit, rates))
+
+
+def search_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
+    """Search for a polynomial of degree 2d that all modes share.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    family.allowance.require(*family_cost(family.system, degree))
+    program = FormsProgram(draw_together(family, degree))
+    return (yield from propose([program], family, family.limit, POLYNOMIAL))
+
+
+def search_conewise_polynomial(family: Family, degree: int) -> Candidates[FormsOnGraph]:
+    """Search for a polynomial of degree 2d for contact and free motion.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    family.allowance.require(*conewise_cost(family.system, degree))
+    program = FormsProgram(draw_together(family, degree, lost=True))
+    return (yield from propose([program], family, family.limit, POLYNOMIAL))
 
 
 def lifted_coordinates(d: Exponents, degree: int) -> FormCoordinates:
@@ -308,8 +455,6 @@ def draw_together(
     system = family.system
     places = [CONTACT, FREE] if lost else [CONTACT]
     facts = [*(f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1))]
-    if ROUNDING not in solved:
-        facts = []
     facts += [f"{COUPLING} {k}" for k, _ in enumerate(system.couplings, 1)]
     graph = FormsOnGraph(
         tuple(Node(place, ()) for place in places),
@@ -322,3 +467,11 @@ def draw_together(
     if degree == 1:
         own = FormCoordinates(family.exponents, separating_coordinates(Motions.of(family)))
     return Drawing(system, graph, (0,) * len(places), (own,), solved)
+
+
+def _is_left(system: SwitchedSystem, mode: Mode, stay: Stay) -> bool:
+    """Tell whether to show every stay, which asks for less than a decrease, but for longer."""
+    if stay.longest is None:
+        return False
+    few = stay.longest - stay.shortest < FEW_STAYS and system.time is Time.DISCRETE
+    return few or not is_stable(mode.A, system.time)

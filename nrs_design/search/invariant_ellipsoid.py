@@ -20,7 +20,6 @@ from nrs_design.proof.evidence import InvariantEllipsoid
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
-from nrs_design.search.conewise_program import Motions, separating_coordinates
 from nrs_design.search.disturbed import (
     DisturbedProblem,
     DisturbedSolution,
@@ -30,6 +29,7 @@ from nrs_design.search.disturbed import (
     transformed,
 )
 from nrs_design.search.family import Family
+from nrs_design.search.motions import Motions, separating_coordinates
 from nrs_design.search.sdp import solve_blocks, symmetric_basis
 from nrs_design.work import Allowance
 

@@ -57,13 +57,13 @@ LADDER: tuple[Rung, ...] = (
         "conewise quadratic",
         Method.CONEWISE_QUADRATIC,
         lambda f: f.may_lose_contact and f.may_share_an_ellipsoid,
-        _in("conewise_quadratic", "search_conewise"),
+        _in("graphs", "search_together"),
     ),
     Rung(
         "quadratic, with roundings",
         Method.LMI,
         lambda f: f.rounds and not f.may_lose_contact and f.may_share_an_ellipsoid,
-        _in("conewise_quadratic", "search_conewise"),
+        _in("graphs", "search_together"),
     ),
     # Before what takes for granted that contact is kept; that no quadratic function exists is said
     # of the matrices all the same.
@@ -83,8 +83,8 @@ LADDER: tuple[Rung, ...] = (
         "conewise polynomial",
         Method.CONEWISE_POLYNOMIAL,
         lambda f: f.may_bounce and f.is_continuous,
-        _in("conewise_polynomial", "search_conewise_polynomial"),
-        cost=_in("conewise_polynomial", "conewise_cost"),
+        _in("graphs", "search_conewise_polynomial"),
+        cost=_in("polynomial", "conewise_cost"),
         first=QUICK,
     ),
     # After what proves through the loss of contact, before what speaks of kept contact.
@@ -128,14 +128,14 @@ LADDER: tuple[Rung, ...] = (
         "lmi, raw",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        _in("common_quadratic", "search_raw"),
+        _in("graphs", "search_raw"),
         only_quadratic=True,
     ),
     Rung(
         "lmi, preconditioned",
         Method.LMI,
         lambda f: f.may_share_an_ellipsoid,
-        _in("common_quadratic", "search_preconditioned"),
+        _in("graphs", "search_preconditioned"),
         only_quadratic=True,
     ),
     Rung(
@@ -162,7 +162,7 @@ LADDER: tuple[Rung, ...] = (
         "mode quadratic",
         Method.MODE_QUADRATIC,
         _always,
-        _in("mode_quadratic", "search_mode_functions"),
+        _in("graphs", "search_modes"),
         # Under arbitrary switching in continuous time, all modes have the same function.
         in_auto=lambda f: f.has_rules or (f.is_arbitrary and not f.is_continuous),
     ),
@@ -177,15 +177,15 @@ LADDER: tuple[Rung, ...] = (
         "polynomial",
         Method.POLYNOMIAL,
         lambda f: f.may_share_a_function,
-        _in("polynomial", "search_polynomial"),
+        _in("graphs", "search_polynomial"),
         cost=_in("polynomial", "family_cost"),
     ),
     Rung(
         "mode polynomial",
         Method.MODE_POLYNOMIAL,
         lambda f: f.has_rules and not f.is_continuous,
-        _in("mode_quadratic", "search_mode_functions"),
-        cost=_in("mode_quadratic", "functions_cost"),
+        _in("graphs", "search_modes"),
+        cost=_in("polynomial", "functions_cost"),
     ),
     Rung(
         "period",

@@ -7,24 +7,18 @@ evidence: whatever it returns goes through the exact check.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.proof.mode import Time
 from nrs_design.search.interior_point import Cones, maximize_last, step_cost
 from nrs_design.search.sdp import (
-    begin,
-    maximize_margin,
     pack,
-    program_cost,
     symmetric_basis,
 )
 from nrs_design.work import Allowance, Cost
 
 Matrices = NDArray[np.float64]
-Solve = Callable[[Matrices, Time, float, Matrices, Allowance], Matrices | None]
 
 FIRST_MODES = 8
 # In continuous time, the unit of time is chosen so that the largest entry is just below 2^3.
@@ -72,7 +66,6 @@ def find_common_quadratic(
     matrices: Matrices,
     time: Time,
     rate: float,
-    solve: Solve | None = None,
     allowance: Allowance | None = None,
 ) -> Matrices | None:
     """Look for Q with ``A'Q + QA + 2 rate Q < 0`` (or ``A'QA < rate^2 Q``) for all modes.
@@ -85,9 +78,6 @@ def find_common_quadratic(
         Continuous or discrete.
     rate : float
         Decay rate in 1/s, or contraction per step.
-    solve : callable, optional
-        Solves the margin form for some of the modes, beginning at a Q between 0 and I; a method
-        of our own by default.
     allowance : Allowance, optional
         Work and memory; unlimited by default.
 
@@ -101,15 +91,15 @@ def find_common_quadratic(
     NotAffordableError
         If work or memory do not suffice, and nothing was found.
     """
-    solve, allowance = solve or solve_by_interior_point, allowance or Allowance()
+    allowance = allowance or Allowance()
     unit = time_unit(matrices, time)
     matrices, rate = np.ldexp(matrices, unit), float(np.ldexp(rate, unit))
     m, n = matrices.shape[:2]
     active = sorted({k * (m - 1) // (FIRST_MODES - 1) for k in range(FIRST_MODES)})
     start: Matrices = np.eye(n) / 2
     while True:
-        Q = solve(matrices[active], time, rate, start, allowance)
-        if Q is None or not np.isfinite(decreases(matrices, Q, time, rate)).all():
+        Q = solve_by_interior_point(matrices[active], time, rate, start, allowance)
+        if not np.isfinite(decreases(matrices, Q, time, rate)).all():
             return None
         margin = margins(matrices, Q, time, rate)
         if margin.min() > 0:
@@ -130,7 +120,7 @@ def time_unit(matrices: Matrices, time: Time) -> int:
 
 def solve_by_interior_point(
     matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
-) -> Matrices | None:
+) -> Matrices:
     """Improve on Q in the margin form for the given modes, with the method of our own.
 
     Parameters
@@ -160,40 +150,6 @@ def solve_by_interior_point(
     start = np.append(pack(Q), below)
     y = maximize_last(Cones(constant, images), start, lambda: allowance.goes_on(step.work))
     return np.asarray(np.tensordot(y[:-1], basis, axes=1))
-
-
-def solve_by_clarabel(
-    matrices: Matrices, time: Time, rate: float, Q: Matrices, allowance: Allowance
-) -> Matrices | None:
-    """Solve the margin form for the given modes; None if the result is not finite.
-
-    Parameters
-    ----------
-    matrices : ndarray, shape (m, n, n)
-        The modes that count.
-    time : Time
-        Which inequality.
-    rate : float
-        The alpha in 1/s, or rho per step.
-    Q : ndarray, shape (n, n)
-        A place to begin, which this solver does not need.
-    allowance : Allowance
-        Work and memory that are left.
-    """
-    m, n = matrices.shape[:2]
-    unknowns = n * (n + 1) // 2 + 1
-    cost = program_cost(unknowns, unknowns, [(n, unknowns)] * (m + 2))
-    begun = begin(allowance, cost, _described(m, n))
-    basis, identity = symmetric_basis(n), pack(np.eye(n))
-    size = len(basis)
-    images = decreases(matrices, basis[:, None], time, rate)
-    rows = -np.moveaxis(pack(images), 0, 2).reshape(m * size, size)
-    columns = np.vstack([np.eye(size), -np.eye(size), rows])
-    margin = np.concatenate([np.zeros(2 * size), np.tile(identity, m)])
-    offset = np.concatenate([identity, np.zeros(size * (m + 1))])
-    rows = np.column_stack([columns, margin])
-    x = maximize_margin(rows, offset, [n] * (m + 2), begun)
-    return None if x is None else np.tensordot(x[:-1], basis, axes=1)
 
 
 def _described(modes: int, order: int) -> str:

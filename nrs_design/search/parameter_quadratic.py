@@ -14,13 +14,7 @@ from nrs_design.search.decay import fastest_first
 from nrs_design.search.family import Family
 from nrs_design.search.lmi import decreases, time_unit
 from nrs_design.search.rounding import digits, unscale
-from nrs_design.search.sdp import (
-    begin,
-    maximize_margin,
-    pack,
-    program_cost,
-    symmetric_basis,
-)
+from nrs_design.search.sdp import solve_blocks, symmetric_basis
 from nrs_design.work import Allowance
 
 Array = NDArray[np.float64]
@@ -52,34 +46,24 @@ def search_parameter_quadratic(family: Family) -> Candidates[ParameterQuadratic]
 def _solve(pairs: Array, rate: float, allowance: Allowance) -> Array | None:
     """Maximize the margin of all conditions; return both ends of Q, shape (2, n, n)."""
     n, unit = pairs.shape[-1], time_unit(pairs, Time.CONTINUOUS)
-    unknowns, blocks = n * (n + 1) + 1, 4 + 3 * len(pairs)
-    cost = program_cost(unknowns, unknowns, [(n, unknowns)] * blocks)
-    begun = begin(allowance, cost, f"a program of {unknowns} unknowns and {blocks} blocks")
     pairs, rate = np.ldexp(pairs, unit), float(np.ldexp(rate, unit))
-    basis, identity = symmetric_basis(n), pack(np.eye(n))
+    basis, zero = symmetric_basis(n), np.zeros((n, n))
     size = len(basis)
-    rows, constants = [], []
 
-    def add_cone(low: Array | None, high: Array | None, margin: float, constant: float) -> None:
-        block = np.zeros((size, 2 * size + 1))
-        for images, columns in ((low, slice(0, size)), (high, slice(size, 2 * size))):
-            if images is not None:
-                block[:, columns] = -pack(images).T
-        block[:, -1] = margin * identity
-        rows.append(block)
-        constants.append(constant * identity)
+    def block(low: Array | None, high: Array | None, margin: float = 1.0) -> Array:
+        images = np.zeros((2 * size + 1, n, n))
+        for part, columns in ((low, slice(size)), (high, slice(size, 2 * size))):
+            if part is not None:
+                images[columns] = part
+        images[-1] = -margin * np.eye(n)
+        return images
 
-    add_cone(-basis, None, 0.0, 1.0)
-    add_cone(None, -basis, 0.0, 1.0)
-    add_cone(basis, None, 1.0, 0.0)
-    add_cone(None, basis, 1.0, 0.0)
+    blocks = [(np.eye(n), block(-basis, None, 0.0)), (np.eye(n), block(None, -basis, 0.0))]
+    wanted = [block(basis, None), block(None, basis)]
     for A, B in pairs:
         at_low, at_high = (decreases(M, basis, Time.CONTINUOUS, rate) for M in (A, B))
-        add_cone(at_low, None, 1.0, 0.0)
-        add_cone(None, at_high, 1.0, 0.0)
-        add_cone(at_high, at_low, 1.0, 0.0)
-    sizes = [n] * len(rows)
-    x = maximize_margin(np.vstack(rows), np.concatenate(constants), sizes, begun)
+        wanted += [block(at_low, None), block(None, at_high), block(at_high, at_low)]
+    x = solve_blocks([*blocks, *((zero, images) for images in wanted)], allowance)
     if x is None or x[-1] <= 0:
         return None
-    return np.tensordot(x[:-1].reshape(2, size), basis, axes=1)
+    return np.asarray(np.tensordot(x[:-1].reshape(2, size), basis, axes=1))

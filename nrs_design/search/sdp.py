@@ -1,7 +1,7 @@
 """Semidefinite programs for Clarabel: packing of symmetric matrices and one solve (untrusted).
 
 By hand, as CVXPY takes longer to be loaded and to bring such a program into this form than Clarabel
-takes to solve it; off the hot path, `nrs_design.search.raw` leaves that to CVXPY.
+takes to solve it.
 """
 
 from __future__ import annotations
@@ -9,15 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.work import Allowance, Cost
-
-if TYPE_CHECKING:
-    from scipy.sparse import csc_matrix
 
 Array = NDArray[np.float64]
 
@@ -113,6 +110,46 @@ def program_cost(variables: int, shared: int, cones: Iterable[tuple[int, int]]) 
 
 
 @dataclass(frozen=True, slots=True)
+class Sparse:
+    """A matrix by columns, as Clarabel reads it; to load SciPy for it takes longer than a solve."""
+
+    data: Array
+    indices: NDArray[np.int32]  # Rows of the entries, in order in each column
+    indptr: NDArray[np.int32]  # Where columns begin
+    shape: tuple[int, int]
+    has_canonical_format: bool = True
+
+    @property
+    def nnz(self) -> int:
+        """Number of entries."""
+        return len(self.data)
+
+    @classmethod
+    def of(
+        cls, values: Array, rows: NDArray[Any], columns: NDArray[Any], shape: tuple[int, int]
+    ) -> Sparse:
+        """Put entries in order; what is given twice counts as their sum.
+
+        Parameters
+        ----------
+        values, rows, columns : ndarray, shape (k,)
+            The entries and where they are.
+        shape : (int, int)
+            Of the matrix.
+        """
+        places, entry = np.unique(columns * shape[0] + rows, return_inverse=True)
+        data: Array = np.bincount(entry, values, len(places)).astype(float)
+        ends = np.searchsorted(places, np.arange(shape[1] + 1) * shape[0])
+        return cls(data, (places % shape[0]).astype(np.int32), ends.astype(np.int32), shape)
+
+    @classmethod
+    def of_dense(cls, matrix: Array) -> Sparse:
+        """Leave out zeros."""
+        rows, columns = np.nonzero(matrix)
+        return cls.of(matrix[rows, columns], rows, columns, matrix.shape)
+
+
+@dataclass(frozen=True, slots=True)
 class Begun:
     """A program whose predicted work has been charged, and that a solver is to solve."""
 
@@ -183,7 +220,7 @@ def solve_blocks(blocks: Sequence[tuple[Array, Array]], allowance: Allowance) ->
 
 
 def maximize_margin(
-    rows: Array | csc_matrix[np.float64],
+    rows: Array | Sparse,
     offset: Array,
     sizes: Sequence[int],
     begun: Begun,
@@ -193,7 +230,7 @@ def maximize_margin(
 
     Parameters
     ----------
-    rows : ndarray or sparse matrix, shape (M, N)
+    rows : ndarray or Sparse, shape (M, N)
         The first `equalities` rows are equations, the others packed positive semidefinite cones.
     offset : ndarray, shape (M,)
         Right-hand side.
@@ -210,7 +247,6 @@ def maximize_margin(
         What the solver returned, whatever its status; None if that is not finite.
     """
     import clarabel
-    from scipy import sparse
 
     variables = rows.shape[1]
     objective = np.zeros(variables)
@@ -223,9 +259,9 @@ def maximize_margin(
     settings.max_iter = begun.most_steps
     settings.time_limit = begun.seconds
     solution: Any = clarabel.DefaultSolver(
-        sparse.csc_matrix((variables, variables)),
+        Sparse.of_dense(np.zeros((variables, variables))),
         objective,
-        sparse.csc_matrix(rows),
+        rows if isinstance(rows, Sparse) else Sparse.of_dense(rows),
         offset,
         cones,
         settings,

@@ -35,7 +35,7 @@ def simulate_on_body(
     Parameters
     ----------
     spec, plant, design
-        As `nrs_design.simulation.sampled.simulate_sampled` takes them.
+        As `nrs_design.simulation.sampled.sampled_axis` takes them.
     scenarios : sequence of Scenario
         One, or those of theta1 to theta3.
     engine : {"sampled", "mujoco"}
@@ -43,8 +43,10 @@ def simulate_on_body(
         from it.
     arm : Arm, optional
         The robot of three axes, as the wing of robots builds it.
-    max_steps, tell
-        As there.
+    max_steps : int
+        A run that takes more samples ends there.
+    tell : callable
+        Told how far the run is.
 
     Returns
     -------

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import starmap
 
-from nrs_design.controllers.threshold_logic import ThresholdLogic
+from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.simulation.scenario import (
     COMMAND,
     DEPTH,
@@ -16,6 +18,7 @@ from nrs_design.simulation.scenario import (
 )
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.scenarios import ControlSpec
+from nrs_design.spec.threshold_logic import CommandCondition, TorqueCondition
 
 # The sign of a signal is told beyond this, in rad/s and N m: not from rounding.
 _TINY = 1e-9
@@ -124,12 +127,24 @@ def _by_contact(contacts: Mapping[str, str], surfaces: Sequence[Surface]) -> Ite
 
 
 def by_logic(spec: InteractionDesignSpec) -> Control:
-    """Return the thresholds and timers of the mode logic of a spec."""
+    """Return the thresholds and timers of the mode logic of a spec.
+
+    Thresholds are rounded away from each other, and timers up: what is shown for those of the spec
+    holds for these.
+    """
     assert spec.mode_logic is not None
-    assert spec.mode_logic.thresholds is not None
-    logic = ThresholdLogic.of(spec.mode_logic.thresholds)
-    switches = (
-        Switch(source, target, tuple(Condition(signal, *ends) for signal, ends in bounds.items()))
-        for source, target, bounds in logic.conditions()
+    logic = spec.mode_logic.thresholds
+    assert logic is not None
+    switches = tuple(
+        Switch(one.source, one.target, tuple(starmap(_threshold, one.conditions.items())))
+        for one in logic.switches
     )
-    return Control(logic.initial, tuple(switches), logic.stays, ships=True)
+    stays = {name: logic.stay(name) for name in logic.controllers}
+    timers = {name: upper_float(stay.value) for name, stay in stays.items() if stay is not None}
+    return Control(logic.start, switches, timers, ships=True)
+
+
+def _threshold(signal: str, condition: CommandCondition | TorqueCondition) -> Condition:
+    above, below = condition.above, condition.below
+    low = -math.inf if above is None else upper_float(above.not_below)
+    return Condition(signal, low, math.inf if below is None else lower_float(below.not_above))

@@ -67,7 +67,7 @@ def draw(
     for name, (law, _) in laws.items():
         parameters |= {f"{name} {key}": value for key, value in _numbers(law)}
     ranges = plant.actuator_ranges
-    if ranges is not None:
+    if not ranges.fixed:
         gain, tau = pick(ranges.gain), pick(ranges.time_constant)
         parameters |= {"motor gain": gain, "motor time constant": tau}
         motor = Actuator(Fraction(gain), Fraction(tau), plant.actuator.command)

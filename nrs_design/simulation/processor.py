@@ -9,8 +9,7 @@ from typing import Protocol
 from nrs_design.errors import PoseError
 from nrs_design.progress import Progress
 from nrs_design.simulation.run import Run
-from nrs_design.simulation.sample_inputs import SampleInputs
-from nrs_design.simulation.sampled_axis import SampledAxis
+from nrs_design.simulation.sampled_axis import SampledAxis, SampleInputs
 
 # Samples after which it is told how far the run is.
 _OFTEN = 20_000

@@ -8,25 +8,16 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
-from nrs_design.progress import Progress, silent
-from nrs_design.simulation.processor import Motors, run_axes
-from nrs_design.simulation.run import MAX_STEPS, Run
 from nrs_design.simulation.sampled_axis import SampledAxis, Turns
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import InteractionDesignSpec
 
 
-def simulate_sampled(
-    spec: InteractionDesignSpec,
-    plant: Plant,
-    design: ControllerDesign,
-    scenario: Scenario,
-    *,
-    max_steps: int = MAX_STEPS,
-    tell: Progress = silent,
-) -> Run:
-    """Simulate a scenario as the processor runs it.
+def sampled_axis(
+    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign, scenario: Scenario
+) -> SampledAxis:
+    """Return an axis with its law, at rest at the start of a scenario.
 
     Parameters
     ----------
@@ -38,36 +29,12 @@ def simulate_sampled(
         Gains that ship.
     scenario : Scenario
         What happens, with noise, jitter and delay from its seed.
-    max_steps : int
-        A run that takes more samples ends there.
-    tell : callable
-        Told how far the run is.
 
     Raises
     ------
     DesignError
         If the spec has no sampling or periods that never meet, states the motion loop itself, if
         the command swings faster than samples can show, or there is no program of a controller.
-    """
-    axis = sampled_axis(spec, plant, design, scenario)
-    (run,) = run_axes((axis,), Motors(), "sampled", max_steps, tell)
-    return run
-
-
-def sampled_axis(
-    spec: InteractionDesignSpec, plant: Plant, design: ControllerDesign, scenario: Scenario
-) -> SampledAxis:
-    """Return an axis with its law, at rest at the start of a scenario.
-
-    Parameters
-    ----------
-    spec, plant, design, scenario
-        As `simulate_sampled` takes them.
-
-    Raises
-    ------
-    DesignError
-        As `simulate_sampled` does.
     """
     if spec.sampling is None:
         raise DesignError(

@@ -15,16 +15,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
 from nrs_design.simulation.motor import Motor
 from nrs_design.simulation.run import Run
-from nrs_design.simulation.sample_inputs import SampleInputs
 from nrs_design.simulation.scenario import (
     COMMAND,
     DEPTH,
     TORQUE,
+    Array,
     Condition,
     Scenario,
 )
@@ -52,6 +53,42 @@ class Turns:
     # motion, outer: their periods in samples; one of them is 1.
     motion: int = 1
     outer: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class SampleInputs:
+    """Instants, commands, noise and delays, for every sample."""
+
+    # times, hand, noise: shape (N,). Instants in s, commanded velocities in rad/s, errors of the
+    # torque in N m.
+    times: Array
+    hand: Array
+    noise: Array
+    ages: NDArray[np.int64]  # Shape (N,). Of the force samples.
+
+    @classmethod
+    def of(
+        cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int
+    ) -> SampleInputs:
+        """Draw it from the seed of the scenario.
+
+        Parameters
+        ----------
+        scenario : Scenario
+            With its errors.
+        period : float
+            In s.
+        delay : tuple of (int, int)
+            Smallest and largest age.
+        count : int
+            Number of samples N.
+        """
+        rng = np.random.default_rng(scenario.seed)
+        late = scenario.errors.jitter * period * rng.random(count)
+        noise = scenario.errors.force_noise * rng.standard_normal(count)
+        ages = rng.integers(delay[0], delay[1] + 1, count)
+        times = period * np.arange(count) + late
+        return cls(times, scenario.profile.at(times), noise, ages)
 
 
 @dataclass

@@ -8,6 +8,7 @@ own, the outer loop runs at every sample of the motion loop.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from nrs_design.spec.interaction import InteractionDesignSpec
@@ -20,23 +21,27 @@ def aspects_of(spec: InteractionDesignSpec) -> dict[str, Weakening]:
     """Return the parts of a spec that may be left out, in words, with how to leave them out."""
     found: dict[str, Weakening] = {}
     if spec.contact == "losable":
-        found["the loss of contact"] = _without_loss
+        found["the loss of contact"] = _with(contact="kept")
     if not (spec.actuator.gain.fixed and spec.actuator.time_constant.fixed):
         found["the ranges of the motor"] = _nominal_motor
     if any(not spec.environments[name].fixed for name in spec.touched):
         found["the ranges of what is touched"] = _nominal_environments
     if any(gain.ranged for c in spec.controllers.values() for gain in c.gains().values()):
         found["the ranges of gains"] = _nominal_gains
-    if spec.sampling is not None and spec.sampling.delay[0] < spec.sampling.delay[1]:
-        found["ages of the force sample beyond the shortest"] = _shortest_delay
-    if spec.sampling is not None and spec.sampling.round > 1:
-        found["the outer_period"] = with_common_period
+    if spec.sampling is not None:
+        least, most = spec.sampling.delay
+        if least < most:
+            found["ages of the force sample beyond the shortest"] = partial(
+                _resampled, delay=(least, least)
+            )
+        if spec.sampling.round > 1:
+            found["the outer_period"] = with_common_period
     if spec.coupling is not None:
-        found["what the axes do to each other"] = _without_coupling
+        found["what the axes do to each other"] = _with(coupling=None)
         if spec.sampling is not None and all(
             c.commands == "velocity" for c in spec.controllers.values()
         ):
-            found["the sampling"] = _without_sampling
+            found["the sampling"] = _with(sampling=None)
     return found
 
 
@@ -50,27 +55,22 @@ def with_common_period(spec: InteractionDesignSpec) -> InteractionDesignSpec:
     spec : InteractionDesignSpec
         With sampling.
     """
+    return _resampled(spec, outer_period=None)
+
+
+def _with(**changes: object) -> Weakening:
+    return lambda spec: spec.model_copy(update=changes)
+
+
+def _resampled(spec: InteractionDesignSpec, **changes: object) -> InteractionDesignSpec:
     assert spec.sampling is not None
-    changed = spec.sampling.model_copy(update={"outer_period": None})
-    return spec.model_copy(update={"sampling": changed})
-
-
-def _without_sampling(spec: InteractionDesignSpec) -> InteractionDesignSpec:
-    return spec.model_copy(update={"sampling": None})
-
-
-def _without_coupling(spec: InteractionDesignSpec) -> InteractionDesignSpec:
-    return spec.model_copy(update={"coupling": None})
-
-
-def _without_loss(spec: InteractionDesignSpec) -> InteractionDesignSpec:
-    return spec.model_copy(update={"contact": "kept"})
+    return _with(sampling=spec.sampling.model_copy(update=changes))(spec)
 
 
 def _nominal_motor(spec: InteractionDesignSpec) -> InteractionDesignSpec:
     actuator = spec.actuator
     changes = {name: _nominal(getattr(actuator, name)) for name in ("gain", "time_constant")}
-    return spec.model_copy(update={"actuator": actuator.model_copy(update=changes)})
+    return _with(actuator=actuator.model_copy(update=changes))(spec)
 
 
 def _nominal_environments(spec: InteractionDesignSpec) -> InteractionDesignSpec:
@@ -79,7 +79,7 @@ def _nominal_environments(spec: InteractionDesignSpec) -> InteractionDesignSpec:
         return environment.model_copy(update=changes)
 
     changed: Mapping[str, Any] = {k: fixed(value) for k, value in spec.environments.items()}
-    return spec.model_copy(update={"environments": changed})
+    return _with(environments=changed)(spec)
 
 
 def _nominal_gains(spec: InteractionDesignSpec) -> InteractionDesignSpec:
@@ -89,15 +89,7 @@ def _nominal_gains(spec: InteractionDesignSpec) -> InteractionDesignSpec:
         return controller.model_copy(update=changes)
 
     changed = {name: fixed(controller) for name, controller in spec.controllers.items()}
-    return spec.model_copy(update={"controllers": changed})
-
-
-def _shortest_delay(spec: InteractionDesignSpec) -> InteractionDesignSpec:
-    sampling = spec.sampling
-    assert sampling is not None
-    least = sampling.delay[0]
-    changed = sampling.model_copy(update={"delay": (least, least)})
-    return spec.model_copy(update={"sampling": changed})
+    return _with(controllers=changed)(spec)
 
 
 def _nominal(quantity: RangedQuantity) -> RangedQuantity:

@@ -11,6 +11,8 @@ from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.operating import OperatingConditions, Preload
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity
 
 
@@ -26,8 +28,8 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     return Plant(
         ranges.nominal,
         tuple(build_environments(spec)),
+        ranges,
         loop,
-        None if ranges.fixed else ranges,
         None if load is None else load.exact,
     )
 
@@ -44,6 +46,41 @@ def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
                 spec.environments[n].is_losable for n in contact
             )
             yield touch_at_once(parts, losable=losable)
+
+
+def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
+    """Take from a spec what closing its loop needs beside plant and gains."""
+    limits, disturbed, goals = spec.limits, spec.disturbances, spec.goals
+    angle = None if disturbed is None else disturbed.largest_angle
+    wanted = None if goals is None else goals.initial_force
+    return OperatingConditions(
+        spec.name,
+        spec.switching,
+        spec.contact,
+        spec.idle_states,
+        spec.offset,
+        spec.sampling,
+        None if disturbed is None else disturbed.bounds(),
+        None if angle is None else angle.not_below,
+        limits.torque.exact,
+        limits.velocity.not_above,
+        None if limits.command is None else limits.command.not_above,
+        spec.actuator.command,
+        spec.coupling,
+        spec.touched,
+        {name: controller.gains() for name, controller in spec.controllers.items()},
+        goals is not None and goals.constant_force is not None,
+        wanted.exact if isinstance(wanted, Quantity) else wanted,
+        dict(_preloads(spec)),
+        spec.sensor is not None,
+    )
+
+
+def _preloads(spec: InteractionDesignSpec) -> Iterator[tuple[str, Preload]]:
+    for name, environment in spec.environments.items():
+        law, ends = environment.nonlinear, environment.preload_range
+        if law is not None and ends is not None and name in spec.touched:
+            yield name, (law, ends[0].text, ends[1].text)
 
 
 def _interval(written: RangedQuantity) -> Interval:

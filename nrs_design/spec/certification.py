@@ -5,12 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Annotated, Any
 
-from pydantic import Field
-
 from nrs_design.proof.text import quoted
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel, optional
 
 HIGHEST_DEGREE = 64
 # A spec may come from anyone: who runs the command may allow more, the spec may not.
@@ -52,13 +50,11 @@ def _read_budget(value: object) -> Fraction:
 class CertificationSpec(SpecModel):
     """How far the search for a proof goes; options of the commands override it."""
 
-    max_degree: Annotated[int | None, ReadBy(_read_degree, _DEGREE_SCHEMA)] = Field(
-        default=None,
-        description="highest degree of a polynomial Lyapunov function, even, at most 64; default: "
-        "as high as the budget allows",
+    max_degree: Annotated[int | None, ReadBy(_read_degree, _DEGREE_SCHEMA)] = optional(
+        "highest degree of a polynomial Lyapunov function, even, at most 64; default: "
+        "as high as the budget allows"
     )
-    budget: Annotated[Fraction | None, ReadBy(_read_budget, _BUDGET_SCHEMA)] = Field(
-        default=None,
-        description="work of the search, counted in units of about a second, the same on every "
-        "machine; at most 600, default 60",
+    budget: Annotated[Fraction | None, ReadBy(_read_budget, _BUDGET_SCHEMA)] = optional(
+        "work of the search, counted in units of about a second, the same on every "
+        "machine; at most 600, default 60"
     )

@@ -18,7 +18,7 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
@@ -189,13 +189,11 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
     type: Literal["impedance"] = Field(description="impedance: admittance Y = 1/(Mt s + Bt + Kt/s)")
     environment: Label = Field(description=_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    desired_impedance: Impedance | None = Field(
-        default=None,
-        description="impedance to display in N*m*s/rad; default: limits.torque/limits.velocity",
+    desired_impedance: Impedance | None = optional(
+        "impedance to display in N*m*s/rad; default: limits.torque/limits.velocity"
     )
-    desired_impedance_ratio: Positive | None = Field(
-        default=None,
-        description="multiplies limits.torque/limits.velocity, no unit; not with desired_impedance",
+    desired_impedance_ratio: Positive | None = optional(
+        "multiplies limits.torque/limits.velocity, no unit; not with desired_impedance"
     )
     Mt: InertiaGain = Field(
         description="admittance inertia in kg*m^2: one quantity, {min: ..., max: ...} for the "
@@ -205,17 +203,16 @@ class ImpedanceControllerSpec(AbstractControllerSpec):
         description="admittance damping in N*m*s/rad: one quantity, {min: ..., max: ...} for the "
         f"design, or {{nominal: ...}}; > 0; {_GAIN_RANGE}"
     )
-    Kt: SpringGain | None = Field(
-        default=None,
-        description="admittance spring in N*m/rad, which draws the robot back to its position "
+    Kt: SpringGain | None = optional(
+        "admittance spring in N*m/rad, which draws the robot back to its position "
         "reference: one quantity, or {nominal: ..., range: ...}; > 0; default: no spring; with "
         "one, contact is taken for kept unless the spec says `contact: losable`; "
-        f"{_GAIN_RANGE}",
+        f"{_GAIN_RANGE}"
     )
     weights: CostWeights = Field(
         default_factory=CostWeights, description="weights of the design cost, no unit"
     )
-    goals: GoalsSpec | None = Field(default=None, description=_GOALS)
+    goals: GoalsSpec | None = optional(_GOALS)
 
     @property
     def displayed(self) -> Quantity | Fraction:
@@ -248,13 +245,11 @@ class ForceControllerSpec(AbstractControllerSpec):
     type: Literal["force"] = Field(description="force: u = X_i + Kp (Fd - F), see offset")
     environment: Label = Field(description=_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: ForceGain | None = Field(
-        default=None,
-        description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
+    proportional_gain: ForceGain | None = optional(
+        "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
     )
-    damping_ratio: UnitFraction | None = Field(
-        default=None,
-        description="wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp",
+    damping_ratio: UnitFraction | None = optional(
+        "wanted damping ratio of the dominant poles, in (0, 1), no unit; chooses Kp"
     )
     offset: Offset = Field(
         default="none",
@@ -263,7 +258,7 @@ class ForceControllerSpec(AbstractControllerSpec):
         "or the measured position; none: no switch takes anything, and u = X + Kp (Fd - F) with "
         "the position X that is commanded from outside, constant while force is controlled",
     )
-    goals: GoalsSpec | None = Field(default=None, description=_GOALS)
+    goals: GoalsSpec | None = optional(_GOALS)
 
     @property
     def own_offset(self) -> Offset:
@@ -301,25 +296,21 @@ class IntegralControllerSpec(AbstractControllerSpec):
     )
     environment: Label = Field(description=_ENVIRONMENT)
     contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
-    proportional_gain: ForceGain | None = Field(
-        default=None,
-        description="Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio",
+    proportional_gain: ForceGain | None = optional(
+        "Kp in rad/(N*m); exactly one of proportional_gain and damping_ratio"
     )
-    damping_ratio: UnitFraction | None = Field(
-        default=None,
-        description="wanted damping ratio of the dominant poles without the integral, in (0, 1), "
-        "no unit; chooses Kp",
+    damping_ratio: UnitFraction | None = optional(
+        "wanted damping ratio of the dominant poles without the integral, in (0, 1), "
+        "no unit; chooses Kp"
     )
-    integral_gain: IntegralForceGain | None = Field(
-        default=None,
-        description="Ki in rad/(N*m*s); exactly one of integral_gain and settling_time",
+    integral_gain: IntegralForceGain | None = optional(
+        "Ki in rad/(N*m*s); exactly one of integral_gain and settling_time"
     )
-    settling_time: Duration | None = Field(
-        default=None,
-        description="time in s by which the force error has fallen to 2 %, four time constants of "
-        "the slowest pole; chooses Ki",
+    settling_time: Duration | None = optional(
+        "time in s by which the force error has fallen to 2 %, four time constants of "
+        "the slowest pole; chooses Ki"
     )
-    goals: GoalsSpec | None = Field(default=None, description=_GOALS)
+    goals: GoalsSpec | None = optional(_GOALS)
 
     checks = (
         *ForceControllerSpec.checks,

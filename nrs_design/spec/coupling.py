@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field, PrivateAttr
+from pydantic import PrivateAttr
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import AxisCount, Title
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
     AngularVelocity,
@@ -22,40 +22,33 @@ from nrs_design.spec.robot_bounds import RobotBounds
 class CouplingSpec(SpecModel):
     """Bounds on what the links of the robot do to each axis: declared, or those of a robot spec."""
 
-    robot: Title | None = Field(
-        default=None,
-        description="spec of the robot, relative to this file; `nrs-design robot bounds` has "
-        "computed the bounds, and they are read instead of inertia, coriolis and gravity_gradient",
+    robot: Title | None = optional(
+        "spec of the robot, relative to this file; `nrs-design robot bounds` has "
+        "computed the bounds, and they are read instead of inertia, coriolis and gravity_gradient"
     )
-    gravity_compensated: Literal["everywhere", "at-rest"] | None = Field(
-        default=None,
-        description="with robot: gravity is compensated in every pose (default), or in the pose of "
-        "rest only, for kept contact",
+    gravity_compensated: Literal["everywhere", "at-rest"] | None = optional(
+        "with robot: gravity is compensated in every pose (default), or in the pose of "
+        "rest only, for kept contact"
     )
-    inertia: tuple[MomentOfInertia, MomentOfInertia] | None = Field(
-        default=None,
-        description="[lowest, highest] eigenvalue of the matrix of inertia of the links at the "
-        "joints in kg*m^2, over all poses that are used; required without robot",
+    inertia: tuple[MomentOfInertia, MomentOfInertia] | None = optional(
+        "[lowest, highest] eigenvalue of the matrix of inertia of the links at the "
+        "joints in kg*m^2, over all poses that are used; required without robot"
     )
-    coriolis: Impedance | None = Field(
-        default=None,
-        description="largest ratio of Coriolis and centrifugal torques to the joint speeds (both "
-        "over all axes) in N*m*s/rad, up to `speed`; default: they are left out",
+    coriolis: Impedance | None = optional(
+        "largest ratio of Coriolis and centrifugal torques to the joint speeds (both "
+        "over all axes) in N*m*s/rad, up to `speed`; default: they are left out"
     )
-    speed: AngularVelocity | None = Field(
-        default=None,
-        description="speed over all axes in rad/s up to which coriolis holds; with robot: up to "
-        "which Coriolis torques are counted in, else they are left out",
+    speed: AngularVelocity | None = optional(
+        "speed over all axes in rad/s up to which coriolis holds; with robot: up to "
+        "which Coriolis torques are counted in, else they are left out"
     )
-    gravity_gradient: RotationalStiffness | None = Field(
-        default=None,
-        description="largest norm of the gradient of the torques of gravity in N*m/rad, for kept "
-        "contact; default: gravity is compensated, or the same, in all poses",
+    gravity_gradient: RotationalStiffness | None = optional(
+        "largest norm of the gradient of the torques of gravity in N*m/rad, for kept "
+        "contact; default: gravity is compensated, or the same, in all poses"
     )
 
-    axes: AxisCount | None = Field(
-        default=None,
-        description="how many axes there are, for bounds under disturbances; a robot has three",
+    axes: AxisCount | None = optional(
+        "how many axes there are, for bounds under disturbances; a robot has three"
     )
 
     _bounds: RobotBounds | None = PrivateAttr(default=None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -14,13 +14,18 @@ from nrs_design.spec.controllers import (
 )
 from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
-from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
-from nrs_design.spec.provenance import COVERS, MOTOR_COVERS, IdentifiedSpec
-from nrs_design.spec.quantity import Quantity, QuantityKind
+from nrs_design.spec.provenance import (
+    COVERS,
+    MOTOR_COVERS,
+    Coverage,
+    IdentifiedRangesSpec,
+    IdentifiedSpec,
+)
+from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.sampling import SamplingSpec
@@ -32,6 +37,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.load import Spec
 
 MAX_LISTED = 20
+Ends = tuple[Quantity, Quantity]
 # Keys of a controller that are listed in a way of their own, and the kinds of gains.
 _TARGETS = frozenset({"desired_impedance", "desired_impedance_ratio"})
 _LISTED = _TARGETS | {"type", "environment", "contacts", "goals"}
@@ -111,26 +117,18 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     yield from _actuator(spec.actuator)
-    yield from _motion_loop(spec)
-    yield from _limits(spec.limits)
+    yield from describe_model(spec.motion_loop, "motion_loop")
+    yield from describe_model(spec.limits, "limits")
     for name, environment in spec.environments.items():
         yield from _environment(f"environments.{name}", environment)
     for name, controller in spec.controllers.items():
         yield from _controller(f"controllers.{name}", controller, spec.limits)
-    if spec.idle_states is not None:
-        yield from describe_model(spec.idle_states, "idle_states")
-    yield from _goals("goals", spec.goals)
-    yield Line("design.significant_digits", str(spec.design.significant_digits), "", "")
+    for key in ("idle_states", "goals", "design"):
+        yield from describe_model(getattr(spec, key), key)
     if spec.sampling is not None:
         yield from _sampling(spec.sampling)
-    if spec.disturbances is not None:
-        yield from describe_model(spec.disturbances, "disturbances")
-    yield from describe_model(spec.coupling, "coupling")
-    yield from describe_model(spec.sensor, "sensor")
-    if spec.mode_logic is not None:
-        yield from describe_model(spec.mode_logic, "mode_logic")
-    for name, scenario in spec.scenarios.items():
-        yield from describe_model(scenario, f"scenarios.{name}")
+    for key in ("disturbances", "coupling", "sensor", "mode_logic", "scenarios"):
+        yield from describe_model(getattr(spec, key), key)
     yield Line("contact", spec.contact or "not said: the claim tells", "", "")
     yield Line("coordinates", spec.coordinates, "", "")
     yield from _switching(spec.switching)
@@ -139,55 +137,26 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
 def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
     if actuator.command != THESIS_COMMAND:
         yield Line("actuator.command", actuator.command, "", "")
-    for name, kind in (("gain", kinds.ACTUATOR_GAIN), ("time_constant", kinds.DURATION)):
+    for name in ("gain", "time_constant"):
         written = getattr(actuator, name)
-        unit = kind.unit_in(written.nominal.dimension)
+        unit = _shown_unit(written.nominal)
         yield from _ranged(f"actuator.{name}", written, written, unit)
-    if actuator.range_covers is not None:
-        covered = MOTOR_COVERS[actuator.range_covers]
-        yield Line("actuator.range_covers", actuator.range_covers, covered, "")
-    if actuator.load_inertia is not None:
-        yield _row("actuator.load_inertia", actuator.load_inertia, kinds.INERTIA)
+    yield from describe_model(actuator.load_inertia, "actuator.load_inertia")
     if actuator.intervals is not None:
         for name in ("gain", "time_constant"):
             low, high = getattr(actuator.intervals, name)
             yield Line(f"actuator.intervals.{name}", f"[{low.text}, {high.text}]", "", "")
-    yield from _provenance("actuator", actuator)
-
-
-def _limits(limits: LimitsSpec) -> Iterator[Line]:
-    yield _row("limits.velocity", limits.velocity, kinds.ANGULAR_VELOCITY)
-    yield _row("limits.torque", limits.torque, kinds.TORQUE)
-    yield _row("limits.bandwidth", limits.bandwidth, kinds.BANDWIDTH)
-    if limits.command is not None:
-        unit = kinds.COMMAND.unit_in(limits.command.dimension)
-        yield _quantity("limits.command", limits.command, unit)
+    yield from _identified("actuator", actuator, MOTOR_COVERS)
 
 
 def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
-    yield _row("sampling.period", sampling.period, kinds.DURATION)
-    if sampling.outer_period is not None:
-        yield _row("sampling.outer_period", sampling.outer_period, kinds.DURATION)
+    yield from describe_model(sampling.period, "sampling.period")
+    yield from describe_model(sampling.outer_period, "sampling.outer_period")
     least, most = sampling.delay
     delay = str(least) if least == most else f"[{least}, {most}]"
     yield Line("sampling.delay", delay, "", "samples")
     yield Line("sampling.admittance", sampling.admittance, "", "")
     yield from _provenance("sampling", sampling)
-
-
-def _motion_loop(spec: InteractionDesignSpec) -> Iterator[Line]:
-    loop = spec.motion_loop
-    yield _number("motion_loop.damping_ratio", loop.damping_ratio)
-    yield _row("motion_loop.settling_time", loop.settling_time, kinds.DURATION)
-    if loop.derivative_gain is not None:
-        unit = kinds.DERIVATIVE_GAIN.unit_in(loop.derivative_gain.dimension)
-        yield _quantity("motion_loop.derivative_gain", loop.derivative_gain, unit)
-    if loop.zero is not None:
-        yield _row("motion_loop.zero", loop.zero, kinds.ZERO)
-    if loop.transfer_function is not None:
-        tf = loop.transfer_function
-        yield _coefficients("motion_loop.transfer_function.numerator", tf.numerator)
-        yield _coefficients("motion_loop.transfer_function.denominator", tf.denominator)
 
 
 def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
@@ -202,14 +171,8 @@ def _environment(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
             yield from describe_model(getattr(environment, key), f"{name}.{key}")
     if environment.preloaded:
         yield from _over_preload(name, environment)
-    if environment.lever_arm is not None:
-        yield _row(f"{name}.lever_arm", environment.lever_arm, kinds.LEVER_ARM)
-    if environment.range_covers is not None:
-        covered = COVERS[environment.range_covers]
-        yield Line(f"{name}.range_covers", environment.range_covers, covered, "")
-    if environment.linearized_about is not None:
-        yield Line(f"{name}.linearized_about", environment.linearized_about, "", "")
-    yield from _provenance(name, environment)
+    yield from describe_model(environment.lever_arm, f"{name}.lever_arm")
+    yield from _identified(name, environment, COVERS)
 
 
 def _over_preload(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
@@ -218,6 +181,17 @@ def _over_preload(name: str, environment: EnvironmentSpec) -> Iterator[Line]:
         unit = unit_at_pivot(getattr(environment, key).nominal)
         value = f"[{_text(float(interval.low))}, {_text(float(interval.high))}]"
         yield Line(f"{name}.{key} over the preload", "", value, unit)
+
+
+def _identified(
+    name: str, item: IdentifiedRangesSpec, covers: Mapping[Coverage, str]
+) -> Iterator[Line]:
+    """List what identified ranges hold, and where they come from."""
+    if item.range_covers is not None:
+        yield Line(f"{name}.range_covers", item.range_covers, covers[item.range_covers], "")
+    if isinstance(item, AbstractEnvironmentSpec):
+        yield from describe_model(item.linearized_about, f"{name}.linearized_about")
+    yield from _provenance(name, item)
 
 
 def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
@@ -232,9 +206,13 @@ def _provenance(name: str, identified: IdentifiedSpec) -> Iterator[Line]:
 def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -> Iterator[Line]:
     yield Line(name, written.nominal.text, _text(si.nominal.si), unit)
     if not written.fixed:
-        (low, high), (si_low, si_high) = written.range, si.range
-        value = f"[{_text(si_low.si)}, {_text(si_high.si)}]"
-        yield Line(f"{name}.range", f"[{low.text}, {high.text}]", value, unit)
+        yield _interval(f"{name}.range", written.range, si.range, unit)
+
+
+def _interval(name: str, written: Ends, si: Ends, unit: str) -> Line:
+    (low, high), (si_low, si_high) = written, si
+    value = f"[{_text(si_low.si)}, {_text(si_high.si)}]"
+    return Line(name, f"[{low.text}, {high.text}]", value, unit)
 
 
 def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> Iterator[Line]:
@@ -243,63 +221,41 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
         return
     yield Line(f"{name}.environment", controller.environment, "", "")
     yield Line(f"{name}.contacts", ", ".join(contact_names(controller.contacts)), "", "")
-    if controller.displayed is not None:
-        yield _desired_impedance(f"{name}.desired_impedance", controller.displayed, limits)
+    yield from _desired_impedance(f"{name}.desired_impedance", controller.displayed, limits)
     for key in type(controller).model_fields:
         if key not in _LISTED:
-            yield from _own_field(f"{name}.{key}", getattr(controller, key))
-    yield from _goals(f"{name}.goals", controller.goals)
-
-
-def _own_field(name: str, value: object) -> Iterator[Line]:
-    """List what only one type of controller has."""
-    if isinstance(value, GainSpec):
-        yield from _gain(name, value, _shown_unit(value.min))
-    elif isinstance(value, Quantity):
-        yield _quantity(name, value, _shown_unit(value))
-    else:
-        yield from describe_model(value, name)
+            yield from describe_model(getattr(controller, key), f"{name}.{key}")
+    yield from describe_model(controller.goals, f"{name}.goals")
 
 
 def _shown_unit(quantity: Quantity) -> str:
-    """Return the unit in which a gain, or a signal, is shown."""
-    known = (kind.si_unit for kind in _SHOWN if kind.accepts(quantity.dimension))
-    return next(known, si_unit(quantity.dimension))
+    """Return the unit in which a quantity is shown."""
+    dimension = quantity.dimension
+    if kinds.DERIVATIVE_GAIN.accepts(dimension):
+        return kinds.DERIVATIVE_GAIN.unit_in(dimension)
+    known = (kind.si_unit for kind in _SHOWN if kind.accepts(dimension))
+    return next(known, si_unit(dimension))
 
 
-def _goals(name: str, goals: GoalsSpec | None) -> Iterator[Line]:
-    if goals is not None:
-        yield from describe_model(goals, name)
-
-
-def _desired_impedance(name: str, displayed: Quantity | Fraction, limits: LimitsSpec) -> Line:
-    if isinstance(displayed, Quantity):
-        return _row(name, displayed, kinds.IMPEDANCE)
+def _desired_impedance(
+    name: str, displayed: Quantity | Fraction | None, limits: LimitsSpec
+) -> Iterator[Line]:
+    if not isinstance(displayed, Fraction):
+        yield from describe_model(displayed, name)
+        return
     written = "torque/velocity" if displayed == 1 else f"{exact_text(displayed)} * torque/velocity"
     value = float(displayed) * limits.torque.si / limits.velocity.si
-    return Line(name, written, _text(value), kinds.IMPEDANCE.si_unit)
+    yield Line(name, written, _text(value), kinds.IMPEDANCE.si_unit)
 
 
-def _gain(name: str, gain: GainSpec, unit: str) -> Iterator[Line]:
+def _gain(name: str, gain: GainSpec) -> Iterator[Line]:
+    unit, bounds = _shown_unit(gain.min), (gain.min, gain.max)
     if gain.fixed:
-        yield _quantity(name, gain.min, unit)
+        yield Line(name, gain.min.text, _text(gain.min.si), unit)
     else:
-        yield _interval(name, gain.min, gain.max, unit)
+        yield _interval(name, bounds, bounds, unit)
     if gain.range is not None:
-        yield _interval(f"{name}.range", *gain.range, unit)
-
-
-def _interval(name: str, low: Quantity, high: Quantity, unit: str) -> Line:
-    value = f"[{_text(low.si)}, {_text(high.si)}]"
-    return Line(name, f"[{low.text}, {high.text}]", value, unit)
-
-
-def _row(name: str, quantity: Quantity, kind: QuantityKind) -> Line:
-    return _quantity(name, quantity, kind.si_unit)
-
-
-def _quantity(name: str, quantity: Quantity, unit: str) -> Line:
-    return Line(name, quantity.text, _text(quantity.si), unit)
+        yield _interval(f"{name}.range", gain.range, gain.range, unit)
 
 
 def _number(name: str, number: Fraction) -> Line:
@@ -312,14 +268,19 @@ def _coefficients(name: str, numbers: tuple[Fraction, ...]) -> Line:
 
 
 def describe_model(value: object, name: str = "") -> Iterator[Line]:
-    """List every value of a model whose quantities need no conversion but that to SI."""
-    if isinstance(value, SpecModel):
+    """List every value of a part whose quantities need no conversion but that to SI."""
+    if isinstance(value, GainSpec):
+        yield from _gain(name, value)
+    elif isinstance(value, SpecModel):
         for field in type(value).model_fields:
             if name or field not in ("kind", "name", "title"):
                 yield from describe_model(getattr(value, field), f"{name}.{field}".lstrip("."))
     elif isinstance(value, dict):
         for key, item in value.items():
             yield from describe_model(item, f"{name}.{key}")
+    elif isinstance(value, tuple) and all(isinstance(item, Fraction) for item in value):
+        if value:
+            yield _coefficients(name, value)
     elif isinstance(value, tuple):
         for index, item in enumerate(value):
             yield from describe_model(item, f"{name}[{index}]")

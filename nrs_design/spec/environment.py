@@ -23,6 +23,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
+from nrs_design.spec.model import optional
 from nrs_design.spec.preload import RangedExponent, power_box
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity
@@ -66,12 +67,11 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 
     model: str
 
-    lever_arm: LeverArm | None = Field(default=None, description=_LEVER_ARM)
-    range_covers: Coverage | None = Field(default=None, description=_COVERS)
-    linearized_about: Title | None = Field(
-        default=None,
-        description="deflections that a nonlinear law was linearized about, in words: the ranges "
-        "hold small motions there",
+    lever_arm: LeverArm | None = optional(_LEVER_ARM)
+    range_covers: Coverage | None = optional(_COVERS)
+    linearized_about: Title | None = optional(
+        "deflections that a nonlinear law was linearized about, in words: the ranges "
+        "hold small motions there"
     )
 
     def _quantities(self) -> Iterator[tuple[Location, tuple[RangedQuantity, Quantity | None]]]:
@@ -126,7 +126,10 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
     @property
     def is_spring(self) -> bool:
         """Whether the force follows from the deflection of the moment, in the whole range."""
-        return not self.remembers
+        damping = self.parameters().get("damping")
+        if self.remembers or self.has_mass:
+            return False
+        return damping is None or not any(q.exact for q in (damping.nominal, *damping.range))
 
     @property
     def is_losable(self) -> bool:
@@ -204,11 +207,6 @@ class KelvinVoigtSpec(AbstractEnvironmentSpec):
     stiffness: Stiffness = Field(description=_STIFFNESS.format(which=""))
     damping: Damping = Field(description=_DAMPING.format(which=""))
 
-    @property
-    def is_spring(self) -> bool:
-        """Whether there is no damping."""
-        return not any(q.exact for q in (self.damping.nominal, *self.damping.range))
-
 
 class HandSpec(AbstractEnvironmentSpec):
     """A hand that holds the robot, ``F = k delta + b ddelta + m dddelta`` (thesis 7.2)."""
@@ -225,16 +223,6 @@ class HandSpec(AbstractEnvironmentSpec):
         description="mass that moves along, at the pivot in kg*m^2, or at the contact point in kg "
         "with lever_arm; one quantity, or {nominal: ..., range: [lowest, highest]}"
     )
-
-    @property
-    def is_spring(self) -> bool:
-        """Never: it has a mass."""
-        return False
-
-    @property
-    def is_losable(self) -> bool:
-        """Never: it holds the robot."""
-        return False
 
 
 class MaxwellSpec(AbstractEnvironmentSpec):
@@ -335,11 +323,6 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
     def fixed(self) -> bool:
         """Whether stiffness and damping have single values: never in a preload."""
         return False
-
-    @property
-    def is_spring(self) -> bool:
-        """Whether there is no damping."""
-        return not any(q.exact for q in (self.damping.nominal, *self.damping.range))
 
     def drawn_at_pivot(self, pick: Callable[[Interval], float]) -> dict[str, float]:
         """Return the tangent, the exponent, and the angle at which the tangent is given.

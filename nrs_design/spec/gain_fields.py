@@ -10,7 +10,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
-from nrs_design.spec.model import ReadBefore, SpecModel
+from nrs_design.spec.model import ReadBefore, SpecModel, optional
 from nrs_design.spec.quantity import Quantity, QuantityKind, is_less
 from nrs_design.spec.quantity_fields import (
     AnyQuantity,
@@ -38,14 +38,14 @@ class GainSpec(SpecModel):
     A fixed gain has ``min == max``.
     """
 
-    nominal: AnyQuantity | None = Field(default=None, description=_KEYS["nominal"])
+    nominal: AnyQuantity | None = optional(_KEYS["nominal"])
     min: AnyQuantity = Field(
         default_factory=lambda data: data.get("nominal"), description=_KEYS["min"]
     )
     max: AnyQuantity = Field(
         default_factory=lambda data: data.get("nominal"), description=_KEYS["max"]
     )
-    range: tuple[AnyQuantity, AnyQuantity] | None = Field(default=None, description=_RANGE)
+    range: tuple[AnyQuantity, AnyQuantity] | None = optional(_RANGE)
 
     def _outside(self) -> str | None:
         """Return a given gain that is not within its range."""

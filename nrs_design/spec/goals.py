@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import AboveOne, BelowTwo, UnitFraction
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -48,77 +48,66 @@ def _below_half_turn(angle: Quantity) -> Quantity:
 class GoalsSpec(SpecModel):
     """Goals of the design; docs/design/goals.md defines each, and where it is evaluated."""
 
-    max_sensitivity_peak: AboveOne | None = Field(
-        default=None, description="largest Ms = max |1/(1 + L)|, above 1, no unit"
+    max_sensitivity_peak: AboveOne | None = optional(
+        "largest Ms = max |1/(1 + L)|, above 1, no unit"
     )
-    min_gain_margin: AboveOne | None = Field(
-        default=None, description="smallest factor on the loop gain that destabilizes, above 1"
+    min_gain_margin: AboveOne | None = optional(
+        "smallest factor on the loop gain that destabilizes, above 1"
     )
-    min_phase_margin: Annotated[Angle, AfterValidator(_below_half_turn)] | None = Field(
-        default=None, description="smallest phase margin, such as 30 deg"
+    min_phase_margin: Annotated[Angle, AfterValidator(_below_half_turn)] | None = optional(
+        "smallest phase margin, such as 30 deg"
     )
-    min_delay_margin: Duration | None = Field(
-        default=None, description="longest dead time up to which none destabilizes, such as 5 ms"
+    min_delay_margin: Duration | None = optional(
+        "longest dead time up to which none destabilizes, such as 5 ms"
     )
-    min_disk_margin: BelowTwo | None = Field(
-        default=None, description="smallest balanced disk margin, between 0 and 2, no unit"
+    min_disk_margin: BelowTwo | None = optional(
+        "smallest balanced disk margin, between 0 and 2, no unit"
     )
-    max_impedance_error: AboveOne | None = Field(
-        default=None,
-        description="largest factor between displayed and desired impedance up to the bandwidth, "
-        "above 1, no unit; impedance controllers only",
+    max_impedance_error: AboveOne | None = optional(
+        "largest factor between displayed and desired impedance up to the bandwidth, "
+        "above 1, no unit; impedance controllers only"
     )
-    min_transparency: UnitFraction | None = Field(
-        default=None,
-        description="smallest share of the motion that the hand intends and the robot makes, "
+    min_transparency: UnitFraction | None = optional(
+        "smallest share of the motion that the hand intends and the robot makes, "
         "|L/(1 + L)| up to the bandwidth, between 0 and 1, no unit; impedance controllers whose "
-        "environment is the hand",
+        "environment is the hand"
     )
-    max_hand_effort: Impedance | None = Field(
-        default=None,
-        description="largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
-        "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand",
+    max_hand_effort: Impedance | None = optional(
+        "largest torque of the hand over the velocity that it intends, |Ze/(1 + L)| "
+        "up to the bandwidth in N*m*s/rad; impedance controllers whose environment is the hand"
     )
-    max_creep: AngularVelocity | None = Field(
-        default=None,
-        description="largest lasting velocity in free motion by errors of the force signal, such "
-        "as 0.5 deg/s; impedance controllers only, and with sensor",
+    max_creep: AngularVelocity | None = optional(
+        "largest lasting velocity in free motion by errors of the force signal, such "
+        "as 0.5 deg/s; impedance controllers only, and with sensor"
     )
-    max_creep_angle: Angle | None = Field(
-        default=None,
-        description="largest angle that the robot creeps in free motion by errors of the force "
-        "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor",
+    max_creep_angle: Angle | None = optional(
+        "largest angle that the robot creeps in free motion by errors of the force "
+        "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor"
     )
-    max_force_error: UnitFraction | None = Field(
-        default=None,
-        description="largest steady force error over the commanded force, between 0 and 1, no "
-        "unit; force controllers only",
+    max_force_error: UnitFraction | None = optional(
+        "largest steady force error over the commanded force, between 0 and 1, no "
+        "unit; force controllers only"
     )
-    peak_torque: Torque | None = Field(
-        default=None,
-        description="largest torque in N*m that the proved bound under all disturbances of the "
-        "spec may have; for the whole spec, not for one controller",
+    peak_torque: Torque | None = optional(
+        "largest torque in N*m that the proved bound under all disturbances of the "
+        "spec may have; for the whole spec, not for one controller"
     )
-    decay_rate: DecayRate | None = Field(
-        default=None,
-        description="smallest proved decay rate in 1/s; for the whole spec, not for one controller",
+    decay_rate: DecayRate | None = optional(
+        "smallest proved decay rate in 1/s; for the whole spec, not for one controller"
     )
-    delay: Duration | None = Field(
-        default=None,
-        description="age of a force sample up to which the sampled loop must be proved, such as "
-        "4 ms; for the whole spec, and with sampling",
+    delay: Duration | None = optional(
+        "age of a force sample up to which the sampled loop must be proved, such as "
+        "4 ms; for the whole spec, and with sampling"
     )
-    constant_force: Literal["settles"] | None = Field(
-        default=None,
-        description="settles: it must be proved that the force settles at any constant Fd > 0 that "
+    constant_force: Literal["settles"] | None = optional(
+        "settles: it must be proved that the force settles at any constant Fd > 0 that "
         "pushes in, through loss of contact, at any constant stiffness; for the whole spec, with "
-        "`contact: losable` and one elastic environment, in continuous time",
+        "`contact: losable` and one elastic environment, in continuous time"
     )
-    initial_force: TorqueOrLargest | None = Field(
-        default=None,
-        description="contact force in N*m from which, at rest, every motion must be proved to "
+    initial_force: TorqueOrLargest | None = optional(
+        "contact force in N*m from which, at rest, every motion must be proved to "
         "decay although velocity command and motor command saturate at their limits; largest: as "
-        "large as is found; for the whole spec, with `limits: command`, in continuous time",
+        "large as is found; for the whole spec, with `limits: command`, in continuous time"
     )
 
     checks = (

@@ -147,9 +147,7 @@ def _creeps(spec: Spec) -> bool:
 _GOALS = (
     Row[_Goals](
         "{0}",
-        lambda g: (
-            g.own and next((key for key in sorted(g.keys) if key in OF_THE_CERTIFICATE), None)
-        ),
+        _Goals.shared,
         "{0} is a goal for all controllers together",
         "move it to the goals of the spec",
     ),

@@ -21,7 +21,7 @@ from nrs_design.spec.environment_estimator import EstimatorSpec
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
@@ -62,50 +62,41 @@ class AbstractInteractionSpec(SpecModel):
     controllers: Annotated[
         dict[Label, ControllerSpec], Field(min_length=1, max_length=MAX_ENTRIES)
     ] = Field(description="what the robot switches between: name -> controller")
-    idle_states: IdleStatesSpec | None = Field(
-        default=None,
-        description="what the states of impedance controllers do while a position or force "
+    idle_states: IdleStatesSpec | None = optional(
+        "what the states of impedance controllers do while a position or force "
         "controller is active, and the integral of a pi-force controller while another one is; "
-        "required where there are both",
+        "required where there are both"
     )
-    goals: GoalsSpec | None = Field(
-        default=None,
-        description="what every impedance and force controller must achieve; the gate enforces it",
+    goals: GoalsSpec | None = optional(
+        "what every impedance and force controller must achieve; the gate enforces it"
     )
     design: DesignSpec = Field(default_factory=DesignSpec, description="how gains are written down")
-    sampling: SamplingSpec | None = Field(
-        default=None,
-        description="the processor that runs the law; without it the proof is for continuous time",
+    sampling: SamplingSpec | None = optional(
+        "the processor that runs the law; without it the proof is for continuous time"
     )
-    disturbances: DisturbancesSpec | None = Field(
-        default=None,
-        description="what acts on the loop from outside; its effect on force and velocity is "
-        "bounded",
+    disturbances: DisturbancesSpec | None = optional(
+        "what acts on the loop from outside; its effect on force and velocity is bounded"
     )
-    coupling: CouplingSpec | None = Field(
-        default=None,
-        description="what the axes do to each other through their links, for a proof about all "
-        "axes at once; without it they are taken not to act on each other",
+    coupling: CouplingSpec | None = optional(
+        "what the axes do to each other through their links, for a proof about all "
+        "axes at once; without it they are taken not to act on each other"
     )
-    sensor: SensorSpec | None = Field(
-        default=None,
-        description="the force signal: its filter is a part of the loop, its errors bound the "
-        "creep; without it the force is taken for exact",
+    sensor: SensorSpec | None = optional(
+        "the force signal: its filter is a part of the loop, its errors bound the "
+        "creep; without it the force is taken for exact"
     )
-    contact: Literal["losable", "kept"] | None = Field(
-        default=None,
-        description="whether a proof must hold while contact is lost and made again (losable), or "
-        "takes for granted that it is kept; default: losable where that can be proved",
+    contact: Literal["losable", "kept"] | None = optional(
+        "whether a proof must hold while contact is lost and made again (losable), or "
+        "takes for granted that it is kept; default: losable where that can be proved"
     )
     coordinates: Literal["deflection", "force"] = Field(
         default="deflection",
         description="state of the contact: deflection stays continuous when the stiffness "
         "switches; force is what the thesis uses",
     )
-    mode_logic: ModeLogicSpec | None = Field(
-        default=None,
-        description="what decides which controller is active; `switching: mode-logic` lets the "
-        "proof be about the switching signals that it can give",
+    mode_logic: ModeLogicSpec | None = optional(
+        "what decides which controller is active; `switching: mode-logic` lets the "
+        "proof be about the switching signals that it can give"
     )
     switching: LogicalRule = Field(
         description="when controllers change: arbitrary, mode-logic (as mode_logic says), or rules "
@@ -193,8 +184,3 @@ class AbstractInteractionSpec(SpecModel):
         return any(not self.environments[name].fixed for name in self.touched) or any(
             gain.ranged for c in self.controllers.values() for gain in c.gains().values()
         )
-
-    @property
-    def flies_like_a_mode(self) -> bool:
-        """Whether free motion is a mode like others, which no rule of switching is about."""
-        return self.contact == "losable" and any(c.sprung for c in self.controllers.values())

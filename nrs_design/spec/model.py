@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import CoreSchema, core_schema
 
 from nrs_design.spec.check import Row, run_checks
@@ -29,6 +29,11 @@ class SpecModel(BaseModel):
     def _run_checks(self) -> Self:
         run_checks(self.checks, self)
         return self
+
+
+def optional(description: str) -> Any:
+    """Return a field that a spec may leave out; it is None then."""
+    return Field(default=None, description=description)
 
 
 class ReadBy:

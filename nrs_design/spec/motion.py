@@ -13,7 +13,7 @@ from nrs_design.proof.text import quoted
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.provenance import Coverage, IdentifiedRangesSpec
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
@@ -105,20 +105,17 @@ class ActuatorSpec(IdentifiedRangesSpec):
         "theta_m/delta = Km/(s (tau s + 1))"
     )
     time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
-    load_inertia: RotorInertia | None = Field(
-        default=None,
-        description="inertia at the joint in kg*m^2 against which the torque of an environment "
-        "works; without it that torque does not slow the motor",
+    load_inertia: RotorInertia | None = optional(
+        "inertia at the joint in kg*m^2 against which the torque of an environment "
+        "works; without it that torque does not slow the motor"
     )
-    range_covers: Coverage | None = Field(
-        default=None,
-        description="what the identified ranges hold: confidence (the recorded motor), tolerance "
-        "(95 % of all records of such motors) or prediction (the next record), each with 95 %",
+    range_covers: Coverage | None = optional(
+        "what the identified ranges hold: confidence (the recorded motor), tolerance "
+        "(95 % of all records of such motors) or prediction (the next record), each with 95 %"
     )
-    intervals: ActuatorIntervals | None = Field(
-        default=None,
-        description="95 % intervals of gain and time constant, for the record: the proof is for "
-        "the nominal values",
+    intervals: ActuatorIntervals | None = optional(
+        "95 % intervals of gain and time constant, for the record: the proof is for "
+        "the nominal values"
     )
 
     def _about_commands(self) -> Iterator[tuple[Location, AboutCommands]]:
@@ -180,19 +177,15 @@ class MotionLoopSpec(SpecModel):
         description="wanted damping ratio of the closed loop, between 0 and 1, no unit"
     )
     settling_time: Duration = Field(description="wanted settling time 4/(zeta wn) in s")
-    derivative_gain: DerivativeGain | None = Field(
-        default=None,
-        description="derivative gain really used, such as rpm*s/rad, in the unit of the commands; "
-        "default: from the root locus",
+    derivative_gain: DerivativeGain | None = optional(
+        "derivative gain really used, such as rpm*s/rad, in the unit of the commands; "
+        "default: from the root locus"
     )
-    zero: Zero | None = Field(
-        default=None,
-        description="zero Kp/Kd of the PD controller really used, in 1/s; default: from the root "
-        "locus",
+    zero: Zero | None = optional(
+        "zero Kp/Kd of the PD controller really used, in 1/s; default: from the root locus"
     )
-    transfer_function: TransferFunctionSpec | None = Field(
-        default=None,
-        description="closed motion loop G to be used instead of the one that the PD gives, no unit",
+    transfer_function: TransferFunctionSpec | None = optional(
+        "closed motion loop G to be used instead of the one that the PD gives, no unit"
     )
 
 
@@ -206,10 +199,9 @@ class LimitsSpec(SpecModel):
     velocity: AngularVelocity = Field(description="largest commanded angular velocity in rad/s")
     torque: Torque = Field(description="largest interaction torque in N*m")
     bandwidth: Bandwidth = Field(description="highest frequency of the operator's motion, Hz")
-    command: LargestCommand | None = Field(
-        default=None,
-        description="largest command that the motor's driver takes, such as rpm, for the error "
+    command: LargestCommand | None = optional(
+        "largest command that the motor's driver takes, such as rpm, for the error "
         "that derivative_gain is for: where the driver closes its loop on an encoder that turns "
         "five times as far as the joint, and the gains are for the joint, a fifth of the "
-        "driver's own; exported code saturates there, and bounds on the command are held to it",
+        "driver's own; exported code saturates there, and bounds on the command are held to it"
     )

@@ -27,19 +27,22 @@ _OTHER_NAMES = {
 }
 # Other words for keys, in small letters: what similar letters do not tell.
 _OTHER_KEYS = {
-    "period": ("sample_time", "sampling_time", "ts", "dt", "rate", "frequency"),
-    "delay": ("lag", "latency", "age", "dead_time"),
-    "time_constant": ("tau", "t"),
-    "stiffness": ("k", "spring", "elasticity"),
-    "damping": ("d", "viscosity"),
-    "lever_arm": ("arm", "lever", "length"),
-    "damping_ratio": ("zeta", "damping"),
-    "settling_time": ("ts", "settling"),
-    "derivative_gain": ("kd", "derivative"),
-    "velocity": ("speed", "max_velocity", "largest_velocity"),
-    "torque": ("force", "moment", "max_torque", "largest_torque"),
-    "load_inertia": ("inertia", "load"),
-    "gain": ("k", "factor"),
+    key: frozenset(words.split())
+    for key, words in {
+        "period": "sample_time sampling_time ts dt rate frequency",
+        "delay": "lag latency age dead_time",
+        "time_constant": "tau t",
+        "stiffness": "k spring elasticity",
+        "damping": "d viscosity",
+        "lever_arm": "arm lever length",
+        "damping_ratio": "zeta damping",
+        "settling_time": "ts settling",
+        "derivative_gain": "kd derivative",
+        "velocity": "speed max_velocity largest_velocity",
+        "torque": "force moment max_torque largest_torque",
+        "load_inertia": "inertia load",
+        "gain": "k factor",
+    }.items()
 }
 # What `identify` writes into a section: it is listed after what people write.
 _IDENTIFIED = ("provenance", "doubts", "accept_doubt", "range_covers", "range_id", "intervals")
@@ -60,12 +63,8 @@ def file_faults(error: ValidationError, model: type[BaseModel], root: Node) -> t
     root : Node
         The parsed file, for the positions.
     """
-    return tuple(
-        Fault(message, line, column, remedy)
-        for line, column, message, remedy in sorted(
-            {resolved for details in _genuine(error) for resolved in _resolve(details, model, root)}
-        )
-    )
+    found = (resolved for e in _genuine(error) for resolved in _resolve(e, model, root))
+    return _in_file_order(found)
 
 
 def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple[Fault, ...]:
@@ -82,9 +81,14 @@ def faults_between(spec: SpecModel, model: type[BaseModel], root: Node) -> tuple
     """
     contexts = find_faults(spec.checks, spec, partial=True)
     details: ErrorDetails = {"type": FAULT, "loc": (), "msg": "", "input": None}
-    resolved = {_resolve_one(details | {"ctx": context}, model, root) for context in contexts}
+    return _in_file_order(_resolve_one(details | {"ctx": c}, model, root) for c in contexts)
+
+
+def _in_file_order(resolved: Iterable[tuple[int, int, str, str]]) -> tuple[Fault, ...]:
+    """Return faults, each once, by line, column and message."""
     return tuple(
-        Fault(message, line, column, remedy) for line, column, message, remedy in sorted(resolved)
+        Fault(message, line, column, remedy)
+        for line, column, message, remedy in sorted(set(resolved))
     )
 
 

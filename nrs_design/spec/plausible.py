@@ -1,4 +1,4 @@
-"""Sizes that no surgical or co-worker robot has: one table for all quantities of a spec.
+"""Sizes that no surgical or co-worker robot has: one table, `sizes.toml`, for all quantities.
 
 What lies outside is valid and probably a slip of the unit, which the same table names: the same
 number in another unit that would lie within. The ranges are wide, so that what is doubted here is
@@ -8,13 +8,17 @@ out of the question by an order of magnitude or more.
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.units import parse_unit
+
+_TABLE = Path(__file__).with_name("sizes.toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,72 +64,11 @@ class Size:
 @lru_cache(maxsize=1)
 def sizes() -> tuple[Size, ...]:
     """Return the table: of the rows in one unit, those that name a field go before the others."""
-    return tuple(_sizes())
-
-
-def _sizes() -> Iterator[Size]:
-    time, length, angle = ("ms", "s", "min"), ("mm", "cm", "m"), ("deg", "mrad", "rad")
-    turning, torque = ("deg/s", "rad/s"), ("mN*m", "N*mm", "N*m", "kN*m")
-    inertia = ("g*m^2", "kg*cm^2", "g*cm^2", "kg*mm^2", "kg*m^2")
-
-    def row(unit: str, low: float, high: float, slips: tuple[str, ...], fields: str = "") -> Size:
-        return Size(unit, low, high, slips, frozenset(fields.split()))
-
-    yield row("s", 1e-4, 1, time, "time_constant")
-    yield row("s", 1e-5, 1, time, "period outer_period sample_period")
-    yield row("s", 1e-6, 2, time, "age delay min_delay_margin")
-    yield row("s", 1e-3, 120, time, "settling_time")
-    yield row("s", 2e-5, 0.999, ("ms", "min"), "recorded_step")
-    yield row("s", 1e-6, 1e7, time)
-    yield row("m", 2e-3, 2, length, "lever_arm")
-    yield row("m", 1e-6, 0.5, length, "about preload")
-    yield row("m", 1e-6, 2, length, "center_of_mass x y z")
-    yield row("m", 1e-5, 0.5, length, "recorded_deflection")
-    yield row("m", 1e-6, 10, length)
-    yield row("rad", 1e-5, math.pi, angle, "about preload")
-    yield row("rad", 1e-4, math.pi, angle, "recorded_angle")
-    yield row("rad", 1e-9, 20, angle)
-    yield row(
-        "N/m", 0.05, 1e7, ("N/mm", "kN/m", "N/m"), "stiffness parallel_stiffness series_stiffness"
+    rows = tomllib.loads(_TABLE.read_text(encoding="utf-8"))["rows"]
+    return tuple(
+        Size(unit, low, high, tuple(slips.split()), frozenset(fields.split()))
+        for unit, low, high, slips, fields in rows
     )
-    yield row("N/m", 1e-3, 1e9, ("N/mm", "kN/m", "N/m"))
-    yield row("N*m/rad", 1e-4, 1e6, ("N*mm/rad", "kN*m/rad", "N*m/rad"))
-    yield row("N*s/m", 1e-5, 1e7, ("N*s/mm", "kN*s/m", "N*s/m"))
-    yield row("N*m*s/rad", 1e-6, 1e4, ("mN*m*s/rad", "N*mm*s/rad", "N*m*s/rad"))
-    yield row("N*m*s", 1e-6, 1e4, ("mN*m*s", "N*mm*s", "N*m*s"))
-    yield row("kg", 2e-3, 300, ("g", "kg"), "mass payload")
-    yield row("kg", 1e-4, 300, ("g", "kg"))
-    yield row("kg*m^2", 1e-11, 1, inertia, "rotor_inertia axis_inertia")
-    yield row("kg*m^2", 1e-11, 300, inertia)
-    yield row("kg*m^2/rad", 1e-11, 300, ("g*m^2/rad", "kg*m^2/rad"))
-    yield row("N", 0.02, 5e3, ("mN", "kN", "N"), "recorded_force")
-    yield row("N", 1e-6, 1e4, ("mN", "N", "kN"))
-    yield row("N*m", 1e-4, 2e3, torque, "torque peak_torque wanted_torque initial_force")
-    yield row("N*m", 5e-4, 2e3, torque, "recorded_torque")
-    yield row("N*m", 1e-9, 2e3, torque)
-    yield row("N*m/s", 1e-12, 1e6, ("mN*m/s", "N*m/s"))
-    yield row("N^2*m^2*s", 1e-18, 1, ())
-    yield row("rad/s", 1e-4, 30, turning, "velocity angular_velocity speed amplitude command")
-    yield row("rad/s", 1e-2, 1e5, ("Hz", "kHz", "rad/s"), "bandwidth cutoff frequency")
-    yield row("rad/s", 1e-12, 1e3, turning)
-    yield row("rad/s^2", 1e-4, 1e5, ("deg/s^2", "rad/s^2"))
-    yield row("m/s", 1e-6, 20, ("mm/s", "cm/s", "m/s"))
-    yield row("m/s^2", 1e-6, 200, ("mm/s^2", "cm/s^2", "m/s^2"))
-    yield row("1/s", 1e-4, 1e6, ())
-    # A motor without gears turns 0.1047 rad/s per rpm.
-    yield row("rad/s/rpm", 1e-8, 1, ())
-    yield row("rad/s/V", 1e-5, 1e4, ("rad/s/V", "rad/s/mV"))
-    yield row("rad/s/A", 1e-5, 1e6, ("rad/s/A", "rad/s/mA"))
-    yield row("rad/s/counts", 1e-9, 1e3, ())
-    yield row("rpm", 1e-3, 1e6, ())
-    yield row("V", 1e-6, 1e3, ("mV", "V"))
-    yield row("A", 1e-6, 1e3, ("mA", "A"))
-    yield row("counts", 1e-3, 1e10, ())
-    for unit in ("rpm", "V", "A", "counts"):
-        yield row(f"{unit}*s/rad", 1e-9, 1e10, ())
-        yield row(f"{unit}/(N*m)", 1e-6, 1e12, ())
-    yield row("rad/(N*m)", 1e-7, 1e3, ("mrad/(N*m)", "deg/(N*m)", "rad/(N*m)"))
-    yield row("rad/(N*m*s)", 1e-7, 1e5, ("mrad/(N*m*s)", "rad/(N*m*s)"))
 
 
 @lru_cache(maxsize=1024)

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import Hash, Title
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.plausible import unusual
 from nrs_design.spec.quantity import Quantity
 
@@ -64,10 +64,9 @@ class IdentifiedSpec(SpecModel):
         description="why the records may not determine the values, by nrs-design identify; the "
         "gate fails on them (NRS107)",
     )
-    accept_doubt: Title | None = Field(
-        default=None,
-        description="why the values are used despite the doubts, or without any despite their "
-        "unusual sizes: one line, which is printed with every proof; the gate then passes",
+    accept_doubt: Title | None = optional(
+        "why the values are used despite the doubts, or without any despite their "
+        "unusual sizes: one line, which is printed with every proof; the gate then passes"
     )
 
     checks: ClassVar[tuple[Row[Any], ...]] = (
@@ -90,10 +89,9 @@ class IdentifiedRangesSpec(IdentifiedSpec):
     """What it notes down beside values with ranges: what they hold, and that they are those."""
 
     range_covers: Coverage | None = None
-    range_id: Hash | None = Field(
-        default=None,
-        description="SHA-256 over identified values and doubts, by nrs-design identify: what was "
-        "changed by hand since is refused",
+    range_id: Hash | None = optional(
+        "SHA-256 over identified values and doubts, by nrs-design identify: what was "
+        "changed by hand since is refused"
     )
 
     checks: ClassVar[tuple[Row[Any], ...]] = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 from pydantic_core import PydanticCustomError
@@ -76,10 +76,10 @@ def _one(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> 
 
 
 # In the place of a quantity: as large as is found.
-LARGEST = "largest"
+LARGEST: Literal["largest"] = "largest"
 
 
-def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | str:
+def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | Literal["largest"]:
     """Read both in one place, so that what is neither is one fault."""
     if value == LARGEST:
         return LARGEST
@@ -241,10 +241,7 @@ Zero = Annotated[Quantity, _one(kinds.ZERO)]
 AngularVelocity = Annotated[Quantity, _one(kinds.ANGULAR_VELOCITY)]
 SignedAngularVelocity = Annotated[Quantity, _one(kinds.ANGULAR_VELOCITY, signed=True)]
 Torque = Annotated[Quantity, _one(kinds.TORQUE)]
-TorqueOrLargest = Annotated[
-    Quantity | str,
-    _or_largest(kinds.INITIAL_TORQUE),
-]
+TorqueOrLargest = Annotated[Quantity | Literal["largest"], _or_largest(kinds.INITIAL_TORQUE)]
 SignedTorque = Annotated[Quantity, _one(kinds.TORQUE, signed=True)]
 TorqueRate = Annotated[Quantity, _one(kinds.TORQUE_RATE)]
 Bandwidth = Annotated[Quantity, _one(kinds.BANDWIDTH)]

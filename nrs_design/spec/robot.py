@@ -10,7 +10,7 @@ from pydantic import Field
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Name, Positive, Title, read_exact, whole
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.motion import CommandUnit, MotionLoopSpec, commands_in
 from nrs_design.spec.quantity_fields import (
     ActuatorGain,
@@ -55,15 +55,9 @@ class TensorSpec(SpecModel):
     xx: MomentOfInertia = Field(description="moment about x in kg*m^2")
     yy: MomentOfInertia = Field(description="moment about y in kg*m^2")
     zz: MomentOfInertia = Field(description="moment about z in kg*m^2")
-    xy: ProductOfInertia | None = Field(
-        default=None, description="entry (x, y) of the tensor in kg*m^2; default 0"
-    )
-    xz: ProductOfInertia | None = Field(
-        default=None, description="entry (x, z) of the tensor in kg*m^2; default 0"
-    )
-    yz: ProductOfInertia | None = Field(
-        default=None, description="entry (y, z) of the tensor in kg*m^2; default 0"
-    )
+    xy: ProductOfInertia | None = optional("entry (x, y) of the tensor in kg*m^2; default 0")
+    xz: ProductOfInertia | None = optional("entry (x, z) of the tensor in kg*m^2; default 0")
+    yz: ProductOfInertia | None = optional("entry (y, z) of the tensor in kg*m^2; default 0")
 
     def _excess(self) -> str | None:
         """Return the moment that exceeds the sum of the two others."""
@@ -92,9 +86,7 @@ class BodySpec(SpecModel):
         description="slender-rod: m l^2/12 about both axes across the body's length, 0 along it; "
         "tensor: as given under `tensor`"
     )
-    tensor: TensorSpec | None = Field(
-        default=None, description="inertia about the center of mass, with `inertia: tensor`"
-    )
+    tensor: TensorSpec | None = optional("inertia about the center of mass, with `inertia: tensor`")
 
     checks = (
         Row(
@@ -202,10 +194,8 @@ class DriveSpec(SpecModel):
     encoder_counts: Counts = Field(
         description="counts of the encoder per turn of the gearhead's output"
     )
-    largest_command: LargestCommand | None = Field(
-        default=None,
-        description="largest command that the motor's driver takes, in rpm: exported code "
-        "saturates there",
+    largest_command: LargestCommand | None = optional(
+        "largest command that the motor's driver takes, in rpm: exported code saturates there"
     )
 
     checks = commands_in(_DRIVEN_BY, "gain", "coulomb_friction", "largest_command")
@@ -263,5 +253,5 @@ class RobotSpec(SpecModel):
     workspace: RobotWorkspaceSpec = Field(description="poses that the robot is made for")
     task_limits: TaskLimitsSpec = Field(description="largest motion of the endoscope")
     drive: DriveSpec = Field(description="what moves each joint")
-    control: RobotControlSpec | None = Field(default=None, description="motion control")
-    balance: BalanceSpec | None = Field(default=None, description="passive gravity balance")
+    control: RobotControlSpec | None = optional("motion control")
+    balance: BalanceSpec | None = optional("passive gravity balance")

@@ -12,7 +12,7 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
 from nrs_design.spec.units import command_unit
@@ -73,11 +73,10 @@ class SamplingSpec(IdentifiedSpec):
         description="age of the force sample that the law uses, in samples: one number, or "
         "[smallest, largest] for a delay that may differ at every sample"
     )
-    outer_period: Duration | None = Field(
-        default=None,
-        description="time between two samples of the outer loop (filter of the force and "
+    outer_period: Duration | None = optional(
+        "time between two samples of the outer loop (filter of the force and "
         "admittance) in s, where it is not that of the motion loop: a whole number of its "
-        "periods, or a whole part of one; `delay` counts samples of the force, so these",
+        "periods, or a whole part of one; `delay` counts samples of the force, so these"
     )
     admittance: Literal["exact", "euler"] = Field(
         default="exact",
@@ -126,27 +125,23 @@ class SamplingSpec(IdentifiedSpec):
 class DisturbancesSpec(SpecModel):
     """Bounds on what acts on the loop from outside; what is left out is zero."""
 
-    command: AngularVelocity | None = Field(
-        default=None, description="largest velocity command in rad/s, however it changes"
+    command: AngularVelocity | None = optional(
+        "largest velocity command in rad/s, however it changes"
     )
-    friction: Command | None = Field(
-        default=None,
-        description="largest Coulomb friction of the motor, as the command that it takes, in the "
-        "unit of the commands, such as rpm",
+    friction: Command | None = optional(
+        "largest Coulomb friction of the motor, as the command that it takes, in the "
+        "unit of the commands, such as rpm"
     )
-    encoder_step: Angle | None = Field(
-        default=None,
-        description="resolution of the measured joint angle in rad: an error of half a step",
+    encoder_step: Angle | None = optional(
+        "resolution of the measured joint angle in rad: an error of half a step"
     )
-    force_step: Torque | None = Field(
-        default=None,
-        description="resolution of the measured torque in N*m: an error of half a step",
+    force_step: Torque | None = optional(
+        "resolution of the measured torque in N*m: an error of half a step"
     )
 
-    largest_angle: Angle | None = Field(
-        default=None,
-        description="largest joint angle and reference in rad that the law holds as "
-        "single-precision numbers: their absolute rounding acts as a disturbance",
+    largest_angle: Angle | None = optional(
+        "largest joint angle and reference in rad that the law holds as "
+        "single-precision numbers: their absolute rounding acts as a disturbance"
     )
 
     def bounds(self) -> dict[str, tuple[Fraction, str]]:

@@ -14,7 +14,7 @@ from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import all_of, as_text, fault
 from nrs_design.spec.fields import LABEL_PATTERN, Label, Title, UnitFraction, whole
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
     Angle,
@@ -117,29 +117,21 @@ class SinusoidSpec(SpecModel):
 
     amplitude: AngularVelocity = Field(description="amplitude in rad/s")
     frequency: Bandwidth = Field(description="frequency in Hz, or rad/s")
-    offset: SignedAngularVelocity | None = Field(
-        default=None, description="mean in rad/s; default: none"
-    )
+    offset: SignedAngularVelocity | None = optional("mean in rad/s; default: none")
 
 
 class CommandProfileSpec(SpecModel):
     """The velocity that the surgeon commands, in one of four ways; positive raises the angle."""
 
-    constant: SignedAngularVelocity | None = Field(
-        default=None, description="one velocity all the time, in rad/s"
+    constant: SignedAngularVelocity | None = optional("one velocity all the time, in rad/s")
+    points: Breakpoints | None = optional(
+        "breakpoints [[time, velocity], ...], with straight lines between (thesis fig. "
+        "6.7); the last velocity is kept. A time that is there twice is a jump"
     )
-    points: Breakpoints | None = Field(
-        default=None,
-        description="breakpoints [[time, velocity], ...], with straight lines between (thesis fig. "
-        "6.7); the last velocity is kept. A time that is there twice is a jump",
-    )
-    sinusoid: SinusoidSpec | None = Field(
-        default=None, description="{amplitude: ..., frequency: ..., offset: ...}"
-    )
-    csv: File | None = Field(
-        default=None,
-        description="file below the folder of the spec, with columns time_s and velocity_deg_s or "
-        "velocity_rad_s; straight lines between its rows",
+    sinusoid: SinusoidSpec | None = optional("{amplitude: ..., frequency: ..., offset: ...}")
+    csv: File | None = optional(
+        "file below the folder of the spec, with columns time_s and velocity_deg_s or "
+        "velocity_rad_s; straight lines between its rows"
     )
 
     checks = one_of("a command is given in one way", "write constant, points, sinusoid or csv")
@@ -187,23 +179,20 @@ class ThresholdControlSpec(SpecModel):
 class ControlSpec(SpecModel):
     """Which controller is in force when, in one of six ways."""
 
-    fixed: Label | None = Field(default=None, description="one controller all the time")
-    schedule: Schedule | None = Field(
-        default=None, description="switches at times, [[0 s, insertion], [2 s, withdrawal], ...]"
+    fixed: Label | None = optional("one controller all the time")
+    schedule: Schedule | None = optional(
+        "switches at times, [[0 s, insertion], [2 s, withdrawal], ...]"
     )
-    sign: SignControlSpec | None = Field(
-        default=None, description="{insertion: ..., withdrawal: ...}, by command and torque"
+    sign: SignControlSpec | None = optional(
+        "{insertion: ..., withdrawal: ...}, by command and torque"
     )
-    contact: Annotated[dict[Label, Label], Field(min_length=1)] | None = Field(
-        default=None,
-        description="environment -> controller, by what was touched last (thesis 6.4), such as "
-        "{soft: tissue, stiff: tool}; the first one before any contact",
+    contact: Annotated[dict[Label, Label], Field(min_length=1)] | None = optional(
+        "environment -> controller, by what was touched last (thesis 6.4), such as "
+        "{soft: tissue, stiff: tool}; the first one before any contact"
     )
-    threshold: ThresholdControlSpec | None = Field(
-        default=None, description="{position: ..., force: ..., torque: ...}"
-    )
-    logic: Literal["mode-logic"] | None = Field(
-        default=None, description="mode-logic: as the spec's mode_logic says (thresholds)"
+    threshold: ThresholdControlSpec | None = optional("{position: ..., force: ..., torque: ...}")
+    logic: Literal["mode-logic"] | None = optional(
+        "mode-logic: as the spec's mode_logic says (thresholds)"
     )
 
     checks = one_of(
@@ -231,22 +220,14 @@ class ControlSpec(SpecModel):
 class ErrorsSpec(SpecModel):
     """What acts on the sampled loop and its sensors; what is left out is zero."""
 
-    friction: Command | None = Field(
-        default=None,
-        description="Coulomb friction of the motor, as the command that it takes, such as rpm",
+    friction: Command | None = optional(
+        "Coulomb friction of the motor, as the command that it takes, such as rpm"
     )
-    encoder_step: Angle | None = Field(
-        default=None, description="resolution of the measured joint angle in rad"
-    )
-    force_step: Torque | None = Field(
-        default=None, description="resolution of the measured torque in N*m"
-    )
-    force_noise: Torque | None = Field(
-        default=None, description="standard deviation of white noise on the torque in N*m"
-    )
-    jitter: UnitFraction | None = Field(
-        default=None,
-        description="how far a sample may be late, as a share of the period; the law does not know",
+    encoder_step: Angle | None = optional("resolution of the measured joint angle in rad")
+    force_step: Torque | None = optional("resolution of the measured torque in N*m")
+    force_noise: Torque | None = optional("standard deviation of white noise on the torque in N*m")
+    jitter: UnitFraction | None = optional(
+        "how far a sample may be late, as a share of the period; the law does not know"
     )
 
 
@@ -261,35 +242,30 @@ class PoseSpec(SpecModel):
 class AxisSpec(SpecModel):
     """What one axis has for itself; what is left out is as the scenario says."""
 
-    command: CommandProfileSpec | None = Field(default=None, description="as above")
-    surfaces: Surfaces | None = Field(default=None, description="as above; [] for nothing")
-    control: ControlSpec | None = Field(default=None, description="as above")
-    wanted_torque: Torque | None = Field(default=None, description="as above, in N*m")
+    command: CommandProfileSpec | None = optional("as above")
+    surfaces: Surfaces | None = optional("as above; [] for nothing")
+    control: ControlSpec | None = optional("as above")
+    wanted_torque: Torque | None = optional("as above, in N*m")
 
 
 class AxesSpec(SpecModel):
     """Three axes at once, on the links of the robot that `coupling` names."""
 
-    pose: PoseSpec | None = Field(
-        default=None,
-        description="{phi: 0 deg, psi: 0 deg, d: 200 mm}, where the robot rests at first, and "
-        "from where every axis counts its angle; default: the middle of the robot's workspace",
+    pose: PoseSpec | None = optional(
+        "{phi: 0 deg, psi: 0 deg, d: 200 mm}, where the robot rests at first, and "
+        "from where every axis counts its angle; default: the middle of the robot's workspace"
     )
-    theta1: AxisSpec | None = Field(default=None, description="what the left axis has for itself")
-    theta2: AxisSpec | None = Field(default=None, description="what the right axis has for itself")
-    theta3: AxisSpec | None = Field(default=None, description="what the middle axis has for itself")
+    theta1: AxisSpec | None = optional("what the left axis has for itself")
+    theta2: AxisSpec | None = optional("what the right axis has for itself")
+    theta3: AxisSpec | None = optional("what the middle axis has for itself")
 
 
 class ScenarioLimitsSpec(SpecModel):
     """What the gate wants a simulated run to keep; what is left out is not looked at."""
 
-    torque: Torque | None = Field(default=None, description="largest torque of the tissue in N*m")
-    deflection: Angle | None = Field(
-        default=None, description="largest depth below a surface in rad, about the pivot"
-    )
-    velocity: AngularVelocity | None = Field(
-        default=None, description="largest speed of the axis in rad/s"
-    )
+    torque: Torque | None = optional("largest torque of the tissue in N*m")
+    deflection: Angle | None = optional("largest depth below a surface in rad, about the pivot")
+    velocity: AngularVelocity | None = optional("largest speed of the axis in rad/s")
 
     checks = (
         Row(
@@ -311,39 +287,33 @@ class ScenarioSpec(SpecModel):
 
     title: Title = Field(default="", description="one line for people, at most 200 characters")
     command: CommandProfileSpec = Field(description="velocity that the surgeon commands")
-    duration: Duration | None = Field(
-        default=None,
-        description="length of the run in s, at most an hour; default: that of points or csv",
+    duration: Duration | None = optional(
+        "length of the run in s, at most an hour; default: that of points or csv"
     )
-    start: SignedAngle | None = Field(
-        default=None, description="angle at which the axis rests at first, in rad; default: 0"
+    start: SignedAngle | None = optional(
+        "angle at which the axis rests at first, in rad; default: 0"
     )
     surfaces: Surfaces = Field(
         default=(),
         description="what is touched where; where several are, forces add up. Default: nothing",
     )
-    control: ControlSpec | None = Field(
-        default=None,
-        description="which controller is in force; default: the spec's mode_logic, else the first "
-        "controller",
+    control: ControlSpec | None = optional(
+        "which controller is in force; default: the spec's mode_logic, else the first controller"
     )
-    wanted_torque: Torque | None = Field(
-        default=None,
-        description="Fd of force controllers in N*m, towards rising angles; default: limits.torque",
+    wanted_torque: Torque | None = optional(
+        "Fd of force controllers in N*m, towards rising angles; default: limits.torque"
     )
-    errors: ErrorsSpec | None = Field(
-        default=None, description="friction, resolutions, noise and jitter; for the sampled engine"
+    errors: ErrorsSpec | None = optional(
+        "friction, resolutions, noise and jitter; for the sampled engine"
     )
-    limits: ScenarioLimitsSpec | None = Field(
-        default=None,
-        description="what the run must keep for the gate to pass (NRS109), such as "
-        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it",
+    limits: ScenarioLimitsSpec | None = optional(
+        "what the run must keep for the gate to pass (NRS109), such as "
+        "{torque: 0.3 N*m, deflection: 1 deg}; without it, the gate does not simulate it"
     )
     seed: Seed = Field(default=0, description="of noise, jitter and varying delay")
-    axes: AxesSpec | None = Field(
-        default=None,
-        description="three axes at once, for a spec with `coupling: {robot: ...}`: {} for all "
-        "alike, or what each has for itself. Default: one axis alone",
+    axes: AxesSpec | None = optional(
+        "three axes at once, for a spec with `coupling: {robot: ...}`: {} for all "
+        "alike, or what each has for itself. Default: one axis alone"
     )
 
     def _too_long(self) -> tuple[str, str] | None:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import whole
-from nrs_design.spec.model import SpecModel
+from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.provenance import IdentifiedSpec
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
@@ -91,50 +91,33 @@ class SensorSpec(SpecModel):
     Errors that last move the robot in free motion, as an admittance integrates them: the creep.
     """
 
-    bias: Torque | None = Field(
-        default=None,
-        description="largest bias of the torque about the pivot after taring, in N*m",
+    bias: Torque | None = optional(
+        "largest bias of the torque about the pivot after taring, in N*m"
     )
-    force_bias: Force | None = Field(
-        default=None,
-        description="largest bias of the measured force after taring, in N; it is a torque about "
-        "the pivot if the pivot is not where the sensor is",
+    force_bias: Force | None = optional(
+        "largest bias of the measured force after taring, in N; it is a torque about "
+        "the pivot if the pivot is not where the sensor is"
     )
-    drift: TorqueRate | None = Field(
-        default=None, description="largest drift of the bias in N*m/s; with tared_every"
+    drift: TorqueRate | None = optional("largest drift of the bias in N*m/s; with tared_every")
+    tared_every: Duration | None = optional("longest time between two tarings in s; with drift")
+    resolution: Torque | None = optional(
+        "step of the measured torque in N*m: an error of half a step"
     )
-    tared_every: Duration | None = Field(
-        default=None, description="longest time between two tarings in s; with drift"
+    noise_density: NoiseDensity | None = optional(
+        "one-sided power density of white noise of the torque, in N^2*m^2*s, which is "
+        "(N*m)^2/Hz; shown, and in no bound"
     )
-    resolution: Torque | None = Field(
-        default=None, description="step of the measured torque in N*m: an error of half a step"
+    filter: FilterSpec | None = optional("low-pass of the force signal: a part of the loop")
+    tool: ToolSpec | None = optional("what hangs on the sensor; its weight is taken off the signal")
+    pose_error: Angle | None = optional(
+        "largest error of the sensor's orientation in the robot, an angle; with tool"
     )
-    noise_density: NoiseDensity | None = Field(
-        default=None,
-        description="one-sided power density of white noise of the torque, in N^2*m^2*s, which is "
-        "(N*m)^2/Hz; shown, and in no bound",
+    imu_error: Angle | None = optional(
+        "largest error of the measured direction of gravity, an angle; with tool"
     )
-    filter: FilterSpec | None = Field(
-        default=None, description="low-pass of the force signal: a part of the loop"
-    )
-    tool: ToolSpec | None = Field(
-        default=None, description="what hangs on the sensor; its weight is taken off the signal"
-    )
-    pose_error: Angle | None = Field(
-        default=None,
-        description="largest error of the sensor's orientation in the robot, an angle; with tool",
-    )
-    imu_error: Angle | None = Field(
-        default=None,
-        description="largest error of the measured direction of gravity, an angle; with tool",
-    )
-    pivot: PointSpec | None = Field(
-        default=None, description="the pivot, from the origin of the sensor; default: there"
-    )
-    contact: PointSpec | None = Field(
-        default=None,
-        description="the contact point, from the origin of the sensor: errors are shown as a force "
-        "there, too",
+    pivot: PointSpec | None = optional("the pivot, from the origin of the sensor; default: there")
+    contact: PointSpec | None = optional(
+        "the contact point, from the origin of the sensor: errors are shown as a force there, too"
     )
 
     def _alone(self) -> tuple[str, str, str] | None:

@@ -17,7 +17,7 @@ from nrs_design.spec.check import Row, each
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.faults import Location, as_text, fault, reported
 from nrs_design.spec.fields import Exact, Label
-from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
+from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel, optional
 from nrs_design.spec.quantity import QUANTITY_PATTERN, parse_quantity
 from nrs_design.spec.references import NO_SUCH, Reference
 
@@ -140,16 +140,16 @@ _TRANSITIONS_SCHEMA: dict[str, Any] = {
 class SwitchingSpec(SpecModel):
     """Rules for the switching signal; without any, it is arbitrary."""
 
-    dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = Field(
-        default=None, description=_DWELL_TIME
+    dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = optional(
+        _DWELL_TIME
     )
     longest_dwell_time: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = (
-        Field(default=None, description=_LONGEST_DWELL_TIME)
+        optional(_LONGEST_DWELL_TIME)
     )
     transitions: Annotated[
         tuple[Transition, ...] | None,
         ReadBy(_read_transitions, _TRANSITIONS_SCHEMA),
-    ] = Field(default=None, description=_TRANSITIONS)
+    ] = optional(_TRANSITIONS)
 
     @property
     def is_arbitrary(self) -> bool:

@@ -20,7 +20,7 @@ from nrs_design.proof.text import exact_text
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Label
-from nrs_design.spec.model import ReadBy, SpecModel
+from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import (
     AngularAcceleration,
@@ -75,11 +75,9 @@ SignalSpec = CommandSignalSpec | TorqueSignalSpec
 class LogicSignalsSpec(SpecModel):
     """What the logic sees."""
 
-    command: CommandSignalSpec | None = Field(
-        default=None, description="velocity command, positive towards the tissue"
-    )
-    torque: TorqueSignalSpec | None = Field(
-        default=None, description="torque of the tissue on the robot, positive where it is pushed"
+    command: CommandSignalSpec | None = optional("velocity command, positive towards the tissue")
+    torque: TorqueSignalSpec | None = optional(
+        "torque of the tissue on the robot, positive where it is pushed"
     )
 
 
@@ -96,12 +94,8 @@ ONE_SIDE = (
 class CommandCondition(SpecModel):
     """One side of a threshold on the command."""
 
-    above: SignedAngularVelocity | None = Field(
-        default=None, description=_ABOVE.format(unit="rad/s")
-    )
-    below: SignedAngularVelocity | None = Field(
-        default=None, description=_BELOW.format(unit="rad/s")
-    )
+    above: SignedAngularVelocity | None = optional(_ABOVE.format(unit="rad/s"))
+    below: SignedAngularVelocity | None = optional(_BELOW.format(unit="rad/s"))
 
     checks = ONE_SIDE
 
@@ -109,8 +103,8 @@ class CommandCondition(SpecModel):
 class TorqueCondition(SpecModel):
     """One side of a threshold on the torque."""
 
-    above: SignedTorque | None = Field(default=None, description=_ABOVE.format(unit="N*m"))
-    below: SignedTorque | None = Field(default=None, description=_BELOW.format(unit="N*m"))
+    above: SignedTorque | None = optional(_ABOVE.format(unit="N*m"))
+    below: SignedTorque | None = optional(_BELOW.format(unit="N*m"))
 
     checks = ONE_SIDE
 
@@ -123,12 +117,8 @@ class LogicSwitchSpec(SpecModel):
 
     source: Label = Field(alias="from", description="controller that is left")
     target: Label = Field(alias="to", description="controller that takes over")
-    command: CommandCondition | None = Field(
-        default=None, description="{above: ...} or {below: ...}, in rad/s"
-    )
-    torque: TorqueCondition | None = Field(
-        default=None, description="{above: ...} or {below: ...}, in N*m"
-    )
+    command: CommandCondition | None = optional("{above: ...} or {below: ...}, in rad/s")
+    torque: TorqueCondition | None = optional("{above: ...} or {below: ...}, in N*m")
 
     @property
     def conditions(self) -> dict[str, Condition]:
@@ -174,10 +164,9 @@ class ThresholdLogicSpec(SpecModel):
     switches: Annotated[
         tuple[LogicSwitchSpec, ...], Field(min_length=1, max_length=MAX_SWITCHES)
     ] = Field(description="switches from one controller to another; the first that may be made is")
-    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = Field(
-        default=None,
-        description="shortest time in s for which a controller is held whatever the signals "
-        "say; one for all, or by name. Default: what thresholds, noise and age give anyway",
+    hold: Annotated[DwellTimes | None, ReadBy(read_dwell_times, DWELL_SCHEMA)] = optional(
+        "shortest time in s for which a controller is held whatever the signals "
+        "say; one for all, or by name. Default: what thresholds, noise and age give anyway"
     )
 
     def _unsaid(self) -> Iterator[tuple[Location, str]]:

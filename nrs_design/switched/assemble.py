@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec, Spec, SwitchedSystemSpec
-    from nrs_design.spec.sampling import SamplingSpec
+    from nrs_design.spec.coupling import CouplingSpec
+    from nrs_design.spec.operating import OperatingConditions
     from nrs_design.switched.coupled import AxesCoupling
     from nrs_design.switched.gain_box import GainBox
     from nrs_design.switched.shared_state import SharedState
@@ -145,16 +146,32 @@ def assemble(
         If the coordinates are unknown, if a stiffness or a gain does not stay positive, or if the
         rules of switching make too many switches.
     """
+    from nrs_design.spec.build_plant import build_conditions
+    from nrs_design.switched.gain_box import gain_boxes
+
     _check_scale(scale)
-    if spec.sampling is not None:
-        system = _assemble_sampled(spec, spec.sampling, plant, design, coordinates, scale)
+    conditions = build_conditions(spec)
+    plant = plant.scaled(scale, conditions.touched)
+    boxes = gain_boxes(conditions.gains, design, scale)
+    coupling = _coupling_of(conditions.coupling, plant, scale)
+    if conditions.sampling is not None:
+        if coordinates != "deflection":
+            raise AssemblyError(
+                f"coordinates {coordinates!r} do not apply to the sampled loop",
+                remedy="use coordinates: deflection",
+            )
+        from nrs_design.switched.sampled_loop import close_sampled_loop
+
+        sampling = conditions.sampling
+        system = close_sampled_loop(conditions, sampling, plant, design, boxes, coupling)
     elif coordinates in ("deflection", "force"):
-        system = _assemble_continuous(spec, plant, design, coordinates, scale)
+        state = state_of(conditions, plant, design, coordinates, boxes)
+        system = _assemble_continuous(conditions, plant, state, coupling)
     else:
         raise AssemblyError(
             f"unknown coordinates {coordinates!r}", remedy="choose deflection or force"
         )
-    period = None if spec.sampling is None else spec.sampling.outer
+    period = None if conditions.sampling is None else conditions.sampling.outer
     sensed = sensor_texts(
         design.sensor, period, disturbed=bool(system.channels) and period is not None
     )
@@ -163,45 +180,38 @@ def assemble(
         *sensed,
         *logic_texts(spec),
         *identified_texts(spec),
-        *preload_texts(spec, scale),
+        *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
     )
     return replace(system, assumptions=texts)
 
 
 def _assemble_continuous(
-    spec: InteractionDesignSpec,
-    plant: Plant,
-    design: ControllerDesign,
-    coordinates: str,
-    scale: Fraction,
+    conditions: OperatingConditions, plant: Plant, state: SharedState, coupling: AxesCoupling | None
 ) -> SwitchedSystem:
     from nrs_design.switched.close_loop import close_loop
-    from nrs_design.switched.gain_box import gain_boxes
 
-    plant = plant.scaled(scale, spec.touched)
-    state = state_of(spec, plant, design, coordinates, gain_boxes(spec, design, scale))
-    system = close_loop(spec.name, state, spec.switching, spec.contact)
-    if spec.disturbances is not None:
-        if coordinates != "deflection":
+    system = close_loop(conditions.name, state, conditions.switching, conditions.contact)
+    if conditions.disturbances is not None:
+        if state.coordinates != "deflection":
             raise AssemblyError(
                 "bounds on what disturbs do not apply to force coordinates",
                 remedy="use coordinates: deflection",
             )
         from nrs_design.switched.commanded import check_memory, with_command
 
-        check_memory(state.touched)
-        system = with_command(system, state, spec)
-    if (coupling := _coupling_of(spec, plant, scale)) is not None:
+        check_memory(state.environments)
+        system = with_command(system, state, conditions.disturbances, conditions.torque)
+    if coupling is not None:
         from nrs_design.switched.coupled import couple_axes
 
         system = couple_axes(system, coupling)
-    if spec.goals is not None and spec.goals.constant_force is not None:
+    if conditions.constant_force:
         from nrs_design.switched.constant_force import with_constant_force
 
         system = with_constant_force(system)
-    if spec.goals is not None and spec.goals.initial_force is not None:
-        if coordinates != "deflection":
+    if conditions.initial_force is not None:
+        if state.coordinates != "deflection":
             raise AssemblyError(
                 "decay although signals saturate is shown in deflection coordinates: a motion "
                 "begins at a deflection",
@@ -210,12 +220,12 @@ def _assemble_continuous(
             )
         from nrs_design.switched.saturation import with_saturation
 
-        system = with_saturation(system, spec, plant.actuator, state)
+        system = with_saturation(system, conditions, plant.actuator, state)
     return system
 
 
 def state_of(
-    spec: InteractionDesignSpec,
+    conditions: OperatingConditions,
     plant: Plant,
     design: ControllerDesign,
     coordinates: str,
@@ -225,7 +235,9 @@ def state_of(
 
     Parameters
     ----------
-    spec, plant, design, coordinates
+    conditions : OperatingConditions
+        With what idle states do, and the offset of force controllers.
+    plant, design, coordinates
         As for `assemble`.
     boxes : mapping of str to GainBox
         Where the gains may be, by controller; by default, at what ships.
@@ -238,38 +250,19 @@ def state_of(
     from nrs_design.switched.shared_state import shared_state
 
     loop = plant.motion_loop(design.motion.Kp, design.motion.Kd)
-    idle, offset = spec.idle_states, spec.offset
+    idle, offset = conditions.idle, conditions.offset
     return shared_state(plant, loop, design, coordinates, idle=idle, offset=offset, boxes=boxes)
 
 
-def _assemble_sampled(
-    spec: InteractionDesignSpec,
-    sampling: SamplingSpec,
-    plant: Plant,
-    design: ControllerDesign,
-    coordinates: str | None,
-    scale: Fraction,
-) -> SwitchedSystem:
-    if coordinates != "deflection":
-        raise AssemblyError(
-            f"coordinates {coordinates!r} do not apply to the sampled loop",
-            remedy="use coordinates: deflection",
-        )
-    from nrs_design.switched.gain_box import gain_boxes
-    from nrs_design.switched.sampled_loop import close_sampled_loop
-
-    scaled, boxes = plant.scaled(scale, spec.touched), gain_boxes(spec, design, scale)
-    coupling = _coupling_of(spec, plant, scale)
-    return close_sampled_loop(spec, sampling, scaled, design, boxes, coupling)
-
-
-def _coupling_of(spec: InteractionDesignSpec, plant: Plant, scale: Fraction) -> AxesCoupling | None:
+def _coupling_of(
+    coupling: CouplingSpec | None, plant: Plant, scale: Fraction
+) -> AxesCoupling | None:
     """Return what the links do to each axis, with its ranges scaled; None if that is not said."""
-    if spec.coupling is None or plant.load_inertia is None:
+    if coupling is None or plant.load_inertia is None:
         return None
     from nrs_design.switched.coupled import AxesCoupling
 
-    return AxesCoupling.of(spec.coupling, plant.load_inertia).scaled(scale)
+    return AxesCoupling.of(coupling, plant.load_inertia).scaled(scale)
 
 
 def _check_scale(scale: Fraction) -> None:

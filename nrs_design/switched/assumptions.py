@@ -20,9 +20,11 @@ from nrs_design.switched.parameters import UncertainParameter
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.controllers.sensor import Sensor
+    from nrs_design.models.actuator import ActuatorRanges
     from nrs_design.models.contact.environment import Environment
     from nrs_design.spec import InteractionDesignSpec
     from nrs_design.spec.environment_estimator import EstimatorSpec
+    from nrs_design.spec.operating import Preload
     from nrs_design.spec.provenance import IdentifiedRangesSpec
 
 MAX_LISTED = 20
@@ -87,20 +89,38 @@ def contact_texts(design: ControllerDesign) -> Iterator[Assumption]:
             yield say("contacts.controller", bound, controller=c.name, contacts=contacts)
 
 
-def ranges_text(touched: Iterable[Environment]) -> str:
+def ranges_text(environments: Iterable[Environment]) -> str:
     """Say in which ranges the parameters of environments are."""
     return "; ".join(
         f"{environment.name}: {name} in {_ends(interval)} {unit}"
-        for environment in touched
+        for environment in environments
         for (name, interval), unit in zip(
             environment.parameters.items(), environment.law.units(rotational=True), strict=True
         )
     )
 
 
-def at_once_texts(touched: Iterable[Environment]) -> Iterator[Assumption]:
+def motor_text(ranges: ActuatorRanges) -> str:
+    """Say where gain and time constant of the motor are."""
+    texts = (
+        f"its {name} {_interval_text(interval)} {unit}"
+        for name, interval, unit in (
+            ("gain", ranges.gain, f"rad/s/{ranges.command}"),
+            ("time constant", ranges.time_constant, "s"),
+        )
+    )
+    return " and ".join(texts)
+
+
+def _interval_text(interval: Interval) -> str:
+    if interval.low == interval.high:
+        return f"is {exact_text(interval.low)}"
+    return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"
+
+
+def at_once_texts(environments: Iterable[Environment]) -> Iterator[Assumption]:
     """Say what is taken for granted where several environments are touched at once."""
-    for environment in touched:
+    for environment in environments:
         if environment.parts:
             parts = " and ".join(part.name for part in environment.parts)
             how = "one-side" if environment.each_losable else "at-once"
@@ -175,21 +195,17 @@ def _coverage(name: str, covered: str, item: IdentifiedRangesSpec) -> Assumption
     return say("coverage.range", covered, name=name, covered=covered, since=since)
 
 
-def preload_texts(spec: InteractionDesignSpec, scale: Fraction) -> Iterator[Assumption]:
-    """Say what linear ranges cover of power laws that are known within a preload.
+def preload_texts(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[Assumption]:
+    """Say what linear ranges cover of laws that are known within a preload.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
-        With the environments.
+    preloads : mapping of str to Preload
+        By the names of the environments that are touched.
     scale : Fraction
         By how much their ranges are stretched: less than declared do not cover the law.
     """
-    for name, environment in spec.environments.items():
-        law = environment.nonlinear
-        if law is None or environment.preload_range is None or name not in spec.touched:
-            continue
-        low, high = (end.text for end in environment.preload_range)
+    for name, (law, low, high) in preloads.items():
         if scale < 1:
             yield say("preload.scaled", environment=name, law=law.title)
         else:

@@ -11,7 +11,6 @@ corners decreases there, however fast the parameters move.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from fractions import Fraction
 from functools import partial
 from itertools import chain, permutations
 
@@ -20,14 +19,15 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec import SwitchingSpec
-from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.free_motion import (
     adds_free_motion,
-    among_modes,
+    flights_among,
     free_modes,
     lost_contact,
+    pulls_of,
 )
-from nrs_design.switched.loop_assumptions import Assumed, assume_loop
+from nrs_design.switched.loop_assumptions import assume_loop
 from nrs_design.switched.shared_state import SharedState
 
 
@@ -65,29 +65,19 @@ def close_loop(
         parts = _by_contact(chain.from_iterable(parts.values()))
     groups = {key: tuple(mode.name for mode in part) for key, part in parts.items()}
     modes = tuple(chain.from_iterable(parts.values()))
-    assumed = Assumed(
-        state.design,
-        state.touched,
-        state.boxes,
-        state.coordinates,
-        rules,
-        state.idle,
-        state.law,
-        given=state.given,
-        losable=losable is not None,
-        offset=state.offset,
-        free=free,
-        joint=state.joint,
-    )
+    flights = None
+    if free:
+        names = (mode.name for mode in modes)
+        flights = flights_among(names, state.environments, pulls_of(state))
     return SwitchedSystem(
         name,
         Time.CONTINUOUS,
         state.names,
         modes,
-        assume_loop(assumed),
+        assume_loop(state, rules, losable=losable is not None, free=free),
         assemble_switching(rules, groups, _resets(state)),
         losable,
-        flights=among_modes(state, modes) if free else None,
+        flights=flights,
     )
 
 
@@ -97,13 +87,14 @@ def _resets(state: SharedState) -> Iterator[tuple[str, str, RationalMatrix]]:
     From an impedance controller to others the idle states are, if the spec says so; where force
     control takes the measured position, the lead is.
     """
-    size = len(state.names)
-    kept = [[Fraction(int(i == j < state.kept)) for j in range(size)] for i in range(size)]
-    for source, target in permutations(state.design.controllers, 2):
-        leaves = (source.law.commands, target.law.commands) == ("velocity", "position")
-        idle = state.idle is not None and state.idle.reset and leaves
-        if idle or state.offset == "measured":
-            yield source.name, target.name, RationalMatrix.from_rows(kept)
+    controllers = state.design.controllers
+    switches: Iterable[tuple[str, str]] = ()
+    if state.offset == "measured":
+        switches = permutations((c.name for c in controllers), 2)
+    elif state.idle is not None and state.idle.reset:
+        switches = leaving_impedance(controllers)
+    map_ = zeroing(state.names, state.names[state.kept :])
+    return ((source, target, map_) for source, target in switches)
 
 
 def _by_contact(modes: Iterable[Mode]) -> dict[str, tuple[Mode, ...]]:

@@ -10,20 +10,20 @@ from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import coordinates
 from nrs_design.models.motion_loop import JointMotionLoop, Realization
-from nrs_design.proof.channels import Channel, Output
+from nrs_design.proof.channels import Channel
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.operating import Bounds
 from nrs_design.switched.assumption import say
-from nrs_design.switched.free_motion import force_rows
+from nrs_design.switched.free_motion import outputs_of
 from nrs_design.switched.shared_state import SharedState
 
 _ASSUMED = say("inputs.command")
 
 
 def with_command(
-    system: SwitchedSystem, state: SharedState, spec: InteractionDesignSpec
+    system: SwitchedSystem, state: SharedState, disturbances: Bounds, torque: Fraction
 ) -> SwitchedSystem:
     """Let the largest velocity command act on a loop, with force and velocity as its outputs.
 
@@ -36,8 +36,10 @@ def with_command(
         The loop without inputs, in deflection coordinates.
     state : SharedState
         Of its modes.
-    spec : InteractionDesignSpec
-        With the disturbances, and the limit of the torque.
+    disturbances : mapping
+        The command, and how large it gets.
+    torque : Fraction
+        Limit of the contact force about the pivot, in N m.
 
     Raises
     ------
@@ -46,7 +48,7 @@ def with_command(
     """
     laws = {controller.name: controller.law for controller in state.design.controllers}
     plain = all(law.commands == "velocity" for law in laws.values())
-    if not plain or spec.coordinates != "deflection" or not state.touched:
+    if not plain or state.coordinates != "deflection" or not state.environments:
         raise AssemblyError(
             "a velocity command is modelled for impedance controllers that touch something, in "
             "deflection coordinates",
@@ -60,24 +62,19 @@ def with_command(
             remedy="leave command out, or Kt",
             at=("controllers", sprung, "Kt"),
         )
-    assert spec.disturbances is not None  # it is asked for
-    ((name, (bound, unit)),) = spec.disturbances.bounds().items()
+    ((name, (bound, unit)),) = disturbances.items()
     free = () if system.contact is None else system.contact.free
     columns = tuple(_column(mode, state.motion) for mode in (*system.modes, *free))
-    forces = tuple(force_rows(state.motion, system.states, state.touched))
-    velocity = RationalMatrix.from_rows([state.motion.output(system.order)])
+    velocity = state.motion.output(system.order)
     return replace(
         system,
         assumptions=(*system.assumptions, _ASSUMED),
         channels=(Channel(name, unit, bound, columns),),
-        outputs=(
-            Output("force", "N*m", forces, spec.limits.torque.exact),
-            Output("velocity", "rad/s", (velocity,)),
-        ),
+        outputs=outputs_of(velocity, system.states, state.environments, torque),
     )
 
 
-def check_memory(touched: Sequence[Environment]) -> None:
+def check_memory(environments: Sequence[Environment]) -> None:
     """Refuse tissue that creeps, for which no bound under a command is stated.
 
     Raises
@@ -85,7 +82,7 @@ def check_memory(touched: Sequence[Environment]) -> None:
     AssemblyError
         If one of the contacts remembers.
     """
-    if any(environment.law.remembers for environment in touched):
+    if any(environment.law.remembers for environment in environments):
         raise AssemblyError(
             "a bound under a velocity command is stated on elastic and damped environments",
             remedy="leave disturbances out",

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import chain, islice, product
+from itertools import chain, islice, permutations, product
 from typing import TypeVar
 
+from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
+from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.switching import Reset, Stay, Switching
 from nrs_design.spec import DwellTime, SwitchingSpec
@@ -55,6 +57,27 @@ def assemble_switching(
     jumps = _limited(_assembled_resets(resets, groups))
     stays = tuple(_assembled_stays(rules, groups, Stay(common)))
     return Switching(common, transitions, jumps, tuple(ends), stays=stays)
+
+
+def zeroing(states: Sequence[str], zeroed: Container[str]) -> RationalMatrix:
+    """Return the map that sets some states to zero, and leaves the others.
+
+    Parameters
+    ----------
+    states : sequence of str
+        Names of all.
+    zeroed : container of str
+        Names of those that are set.
+    """
+    each = zip(states, coordinates(len(states)), strict=True)
+    return RationalMatrix.from_rows([zero(len(states)) if s in zeroed else row for s, row in each])
+
+
+def leaving_impedance(controllers: Sequence[Controller]) -> Iterator[Transition]:
+    """Yield the switches from controllers that command a velocity to those of a position."""
+    for source, target in permutations(controllers, 2):
+        if (source.law.commands, target.law.commands) == ("velocity", "position"):
+            yield source.name, target.name
 
 
 def _assembled_stays(

@@ -309,7 +309,7 @@ def axis_of(
         several samples, and there is no one place to cut.
     """
     sampling, low_pass = spec.sampling, sensor.filter
-    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
+    ranges = plant.actuator_ranges
     if sampling is None:
         loop = plant.motion_loop(motion.Kp, motion.Kd)
         joint = Joint.of(plant, motion)

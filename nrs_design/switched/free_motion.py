@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import chain
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.errors import AssemblyError
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.contact.kelvin_voigt import KelvinVoigt
-from nrs_design.models.linear_form import coordinates
-from nrs_design.models.motion_loop import JointMotionLoop, Realization
+from nrs_design.models.linear_form import LinearForm, coordinates
+from nrs_design.proof.channels import Output
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
@@ -36,15 +37,26 @@ def lost_contact(state: SharedState, contact: str | None) -> Contact | None:
         if contact == "losable":
             raise _not_losable("")
         return None
-    free = [
-        mode for controller in state.design.controllers for mode in free_modes(controller, state)
-    ]
-    return Contact(
-        tuple(free),
-        tuple(_pulls(state)),
-        required=contact == "losable",
-        loss=say("contact-lost.surface"),
-    )
+    free = chain.from_iterable(free_modes(c, state) for c in state.design.controllers)
+    return lost_on_surface(free, pulls_of(state), contact)
+
+
+def lost_on_surface(
+    free: Iterable[Mode], pulls: Iterable[RationalMatrix], contact: str | None
+) -> Contact:
+    """Return that contact is lost where the tissue ends, or would have to pull.
+
+    Parameters
+    ----------
+    free : iterable of Mode
+        In force without contact.
+    pulls : iterable of RationalMatrix
+        Forces of what could pull.
+    contact : {"losable", "kept"} or None
+        What the spec asks for.
+    """
+    losable, loss = contact == "losable", say("contact-lost.surface")
+    return Contact(tuple(free), tuple(pulls), required=losable, loss=loss)
 
 
 def adds_free_motion(state: SharedState, contact: str | None, rules: SwitchingSpec) -> bool:
@@ -87,9 +99,9 @@ def _can_be_free(state: SharedState) -> bool:
         state.idle is None
         and state.law.commands == "velocity"
         and state.coordinates == "deflection"
-        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.touched)
-        and not any(e.parts and not e.each_losable for e in state.touched)
-        and bool(state.touched)
+        and not any(e.law.remembers or e.law.has_mass or e.preloaded for e in state.environments)
+        and not any(e.parts and not e.each_losable for e in state.environments)
+        and bool(state.environments)
     )
 
 
@@ -115,28 +127,43 @@ def free_modes(controller: Controller, state: SharedState) -> Iterator[Mode]:
         yield Mode(corner, RationalMatrix.from_rows(rows))
 
 
-def among_modes(state: SharedState, modes: Iterable[Mode]) -> Flights:
+def flights_among(
+    names: Iterable[str],
+    environments: Iterable[Environment],
+    pulls: Iterable[RationalMatrix],
+    controllers: Container[str] = (),
+) -> Flights:
     """Tell which modes are free motion, where it is among them.
 
     Parameters
     ----------
-    state : SharedState
+    names : iterable of str
         Of all modes.
-    modes : iterable of Mode
-        All of them; a controller without contacts has neither a mode in contact nor a free one.
+    environments : iterable of Environment
+        All contacts.
+    pulls : iterable of RationalMatrix
+        Forces of what could pull.
+    controllers : container of str
+        Those whose modes without contact are free motion, too.
     """
-    named = [mode.name.split("/") for mode in modes]
-    touching = tuple("/".join(name) for name in named if len(name) > 1 and name[1] != FREE)
-    flying = tuple("/".join(name) for name in named if len(name) > 1 and name[1] == FREE)
-    return Flights(touching, flying, tuple(_pulls(state)))
+    known = {environment.name for environment in environments}
+    touching, flying = [], []
+    for name in names:
+        controller, where = (*name.split("/"), "")[:2]
+        if where in known:
+            touching.append(name)
+        elif where == FREE or controller in controllers:
+            flying.append(name)
+    return Flights(tuple(touching), tuple(flying), tuple(pulls))
 
 
-def _pulls(state: SharedState) -> Iterator[RationalMatrix]:
+def pulls_of(state: SharedState) -> Iterator[RationalMatrix]:
     """Yield the forces of what could pull, at the corners of their ranges."""
-    return force_rows(state.motion, state.names, could_pull(state.touched))
+    velocity = state.motion.output(len(state.names))
+    return force_rows(velocity, state.names, could_pull(state.environments))
 
 
-def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
+def could_pull(environments: Iterable[Environment]) -> tuple[Environment, ...]:
     """Return whose forces tell where nothing pushes at a positive deflection.
 
     Without damping nothing lags, and there are none. Beside damped environments springs count, too:
@@ -144,32 +171,52 @@ def could_pull(touched: Iterable[Environment]) -> tuple[Environment, ...]:
 
     Parameters
     ----------
-    touched : iterable of Environment
+    environments : iterable of Environment
         All that may be touched.
     """
-    touched = tuple(touched)
-    return touched if any("b" in e.parameters for e in touched) else ()
+    environments = tuple(environments)
+    return environments if any("b" in e.parameters for e in environments) else ()
 
 
 def force_rows(
-    motion: Realization | JointMotionLoop, states: Sequence[str], touched: Sequence[Environment]
+    velocity: LinearForm, states: Sequence[str], environments: Iterable[Environment]
 ) -> Iterator[RationalMatrix]:
     """Yield the force, as a row over the states, of each corner of each contact.
 
     Parameters
     ----------
-    motion : Realization or JointMotionLoop
-        The motion loop, whose states come first.
+    velocity : LinearForm
+        Of the contact, as a form of the states.
     states : sequence of str
         Names of the states.
-    touched : sequence of Environment
+    environments : iterable of Environment
         All contacts.
     """
     unit = coordinates(len(states))
-    for environment in touched:
+    for environment in environments:
         shared, *memories = environment.law.states
         names = [shared, *(f"{environment.name}: {memory}" for memory in memories)]
         own = [unit[states.index(name)] for name in names]
         for law in environment.corners:
-            force, _ = law.react(motion.output(len(states)), own)
+            force, _ = law.react(velocity, own)
             yield RationalMatrix.from_rows([force])
+
+
+def outputs_of(
+    velocity: LinearForm,
+    states: Sequence[str],
+    environments: Iterable[Environment],
+    limit: Fraction,
+) -> tuple[Output, ...]:
+    """Return the force at the corners of its ranges, with what it is meant to keep, and velocity.
+
+    Parameters
+    ----------
+    velocity, states, environments
+        As for `force_rows`.
+    limit : Fraction
+        Of the force, in N m.
+    """
+    rows = tuple(force_rows(velocity, states, environments))
+    force = (Output("force", "N*m", rows, limit),) if rows else ()
+    return (*force, Output("velocity", "rad/s", (RationalMatrix.from_rows([velocity]),)))

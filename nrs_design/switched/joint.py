@@ -8,11 +8,11 @@ from fractions import Fraction
 
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.text import exact_text
 from nrs_design.switched.assumption import Assumption, say
+from nrs_design.switched.assumptions import motor_text
 from nrs_design.switched.parameter_box import Box
 
 
@@ -27,9 +27,9 @@ class Joint:
     @classmethod
     def of(cls, plant: Plant, motion: ProportionalDerivative) -> Joint | None:
         """Return the joint of a plant, or None where its motor is a point and carries no load."""
-        if plant.actuator_ranges is None and plant.load_inertia is None:
+        ranges = plant.actuator_ranges
+        if ranges.fixed and plant.load_inertia is None:
             return None
-        ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
         return cls(motion, ranges, plant.load_inertia)
 
     @property
@@ -65,21 +65,3 @@ class Joint:
         else:
             inertia = exact_text(self.load_inertia)
             yield say("load.inertia", f"{inertia} kg*m^2", inertia=inertia)
-
-
-def motor_text(ranges: ActuatorRanges) -> str:
-    """Say where gain and time constant of the motor are."""
-    texts = (
-        f"its {name} {_interval_text(interval)} {unit}"
-        for name, interval, unit in (
-            ("gain", ranges.gain, f"rad/s/{ranges.command}"),
-            ("time constant", ranges.time_constant, "s"),
-        )
-    )
-    return " and ".join(texts)
-
-
-def _interval_text(interval: Interval) -> str:
-    if interval.low == interval.high:
-        return f"is {exact_text(interval.low)}"
-    return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"

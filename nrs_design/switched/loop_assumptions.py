@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
-from nrs_design.controllers.laws import LAWS, CompliantLaw
+from nrs_design.controllers.laws import LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
-from nrs_design.spec.controllers import Command, Offset
+from nrs_design.spec.controllers import Command
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import (
     REST,
@@ -25,7 +24,7 @@ from nrs_design.switched.assumptions import (
     rule_texts,
 )
 from nrs_design.switched.gain_box import GainBox
-from nrs_design.switched.joint import Joint
+from nrs_design.switched.shared_state import SharedState
 
 _TAKEN = {
     "reference": "the command of the motion loop just before the switch",
@@ -35,43 +34,40 @@ NOT_MODELLED = say("not-sampled.continuous")
 NOT_MODELLED_BUT_LIMITS = say("not-sampled-but-limited.continuous")
 
 
-@dataclass(frozen=True, slots=True)
-class Assumed:
-    """The closed loop, as far as its assumptions depend on it."""
+def assume_loop(
+    loop: SharedState, rules: SwitchingSpec, *, losable: bool, free: bool
+) -> tuple[Assumption, ...]:
+    """Say what holds for an interaction design.
 
-    design: ControllerDesign  # All controllers
-    touched: tuple[Environment, ...]  # What they touch
-    boxes: Mapping[str, GainBox]  # Where the gains of each controller may be
-    coordinates: str  # Of an impedance mode
-    rules: SwitchingSpec  # For the change of controllers
-    idle: IdleStatesSpec | None  # What idle states do, where there are any
-    law: CompliantLaw  # A law that has the states that all modes share
-    given: bool  # Whether the spec states the motion loop itself
-    # Whether the system says how contact is lost; then a statement says whether it is kept.
-    losable: bool = False
-    offset: Offset = "none"  # Where force controllers take their offset from
-    free: bool = False  # Whether free motion is one of the modes
-    joint: Joint | None = None  # The motor, where it has ranges or is loaded by the environment
-
-
-def assume_loop(loop: Assumed) -> tuple[Assumption, ...]:
-    """Say what holds for an interaction design."""
+    Parameters
+    ----------
+    loop : SharedState
+        All controllers in one state.
+    rules : SwitchingSpec
+        For the change of controllers.
+    losable : bool
+        The system says how contact is lost; then a statement says whether it is kept.
+    free : bool
+        Free motion is one of the modes.
+    """
     loops = ("nominal-motor.given",) if loop.given else ("nominal-motor.designed",)
     return (
         *(map(say, loops) if loop.joint is None else loop.joint.texts()),
-        *_input_texts(loop),
+        *_input_texts(loop, losable=losable),
         UNCOUPLED,
         *_contact_texts(loop),
-        *chain.from_iterable(_memories(e, alone=len(loop.touched) == 1) for e in loop.touched),
+        *chain.from_iterable(
+            _memories(e, alone=len(loop.environments) == 1) for e in loop.environments
+        ),
         *(_idle_texts(loop, loop.idle) if loop.idle is not None else ()),
-        *_kept_texts(loop),
-        *_switch_texts(loop),
+        *_kept_texts(loop, losable=losable, free=free),
+        *_switch_texts(loop, rules),
         NOT_MODELLED,
         *_gain_texts(loop.boxes, loop.design.command),
     )
 
 
-def _input_texts(loop: Assumed) -> Iterator[Assumption]:
+def _input_texts(loop: SharedState, *, losable: bool) -> Iterator[Assumption]:
     """Say what acts from outside, and what then rests."""
     if loop.offset != "none":
         yield say("rest-position.moving")
@@ -80,26 +76,26 @@ def _input_texts(loop: Assumed) -> Iterator[Assumption]:
             yield from map(say, ("at-a-switch.lead", "at-a-switch.kick"))
         yield say("inputs.constant")
         return
-    yield say("inputs.continuous", rest=REST[loop.losable])
+    yield say("inputs.continuous", rest=REST[losable])
     sprung = any(c.law.spring for c in loop.design.controllers)
     yield say(
         "inputs.bounded",
         "bounded commands; of what size is not said",
         integral=", if the integral of the velocity command is bounded too," if sprung else "",
         # In free motion, a command moves the axis ever further from the surface.
-        air=", but not how far the axis moves away while contact is lost" if loop.losable else "",
+        air=", but not how far the axis moves away while contact is lost" if losable else "",
     )
     if sprung:
         yield say("spring.shared" if loop.idle is None else "spring.idle")
 
 
-def _contact_texts(loop: Assumed) -> Iterator[Assumption]:
+def _contact_texts(loop: SharedState) -> Iterator[Assumption]:
     yield from contact_texts(loop.design)
-    yield from at_once_texts(loop.touched)
+    yield from at_once_texts(loop.environments)
     which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield say(which, ranges_text(loop.touched))
+    yield say(which, ranges_text(loop.environments))
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
-    if integrated and all(e.law.has_rest for e in loop.touched):
+    if integrated and all(e.law.has_rest for e in loop.environments):
         yield say(f"at-a-switch.{loop.coordinates}")
 
 
@@ -109,7 +105,7 @@ def _memories(environment: Environment, *, alone: bool) -> Iterator[Assumption]:
         yield say(which, text=text)
 
 
-def _idle_texts(loop: Assumed, idle: IdleStatesSpec) -> Iterator[Assumption]:
+def _idle_texts(loop: SharedState, idle: IdleStatesSpec) -> Iterator[Assumption]:
     """Say what is taken for granted about the states of controllers that command a velocity."""
     driving = " and ".join(_names(loop.design, "velocity"))
     others = " or ".join(_names(loop.design, "position"))
@@ -154,11 +150,11 @@ def _names(design: ControllerDesign, command: Command) -> dict[str, None]:
     return dict.fromkeys(law.name for law in laws if law.commands == command)
 
 
-def _kept_texts(loop: Assumed) -> Iterator[Assumption]:
+def _kept_texts(loop: SharedState, *, losable: bool, free: bool) -> Iterator[Assumption]:
     """Say for which contact it holds; where it may be lost, a statement says that itself."""
-    if loop.free:
+    if free:
         yield say("contact-lost.anywhere")
-    elif not loop.losable:
+    elif not losable:
         yield from kept_by_laws(loop.design, alone=loop.idle is None)
 
 
@@ -177,8 +173,7 @@ def kept_by_laws(design: ControllerDesign, *, alone: bool) -> Iterator[Assumptio
     return (say("contact-kept.law", text=text) for text in texts if text is not None)
 
 
-def _switch_texts(loop: Assumed) -> Iterator[Assumption]:
-    rules = loop.rules
+def _switch_texts(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumption]:
     reset = (loop.idle is not None and loop.idle.reset) or loop.offset == "measured"
     states = "All other states are" if reset else "States are"
     if rules.is_arbitrary:

@@ -17,7 +17,6 @@ from nrs_design.models.linear_form import LinearForm
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.motion import MOTOR_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.sampled_frame import INPUTS, Frame
@@ -47,7 +46,8 @@ class MotorCommand:
 
 
 def motor_command(
-    spec: InteractionDesignSpec,
+    largest: Fraction | None,
+    unit: str,
     frame: Frame,
     channels: Sequence[Channel],
 ) -> MotorCommand | None:
@@ -59,8 +59,10 @@ def motor_command(
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
-        With the limit of the driver.
+    largest : Fraction or None
+        Limit of the driver, if one is named.
+    unit : str
+        Of the limit.
     frame : Frame
         Of all modes.
     channels : sequence of Channel
@@ -69,9 +71,8 @@ def motor_command(
     Returns
     -------
     MotorCommand or None
-        None where nothing disturbs, the spec names no limit, or the command is not of this form.
+        None where nothing disturbs, there is no limit, or the command is not of this form.
     """
-    largest = spec.limits.command
     moving = all(law.law.commands == "velocity" for law in frame.laws)
     if largest is None or not channels or not moving or frame.holds:
         return None
@@ -87,10 +88,10 @@ def motor_command(
         RationalMatrix.from_rows([[sum(column) for column in zip(form[:n], *signed, strict=True)]])
         for signed in product(*([row, [-v for v in row]] for row in rounded))
     )
-    limit = float32_not_above(largest.not_above)
+    limit = float32_not_above(largest)
     left = limit - at_once
     name = f"{MOTOR_COMMAND} before errors of its sample" if at_once else MOTOR_COMMAND
-    output = Output(name, spec.actuator.command, rows, left if left > 0 else None)
+    output = Output(name, unit, rows, left if left > 0 else None)
     return MotorCommand(output, at_once, limit)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from types import MappingProxyType
 from typing import Literal
 
@@ -12,7 +13,7 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import (
@@ -20,13 +21,13 @@ from nrs_design.switched.assumptions import (
     UNCOUPLED,
     command_texts,
     contact_texts,
+    motor_text,
     ranges_text,
     rule_texts,
 )
-from nrs_design.switched.joint import motor_text
+from nrs_design.switched.gain_box import RangedLaw
 from nrs_design.switched.loop_assumptions import kept_by_laws
 from nrs_design.switched.sampled_frame import Frame
-from nrs_design.switched.sampled_gains import RangedLaw
 from nrs_design.switched.sampled_motor import EXPONENTIAL_BITS
 
 # Where contact is lost: only where the spring of the tissue ends, or whatever the deflection.
@@ -49,20 +50,20 @@ _LOST: Mapping[str, str] = MappingProxyType(
 
 
 def assume_sampled(
-    spec: InteractionDesignSpec,
+    conditions: OperatingConditions,
     sampling: SamplingSpec,
     ranges: ActuatorRanges,
     frame: Frame,
     gains: Mapping[str, RangedLaw],
     design: ControllerDesign,
     loss: Loss,
-    touched: Sequence[Environment],
+    environments: Sequence[Environment],
 ) -> tuple[Assumption, ...]:
     """Say what holds for the sampled loop of an interaction design.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
+    conditions : OperatingConditions
         With the rules of switching.
     sampling : SamplingSpec
         Its processor.
@@ -76,11 +77,11 @@ def assume_sampled(
         With the contacts.
     loss : str
         Where contact is lost.
-    touched : sequence of Environment
+    environments : sequence of Environment
         All contacts.
     """
-    reset = spec.idle_states is not None and spec.idle_states.reset
-    disturbed = spec.disturbances is not None
+    reset = conditions.idle is not None and conditions.idle.reset
+    disturbed = conditions.disturbances is not None
     # Sentences that do not hold for the disturbances of the spec begin with that.
     but = "-disturbed" if disturbed else ""
     inputs = "sampled-position" if "under force control" in loss else "sampled"
@@ -95,16 +96,16 @@ def assume_sampled(
         *_placed_texts(frame, design, reset=reset),
         UNCOUPLED,
         *contact_texts(design),
-        say("tissue.linear", ranges_text(touched)),
+        say("tissue.linear", ranges_text(environments)),
         *_loss_texts(loss, design, frame),
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
-        *rule_texts(spec.switching, "controller"),
+        *rule_texts(conditions.switching, "controller"),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
         *command_texts(design.command),
         *_retuned_texts(gains),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
-        _angle_text(spec),
-        say(f"not-quantized.{'sampled' if spec.sensor is None else 'sensor'}{but}"),
+        _angle_text(conditions.largest_angle),
+        say(f"not-quantized.{'sensor' if conditions.sensed else 'sampled'}{but}"),
     )
 
 
@@ -180,10 +181,10 @@ def _retuned_texts(gains: Mapping[str, RangedLaw]) -> Iterator[Assumption]:
         yield say("at-a-switch.sampled-retuned")
 
 
-def _angle_text(spec: InteractionDesignSpec) -> Assumption:
-    if spec.disturbances is None or spec.disturbances.largest_angle is None:
+def _angle_text(angle: Fraction | None) -> Assumption:
+    if angle is None:
         return say("arithmetic.angles-left-out")
-    largest = rounded_down(spec.disturbances.largest_angle.not_below, "rad")
+    largest = rounded_down(angle, "rad")
     return say("arithmetic.angles", f"angles within {largest}", largest=largest)
 
 

@@ -1,7 +1,7 @@
 """All axes of a robot at once in the sampled loop: what their links do within a period.
 
-docs/certificates/coupled-axes.md derives it. With z the slip, by how much the speeds are not those
-that the motors come to under the commands that are held, and Lambda = (I + M/J)^-1,
+docs/certificates/coupled-axes.md derives it. Let the slip z be the difference between the motor
+speeds and their steady state under the held commands, and Lambda = (I + M/J)^-1:
 
     z' = -Lambda D z + h,    |h| <= kappa |omega| + gamma |delta|,    D = diag(1/tau_i)
 

@@ -36,21 +36,28 @@ from nrs_design.switched.sampled_law import (
     ONE,
     STEP,
     ListedLaw,
+    RoundedStep,
     kinds_of,
     list_law,
+    second,
+    short,
 )
-from nrs_design.switched.sampled_step import RoundedStep, second, short
 
 # The error of motion of a sample ago, and the reference of impedance controllers alone, in whose
 # place the error of motion is a state.
 BEFORE, ALONE = "error_before", "reference"
+# States of every frame, and that of a command which outlasts a sample.
+OMEGA, DELTA, HELD = "omega [rad/s]", "delta [rad]", "u held"
+# What the measured angle is the sum of, and an input.
+MEASURED = (DELTA, "encoder error", "rounding of the angle")
+REFERENCE = "rounding of the reference"
 # What acts on a frame from outside, in this order.
 INPUTS = (
     "velocity command",
     "friction",
     "encoder error",
     "force error",
-    "rounding of the reference",
+    REFERENCE,
     "rounding of the angle",
 )
 
@@ -136,8 +143,8 @@ class Frame:
         """Names and units of the states."""
         place, others = _around(self.stored)
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
-        motion = ("omega [rad/s]", self.stored[BEFORE], *(("u held",) if self.holds else ()))
-        return (*place, *motion, *others, *ages, "delta [rad]")
+        motion = (OMEGA, self.stored[BEFORE], *((HELD,) if self.holds else ()))
+        return (*place, *motion, *others, *ages, DELTA)
 
     def rows(
         self,
@@ -149,8 +156,8 @@ class Frame:
         """Return the map of one period, below it the size of each rounding, and the slip.
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
-        of a rounding, the size is at most that of its row below. The last row is the slip: by how
-        much the speed is not the one that the motor comes to under its command.
+        a rounding error is at most the size that its row below gives. The last row is the slip: the
+        difference between the speed and its steady state under the command.
 
         Parameters
         ----------
@@ -193,7 +200,7 @@ class Frame:
         reference after the command: it is then the same under each.
         """
         shares, at, _ = _beginning(self)
-        nothing = zero(len(at.delta))
+        nothing = zero(len(at[DELTA]))
         step = self._step(self.laws[0], nothing)
         sizes = step.motion_sizes()
         return step.command(nothing), [sizes.get(name, nothing) for name in shares]
@@ -203,15 +210,18 @@ class Frame:
         shares, at, parts = _beginning(self)
         given = {
             **at.states,
-            "angle": combine(*((ONE, f) for f in (at.delta, at.encoder, at.angle))),
+            "angle": combine(
+                *((ONE, at[n]) for n in (DELTA, "encoder error", "rounding of the angle"))
+            ),
             "torque": force,
-            "velocity_command": at.command,
+            "velocity_command": at["velocity command"],
         }
         if law.law.commands == "position":
             # It is rounded as it is read, the reference of an admittance as it moves.
-            given["position"] = at.reference_rounding
+            given["position"] = at[REFERENCE]
         numbers = self.step.numbers | numbers_in_force(law, parts, self.idle)
-        return RoundedStep.of(self.listed, law, numbers, given, at.rounded, shares)
+        terms = self.listed.terms(law, numbers, given, at.rounded)
+        return RoundedStep(self.listed, law, numbers, at.rounded, shares, terms)
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,8 +253,8 @@ def _sample(
     """Return what `Frame.rows` knows before the motor's parameters."""
     shares, at, _ = _beginning(frame)
     step = frame._step(law, at.samples[delay - 1] if delay else _force(frame, *contact))
-    nothing = zero(len(at.delta))
-    after, drive = dict(at.states), at.drive
+    nothing = zero(len(at[DELTA]))
+    after, drive = dict(at.states), at.forms.get(HELD, nothing)
     sizes: dict[str, LinearForm] = {}
     following = frame.listed.following
     if turn is not Turn.ADMITTANCE:
@@ -254,7 +264,7 @@ def _sample(
     following.pop(BEFORE, None)
     if turn is not Turn.MOTION:
         after |= {name: step.result(made, nothing) for name, made in following.items()}
-        moved = (ONE if law.law.commands == "velocity" else ZERO, at.reference_rounding)
+        moved = (ONE if law.law.commands == "velocity" else ZERO, at[REFERENCE])
         after |= {name: combine((ONE, after[name]), moved) for name in _places(after)}
         sizes |= step.other_sizes(retuned=retuned)
     return _Sample(
@@ -263,7 +273,7 @@ def _sample(
         drive,
         [sizes.get(name, nothing) for name in shares],
         at,
-        combine((ONE, drive), (ONE, at.friction)),
+        combine((ONE, drive), (ONE, at["friction"])),
     )
 
 
@@ -271,21 +281,21 @@ def _sample(
 def _force(frame: Frame, k: Fraction, b: Fraction) -> LinearForm:
     """Return the force sample of a spring and a damper beside it."""
     _, at, _ = _beginning(frame)
-    return combine((k, at.delta), (b, at.omega), (ONE, at.sensor))
+    return combine((k, at[DELTA]), (b, at[OMEGA]), (ONE, at["force error"]))
 
 
 # What the motor makes of the command less friction. Corners share what does not depend on all of
 # its numbers: as one object, so that they are known to be alike.
 @lru_cache(maxsize=256)
 def _speed(made: _Sample, Km: Fraction, E: Fraction) -> LinearForm:
-    return combine((E, made.at.omega), (Km * (1 - E), made.taken))
+    return combine((E, made.at[OMEGA]), (Km * (1 - E), made.taken))
 
 
 @lru_cache(maxsize=256)
 def _place(made: _Sample, Km: Fraction, s: Fraction) -> tuple[list[LinearForm], LinearForm]:
     """Return the reference, if any, or the error of it, and the deflection after the period."""
     at = made.at
-    delta = combine((ONE, at.delta), (s, at.omega), (Km * (made.frame.period - s), made.taken))
+    delta = combine((ONE, at[DELTA]), (s, at[OMEGA]), (Km * (made.frame.period - s), made.taken))
     if ALONE in made.after:
         return [combine((ONE, made.after[ALONE]), (-ONE, delta))], delta
     return _around(made.after)[0], delta
@@ -293,7 +303,7 @@ def _place(made: _Sample, Km: Fraction, s: Fraction) -> tuple[list[LinearForm], 
 
 @lru_cache(maxsize=64)
 def _slip(made: _Sample, Km: Fraction) -> LinearForm:
-    return combine((ONE, made.at.omega), (-Km, made.taken))
+    return combine((ONE, made.at[OMEGA]), (-Km, made.taken))
 
 
 def _places(states: Iterable[str]) -> list[str]:
@@ -307,46 +317,31 @@ def _around(states: Mapping[str, T]) -> tuple[list[T], list[T]]:
     return [states[n] for n in place], [states[n] for n in states if n not in (*place, BEFORE)]
 
 
-# The inputs, as their forms are called below.
-_FIELDS = ("command", "friction", "encoder", "sensor", "reference_rounding", "angle")
-
-
 @dataclass(frozen=True, slots=True)
 class _Signals:
     """The forms of the states, inputs and roundings of a frame."""
 
     # Those of the law, by name.
     states: Mapping[str, LinearForm]
-    omega: LinearForm
-    drive: LinearForm
+    # All states and inputs, by name; the oldest force sample last.
+    forms: Mapping[str, LinearForm]
     samples: Sequence[LinearForm]
-    delta: LinearForm
-    command: LinearForm
-    friction: LinearForm
-    encoder: LinearForm
-    sensor: LinearForm
-    reference_rounding: LinearForm
-    angle: LinearForm
     rounded: Mapping[str, LinearForm]
+
+    def __getitem__(self, name: str) -> LinearForm:
+        return self.forms[name]
 
     @classmethod
     def of(cls, frame: Frame, shares: Sequence[str]) -> _Signals:
-        size, stored = len(frame.states), frame.stored
-        unit = coordinates(size + len(INPUTS) + len(shares))
-        by_name = dict(zip(frame.states, unit, strict=False))
-        delta = unit[size - 1]
-        states = {name: by_name[text] for name, text in stored.items()}
+        names = (*frame.states, *INPUTS)
+        unit = coordinates(len(names) + len(shares))
+        forms = dict(zip(names, unit, strict=False))
+        states = {name: forms[text] for name, text in frame.stored.items()}
         if ALONE in states:
-            states[ALONE] = combine((ONE, states[ALONE]), (ONE, delta))
-        return cls(
-            states,
-            by_name["omega [rad/s]"],
-            by_name.get("u held", zero(len(unit))),
-            unit[size - 1 - frame.longest_delay : size - 1],
-            delta,
-            rounded=dict(zip(shares, unit[size + len(INPUTS) :], strict=True)),
-            **dict(zip(_FIELDS, unit[size:], strict=False)),
-        )
+            states[ALONE] = combine((ONE, states[ALONE]), (ONE, forms[DELTA]))
+        last = len(frame.states) - 1
+        samples = unit[last - frame.longest_delay : last]
+        return cls(states, forms, samples, dict(zip(shares, unit[len(names) :], strict=True)))
 
 
 @lru_cache(maxsize=8)

@@ -1,4 +1,4 @@
-"""What acts on a sampled loop from outside and from within, and what bounds are stated for."""
+"""Disturbances and rounding errors that act on the modes of a sampled loop."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ from fractions import Fraction
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
-from nrs_design.models.linear_form import LinearForm, coordinates, zero
-from nrs_design.proof.channels import Channel, Output, Rounding
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.sampling import DisturbancesSpec
-from nrs_design.switched.parameter_box import Box
+from nrs_design.spec.operating import Bounds
 from nrs_design.switched.sampled_frame import INPUTS, Frame
 
 
@@ -59,37 +57,37 @@ class SampledMode:
 
 
 def channels_of(
-    spec: InteractionDesignSpec, off: Fraction, motions: Sequence[SampledMode]
+    disturbances: Bounds | None,
+    largest_angle: Fraction | None,
+    off: Fraction,
+    motions: Sequence[SampledMode],
 ) -> Iterator[Channel]:
     """Yield the disturbances of the spec, and the errors of its sensor, with their columns.
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
-        With the disturbances, if it declares any.
+    disturbances : mapping or None
+        What is declared to disturb, and how much.
+    largest_angle : Fraction or None
+        Of what the law holds as single-precision numbers, in rad.
     off : Fraction
         How far the force signal may be off for long, in N m.
     motions : sequence of SampledMode
         All modes, those of free motion last.
     """
-    if spec.disturbances is None:
+    if disturbances is None:
         return
-    bounds = spec.disturbances.bounds() | _angle_bounds(spec.disturbances)
+    bounds = dict(disturbances)
+    if largest_angle is not None:
+        # An angle of the law is read from a count, times a coefficient.
+        for name, n in (("rounding of the reference", 1), ("rounding of the angle", 3)):
+            bounds[name] = (rounding_share(n) * largest_angle, "rad")
     if off:
         bounds["force error"] = (off, "N*m")
     for i, name in enumerate(INPUTS):
         if name in bounds:
             bound, unit = bounds[name]
             yield Channel(name, unit, bound, tuple(motion.column(i) for motion in motions))
-
-
-def _angle_bounds(disturbances: DisturbancesSpec) -> dict[str, tuple[Fraction, str]]:
-    """Return how far angles of the law are off; one is read from a count, times a coefficient."""
-    if disturbances.largest_angle is None:
-        return {}
-    largest = disturbances.largest_angle.not_below
-    counts = {"rounding of the reference": 1, "rounding of the angle": 3}
-    return {name: (rounding_share(n) * largest, "rad") for name, n in counts.items()}
 
 
 def roundings_of(
@@ -134,45 +132,6 @@ def known_entries(frame: Frame, channels: Sequence[Channel]) -> list[int]:
     """
     n, named = len(frame.states), [channel.name for channel in channels]
     return [*range(n), *(n + i for i, name in enumerate(INPUTS) if name in named)]
-
-
-def outputs_of(
-    states: Sequence[str], touched: Sequence[Environment], limit: Fraction
-) -> tuple[Output, ...]:
-    """Return the force at the corners of its ranges, with what it is meant to keep, and omega.
-
-    Parameters
-    ----------
-    states : sequence of str
-        Names of the states of all modes.
-    touched : sequence of Environment
-        What pushes.
-    limit : Fraction
-        Of the force, in N m.
-    """
-    rows = tuple(row for environment in touched for row in force_rows(states, environment))
-    speed = coordinates(len(states))[states.index("omega [rad/s]")]
-    omega = RationalMatrix.from_rows([speed])
-    force = (Output("force", "N*m", rows, limit),) if rows else ()
-    return (*force, Output("velocity", "rad/s", (omega,)))
-
-
-def force_rows(states: Sequence[str], environment: Environment) -> Iterator[RationalMatrix]:
-    """Yield the force of a spring and damper at the corners of its ranges, as a row on the state.
-
-    Parameters
-    ----------
-    states : sequence of str
-        Names of the states of all modes.
-    environment : Environment
-        What pushes.
-    """
-    size, speed = len(states), states.index("omega [rad/s]")
-    box = Box({"k": environment.stiffness, "b": damping_of(environment)})
-    for _, values in box.named_values(""):
-        row = zero(size)
-        row[speed], row[-1] = values["b"], values["k"]
-        yield RationalMatrix.from_rows([row])
 
 
 def damping_of(environment: Environment) -> Interval:

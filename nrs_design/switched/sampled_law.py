@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from math import ceil
 from typing import Any
 
 from nrs_design.controllers.laws import DiscreteLaw
@@ -28,8 +29,7 @@ ANY = Fraction(1, 2)
 # Terms of the list.
 ERROR, KP, KD, KEPT, STEP = "e", "Kp e", "D (e - e before)", "a vm", "T (v - vm)"
 IDLE_REFERENCE, IDLE_VELOCITY = "d r", "d vm"
-# Those that take a rounded number, of which `nrs_design.switched.sampled_step` bounds what that
-# adds to their own rounding.
+# Those that take a rounded number; `RoundedStep` bounds what that adds to their own rounding.
 SECOND_ORDER = frozenset({KP, KD, STEP})
 
 
@@ -114,7 +114,7 @@ class ListedLaw:
     def off(
         self, law: DiscreteLaw, result: str, rounded: Mapping[str, LinearForm]
     ) -> list[LinearForm]:
-        """Return by what the terms of a result are off.
+        """Return the rounding errors of the terms of a result.
 
         Parameters
         ----------
@@ -126,13 +126,6 @@ class ListedLaw:
             By what terms are off, by name.
         """
         return [rounded[name] for name in self.counts[law.law.name][result]]
-
-    def takes_force(self, law: DiscreteLaw) -> bool:
-        """Tell whether a law uses the force, through anything but its filter."""
-        nothing = [Fraction(0)]
-        given = {v.name: [ONE] if v.name == "torque" else nothing for v in self.law.values}
-        terms = rounded_terms(self.law, self.law.modes.index(law.law.name), given)
-        return any(any(term.form) for result in terms.values() for term in result)
 
 
 @lru_cache(maxsize=32)
@@ -182,5 +175,100 @@ def list_law(order: int, kinds: Kinds) -> ListedLaw:
 
 
 def own_results(law: StepLaw) -> Iterator[str]:
-    """Yield the results with a rounding of their own."""
+    """Yield the results whose rounding is counted apart from that of their terms."""
     yield from (operation.name for operation in law.operations if operation.rounding == "own")
+
+
+# Binary digits of how large roundings are.
+SIZE_BITS = 8
+
+
+def short(size: Fraction) -> Fraction:
+    """Round away from zero to a few binary digits, so that the numbers of proofs stay short."""
+    bits = size.numerator.bit_length() - size.denominator.bit_length()
+    unit = Fraction(2) ** (bits - SIZE_BITS)
+    return ceil(abs(size) / unit) * unit * (1 if size >= 0 else -1)
+
+
+def second(name: str) -> str:
+    """Name the second-order rounding error that a term of the reference adds to the command."""
+    return f"u of {name}"
+
+
+@dataclass(frozen=True, slots=True)
+class RoundedStep:
+    """One sample of a law in force."""
+
+    listed: ListedLaw  # The list of operations
+    law: DiscreteLaw  # In force
+    numbers: Mapping[str, Fraction]  # Its coefficients by name
+    # By what each term is off, the last coordinates of all forms.
+    rounded: Mapping[str, LinearForm]
+    shares: Mapping[str, Fraction]  # How far that is at most, over the size of the term
+    terms: Mapping[str, tuple[Term, ...]]  # What each result is a sum of
+
+    def result(self, name: str, nothing: LinearForm) -> LinearForm:
+        """Return a result with what it is rounded by."""
+        forms = [term.form for term in self.terms[name]]
+        off = self.listed.off(self.law, name, self.rounded)
+        return combine((ONE, nothing), *((ONE, form) for form in (*forms, *off)))
+
+    def command(self, nothing: LinearForm) -> LinearForm:
+        """Return the command with what it is rounded by, that of second order apart."""
+        again = (second(term.name) for term in self.terms["error"])
+        off = (self.rounded[name] for name in again if name in self.rounded)
+        return combine((ONE, self.result("command", nothing)), *((ONE, form) for form in off))
+
+    def motion_sizes(self) -> dict[str, LinearForm]:
+        """Return what bounds the roundings of error and command, by their terms."""
+        shares, Kp, D = self.shares, self.numbers["Kp"], self.numbers["Kd_over_T"]
+        summands = {term.name: self._exact(term.form) for term in self.terms["error"]}
+        read = combine(*((ONE, form) for form in summands.values()))
+        (change,) = (self._exact(t.form) for t in self.terms["command"] if t.name == KD)
+        # Of a sum of two sizes, the part that is of second order counts with another term.
+        more = shares[KP] * Kp * (1 + shares[ERROR]) + shares[KD] * D * shares[ERROR]
+        sizes: dict[str, LinearForm] = {
+            ERROR: combine((shares[ERROR], read)),
+            KP: combine((short(more), read)),
+            KD: _shortened(shares[KD], D, change),
+        }
+        for name in summands.keys() & shares.keys() - {ERROR}:
+            sizes[name] = combine((shares[name], summands[name]))
+            sizes[second(name)] = combine((shares[second(name)] * (Kp + D), summands[name]))
+        return sizes
+
+    def other_sizes(self, *, retuned: bool) -> dict[str, LinearForm]:
+        """Return what bounds the roundings of all other results.
+
+        Parameters
+        ----------
+        retuned : bool
+            Whether the coefficient of the velocity has a range: its corners suffice for what is
+            affine in it.
+        """
+        sizes: dict[str, LinearForm] = {}
+        factors = {STEP: "T"} if retuned else {STEP: "T", KEPT: "a"}
+        own = {*own_results(self.listed.law)}
+        for result in self.terms.keys() - {"error", "command"}:
+            beyond = 1 + self.shares[STEP] if result in own else ONE
+            for term in self.terms[result]:
+                if (share := self.shares.get(term.name)) is None:
+                    continue
+                form = self._exact(term.form)
+                if term.name in factors:
+                    factor = self.numbers[factors[term.name]]
+                    sizes[term.name] = _shortened(share, factor, form)
+                else:
+                    # Of a sum of two sizes, the part of second order counts with another term.
+                    sizes[term.name] = combine((share * beyond, form))
+        return sizes
+
+    def _exact(self, form: LinearForm) -> LinearForm:
+        """Return what a form is without roundings."""
+        kept = len(form) - len(self.rounded)
+        return [*form[:kept], *(Fraction(0) for _ in form[kept:])]
+
+
+def _shortened(share: Fraction, factor: Fraction, form: LinearForm) -> LinearForm:
+    """Return a share of what is a factor times another form, in short numbers."""
+    return combine((short(share * factor) / factor if factor else ONE, form))

@@ -15,42 +15,44 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError, InternalError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
-from nrs_design.models.linear_form import LinearForm, coordinates, zero
+from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
-from nrs_design.proof.channels import Coupling
-from nrs_design.proof.contact import Contact, Flights
+from nrs_design.proof.channels import Coupling, Output
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Clock
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec import IdleStatesSpec
 from nrs_design.spec.interaction_parts import FREE
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
-from nrs_design.switched.assumption import say
 from nrs_design.switched.assumptions import at_once_texts
-from nrs_design.switched.constraints import assemble_switching
+from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.coupled import AxesCoupling, among_axes
-from nrs_design.switched.free_motion import could_pull
-from nrs_design.switched.gain_box import GainBox
+from nrs_design.switched.free_motion import (
+    could_pull,
+    flights_among,
+    force_rows,
+    lost_on_surface,
+    outputs_of,
+)
+from nrs_design.switched.gain_box import GainBox, RangedLaw
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
 from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
-from nrs_design.switched.sampled_gains import RangedLaw
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
     channels_of,
     damping_of,
-    force_rows,
-    outputs_of,
     roundings_of,
 )
 from nrs_design.switched.sampled_motor import motor_box
 
 
 def close_sampled_loop(
-    spec: InteractionDesignSpec,
+    conditions: OperatingConditions,
     sampling: SamplingSpec,
     plant: Plant,
     design: ControllerDesign,
@@ -67,7 +69,7 @@ def close_sampled_loop(
 
     Parameters
     ----------
-    spec : InteractionDesignSpec
+    conditions : OperatingConditions
         With the name, the rules of switching and what is said of contact.
     sampling : SamplingSpec
         Its processor.
@@ -88,36 +90,40 @@ def close_sampled_loop(
     """
     _check_periods(sampling)
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
-    ranges = plant.actuator_ranges or ActuatorRanges.point(plant.actuator)
+    ranges = plant.actuator_ranges
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
-    frame = _frame(spec, sampling, design, [item.law for item in laws.values()], slowed)
+    frame = _frame(conditions.idle, sampling, design, [item.law for item in laws.values()], slowed)
     loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
-    touched = plant.among(design.contacts)
-    loss = _loss_of_contact(spec, touched, design)
+    environments = plant.among(design.contacts)
+    loss = _loss_of_contact(conditions.contact, environments, design)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
-    acting = could_pull(touched)
-    pulls = tuple(row for environment in acting for row in force_rows(frame.states, environment))
-    losable = None
+    velocity = coordinates(len(frame.states))[frame.states.index("omega [rad/s]")]
+    pulls = tuple(force_rows(velocity, frame.states, could_pull(environments)))
+    losable = flights = None
     if free:
-        flying = tuple(item.mode for item in free)
-        losable = Contact(
-            flying, pulls, required=spec.contact == "losable", loss=say("contact-lost.surface")
-        )
-    flights = None
+        losable = lost_on_surface((item.mode for item in free), pulls, conditions.contact)
     if loss.startswith("anywhere"):
-        flights = _flights(frame, plant, design, motions, pulls)
+        names = (item.mode.name for item in motions)
+        # A controller without contacts takes no force: its modes are the same in contact and free,
+        # unless a force sample outlasts them.
+        resting = [c.name for c in design.controllers] if frame.remembers else ()
+        flights = flights_among(names, plant.environments, pulls, resting)
     every = (*motions, *free)
     begins = tuple(item.mode.name for item in every if item.begins)
-    channels = tuple(channels_of(spec, design.sensor.lasting, every))
-    outputs = outputs_of(frame.states, touched, spec.limits.torque.exact) if channels else ()
+    channels = tuple(
+        channels_of(conditions.disturbances, conditions.largest_angle, design.sensor.lasting, every)
+    )
+    outputs: tuple[Output, ...] = ()
+    if channels:
+        outputs = outputs_of(velocity, frame.states, environments, conditions.torque)
     driven = None
     if coupling is None:
-        driven = motor_command(spec, frame, channels)
+        driven = motor_command(conditions.largest_command, conditions.command, frame, channels)
     texts: tuple[str, ...] = (
-        *assume_sampled(spec, sampling, ranges, frame, laws, design, loss, touched),
-        *at_once_texts(touched),
+        *assume_sampled(conditions, sampling, ranges, frame, laws, design, loss, environments),
+        *at_once_texts(environments),
         *(() if driven is None else (driven.text,)),
     )
     couplings: tuple[Coupling, ...] = ()
@@ -126,13 +132,17 @@ def close_sampled_loop(
         couplings = tuple(
             couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
         )
+    resets: Iterable[tuple[str, str, RationalMatrix]] = ()
+    if conditions.idle is not None and conditions.idle.reset:
+        map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
+        resets = ((*pair, map_) for pair in leaving_impedance(design.controllers))
     return SwitchedSystem(
-        spec.name,
+        conditions.name,
         Time.DISCRETE,
         frame.states,
         tuple(item.mode for item in motions),
         texts,
-        assemble_switching(spec.switching, groups, _resets(spec.idle_states, design, frame)),
+        assemble_switching(conditions.switching, groups, resets),
         losable,
         frame.period,
         channels,
@@ -143,31 +153,6 @@ def close_sampled_loop(
         axes=None if coupling is None or not channels else coupling.count,
         flights=flights,
     )
-
-
-def _flights(
-    frame: Frame,
-    plant: Plant,
-    design: ControllerDesign,
-    motions: Iterable[SampledMode],
-    pulls: tuple[RationalMatrix, ...],
-) -> Flights:
-    """Tell which modes are free motion, where it is among them.
-
-    A controller without contacts takes no force: its modes are the same in contact and free, unless
-    a force sample outlasts them.
-    """
-    touched = {environment.name for environment in plant.environments}
-    controllers = {c.name for c in design.controllers}
-    touching, flying = [], []
-    for name in (item.mode.name for item in motions):
-        controller, _, rest = name.partition("/")
-        where = rest.partition("/")[0]
-        if controller in controllers and where in touched:
-            touching.append(name)
-        elif controller in controllers and (where == FREE or frame.remembers):
-            flying.append(name)
-    return Flights(tuple(touching), tuple(flying), pulls)
 
 
 def _motions(
@@ -225,13 +210,13 @@ def _sampled(controller: Controller, sampling: SamplingSpec, box: GainBox) -> Ra
 
 
 def _frame(
-    spec: InteractionDesignSpec,
+    idle: IdleStatesSpec | None,
     sampling: SamplingSpec,
     design: ControllerDesign,
     laws: Sequence[DiscreteLaw],
     ranges: ActuatorRanges,
 ) -> Frame:
-    if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
+    if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
         raise AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
@@ -244,7 +229,7 @@ def _frame(
         tuple(laws),
         sampling.delay[1],
         tau.nominal if tau.low == tau.high else None,
-        None if spec.idle_states is None else idle_share(spec.idle_states, outer),
+        None if idle is None else idle_share(idle, outer),
         _turns(sampling),
     )
 
@@ -258,7 +243,7 @@ class _Loop:
     motor: Box
 
     def in_contact(
-        self, controller: Controller, gains: RangedLaw, touched: Iterable[Environment]
+        self, controller: Controller, gains: RangedLaw, environments: Iterable[Environment]
     ) -> tuple[SampledMode, ...]:
         """Return the motions of a controller in all contacts, and in the air if it has none.
 
@@ -268,8 +253,8 @@ class _Loop:
         found: list[SampledMode] = []
         if not controller.contacts:
             found += self._corners(gains, self.motor, controller.name)
-            touched = touched if self.frame.remembers else ()
-        for environment in touched:
+            environments = environments if self.frame.remembers else ()
+        for environment in environments:
             own = Box({"k": environment.stiffness, "b": damping_of(environment)})
             name = f"{controller.name}/{environment.name}"
             found += self._corners(gains, own.beside(self.motor), name)
@@ -290,9 +275,12 @@ class _Loop:
 
     def _corners(self, gains: RangedLaw, box: Box, name: str) -> Iterator[SampledMode]:
         """Yield the motions in one contact, at every delay that makes a difference."""
-        law = gains.law
+        box = box.beside(gains.box)
+        _, values = next(box.named_values(name))
         ages = range(self.delays[0], self.delays[1] + 1)
-        if not self.frame.listed.takes_force(law):
+        # A law that takes no force has the same map at every age of its sample.
+        youngest, oldest = (self._rows(gains, age, Turn.BOTH, values) for age in self.delays)
+        if youngest == oldest:
             ages = ages[:1]
         for turn, delay in product(self.frame.turns, ages):
             if turn is Turn.MOTION:
@@ -300,7 +288,7 @@ class _Loop:
             late = f"{name}/delay-{delay}" if len(ages) > 1 else name
             late = f"{late}/{turn}" if turn is Turn.ADMITTANCE else late
             rows_at = partial(self._rows, gains, delay, turn)
-            for corner, rows in box.beside(gains.box).corners(rows_at, late):
+            for corner, rows in box.corners(rows_at, late):
                 size = len(self.frame.states)
                 yield SampledMode.of(corner, rows, size, begins=turn is Turn.BOTH)
 
@@ -311,34 +299,16 @@ class _Loop:
 
 
 def _loss_of_contact(
-    spec: InteractionDesignSpec, touched: Iterable[Environment], design: ControllerDesign
+    contact: str | None, environments: Iterable[Environment], design: ControllerDesign
 ) -> Loss:
     """Tell how contact is lost; with springs everywhere, free motion is a mode like others."""
     if any(c.law.commands == "position" for c in design.controllers):
         # Force control rests in the air where it does in contact: at what is commanded.
-        lost = spec.contact == "losable"
+        lost = contact == "losable"
         return "anywhere under force control" if lost else "not under force control"
     sprung = {c.law.spring != 0 for c in design.controllers}
-    if spec.contact == "kept" or (True in sprung and spec.contact is None):
+    if contact == "kept" or (True in sprung and contact is None):
         return "never"
-    if any(e.preloaded or (e.parts and not e.each_losable) for e in touched):
+    if any(e.preloaded or (e.parts and not e.each_losable) for e in environments):
         return "not modelled"
     return "anywhere" if sprung == {True} else "on the surface"
-
-
-def _resets(
-    idle: IdleStatesSpec | None, design: ControllerDesign, frame: Frame
-) -> Iterator[tuple[str, str, RationalMatrix]]:
-    """Yield the switches that set reference and velocity of impedance controllers to zero."""
-    if idle is None or not idle.reset:
-        return
-    left = {"reference [rad]", "vm [rad/s]"}
-    unit = coordinates(len(frame.states))
-    rows = [
-        zero(len(unit)) if state in left else row
-        for state, row in zip(frame.states, unit, strict=True)
-    ]
-    for source in design.controllers:
-        for target in design.controllers:
-            if (source.law.commands, target.law.commands) == ("velocity", "position"):
-                yield source.name, target.name, RationalMatrix.from_rows(rows)

@@ -22,7 +22,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.saturation import CutOff, Saturation, Start
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.operating import OperatingConditions
 from nrs_design.switched.assumption import say
 from nrs_design.switched.loop_assumptions import NOT_MODELLED, NOT_MODELLED_BUT_LIMITS
 from nrs_design.switched.shared_state import SharedState
@@ -37,7 +37,7 @@ _FILTERED = (
 
 def with_saturation(
     system: SwitchedSystem,
-    spec: InteractionDesignSpec,
+    conditions: OperatingConditions,
     actuator: Actuator,
     state: SharedState,
 ) -> SwitchedSystem:
@@ -47,16 +47,14 @@ def with_saturation(
     ----------
     system : SwitchedSystem
         The loop in which nothing does, in deflection coordinates.
-    spec : InteractionDesignSpec
+    conditions : OperatingConditions
         With its limits and the goal, as `nrs_design.spec.combinations` checks.
     actuator : Actuator
         The nominal motor.
     state : SharedState
         Of its modes.
     """
-    assert spec.goals is not None  # it is asked for
-    assert spec.goals.initial_force is not None
-    assert spec.limits.command is not None
+    assert conditions.largest_command is not None  # `combinations` asks for it.
     motion, low_pass = state.motion, state.low_pass
     drive = actuator.gain / actuator.time_constant
     n, free = system.order, () if system.contact is None else system.contact.free
@@ -65,8 +63,8 @@ def with_saturation(
     Kp, Kd = state.design.motion.Kp, state.design.motion.Kd
     motor = RationalMatrix.from_rows([[*combine((Kp, error), (-Kd, omega)), Kd]])
     drives = [_drive(mode, Kp) if state.joint is not None else drive for mode in modes]
-    velocity_limit = float32_not_above(spec.limits.velocity.not_above)
-    command_limit = float32_not_above(spec.limits.command.not_above)
+    velocity_limit = float32_not_above(conditions.velocity)
+    command_limit = float32_not_above(conditions.largest_command)
     signals = (
         CutOff(
             "velocity command",
@@ -77,25 +75,25 @@ def with_saturation(
         ),
         CutOff(
             "motor command",
-            spec.actuator.command,
+            conditions.command,
             command_limit,
             tuple(_column([share * entry for entry in columns[1]]) for share in drives),
             (motor,) * len(modes),
         ),
     )
-    wanted = spec.goals.initial_force
+    wanted = conditions.initial_force
     start = Start(
         "contact force",
         "N*m",
-        tuple(_rest(system.states, state.touched, low_pass)),
-        None if isinstance(wanted, str) else wanted.exact,
+        tuple(_rest(system.states, state.environments, low_pass)),
+        None if isinstance(wanted, str) else wanted,
     )
     texts = (
         NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
     )
     filtered = "" if low_pass is None else _FILTERED
     velocity = rounded_up(velocity_limit, "rad/s")
-    command = rounded_up(command_limit, spec.actuator.command)
+    command = rounded_up(command_limit, conditions.command)
     bound = f"{velocity} and {command}, or more"
     limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)
     return replace(system, saturation=Saturation(signals, start), assumptions=(*texts, limited))
@@ -129,7 +127,7 @@ def _drive(mode: Mode, Kp: Fraction) -> Fraction:
 
 
 def _rest(
-    states: Sequence[str], touched: Sequence[Environment], low_pass: LowPass | None
+    states: Sequence[str], environments: Sequence[Environment], low_pass: LowPass | None
 ) -> list[RationalMatrix]:
     """Return the states at rest with a unit of force, at every stiffness.
 
@@ -141,7 +139,7 @@ def _rest(
     sensed = [zero(len(states)), *([settled] if lags else [])]
     return [
         _column(combine((1 / stiffness, unit[-1]), (Fraction(1), shown)))
-        for environment in touched
+        for environment in environments
         for _, stiffness in environment.stiffness.ends
         for shown in sensed
     ]

@@ -36,13 +36,13 @@ from nrs_design.switched.gain_box import GainBox
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.modes import (
     Rows,
+    lead,
     position_mode,
     to_force_coordinates,
     velocity_mode,
     with_idle,
     with_last,
 )
-from nrs_design.switched.offset import lead
 from nrs_design.switched.parameter_box import Box
 
 # What impedance controllers in a mixture integrate their velocity to.
@@ -58,7 +58,7 @@ class SharedState:
     # Last state of an impedance mode: deflection (continuous when the stiffness changes in contact,
     # so the physical choice), or force (the thesis's choice).
     coordinates: str
-    touched: tuple[Environment, ...]
+    environments: tuple[Environment, ...]
     realization: Realization  # Of the motion loop
     given: bool  # Whether the spec states the motion loop
     joint: Joint | None  # The motion loop in physical states, where its motor has ranges or a load
@@ -81,8 +81,8 @@ class SharedState:
 
     def contacts(self, controller: Controller) -> Iterator[Environment]:
         """Yield what a controller touches."""
-        environments = {environment.name: environment for environment in self.touched}
-        return (environments[name] for name in controller.contacts)
+        by_name = {environment.name: environment for environment in self.environments}
+        return (by_name[name] for name in controller.contacts)
 
     @property
     def motor_box(self) -> Box:
@@ -96,7 +96,7 @@ class SharedState:
     @property
     def memories(self) -> tuple[Environment, ...]:
         """The environments that have a memory of their own."""
-        return tuple(e for e in self.touched if e.creep is not None)
+        return tuple(e for e in self.environments if e.creep is not None)
 
     @property
     def beside(self) -> tuple[str, ...]:
@@ -115,8 +115,8 @@ class SharedState:
         loop = (*self.motion.states, *self.law.states)
         if self.law.commands == "position":
             return loop
-        contact = "F [N*m]" if self.coordinates == "force" else self.touched[0].law.states[0]
-        memories = (f"{e.name}: {name}" for e in self.touched for name in e.law.states[1:])
+        contact = "F [N*m]" if self.coordinates == "force" else self.environments[0].law.states[0]
+        memories = (f"{e.name}: {name}" for e in self.environments for name in e.law.states[1:])
         sensed = () if self.low_pass is None else self.low_pass.states
         return (*loop, *sensed, contact, *memories)
 
@@ -241,7 +241,7 @@ def shared_state(
 def _faults(state: SharedState) -> Iterator[AssemblyError]:
     """Yield what is not modelled in one state."""
     force, mixed = state.coordinates == "force", state.idle is not None
-    for environment in state.touched:
+    for environment in state.environments:
         law, at = environment.law, ("environments", environment.name)
         if force and law.remembers:
             yield AssemblyError(
@@ -250,7 +250,7 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
                 remedy="use coordinates: deflection",
                 at=("coordinates",),
             )
-        if not law.has_rest and len(state.touched) > 1:
+        if not law.has_rest and len(state.environments) > 1:
             yield AssemblyError(
                 f"environment {environment.name} has no rest position ({law.name}), so it shares "
                 "no deflection with another environment",
@@ -286,7 +286,7 @@ def _faults(state: SharedState) -> Iterator[AssemblyError]:
 def _faults_of_springs(state: SharedState) -> Iterator[AssemblyError]:
     """Yield why the state does not tell the displacement of a spring in an admittance."""
     name = next((c.name for c in state.design.controllers if c.law.spring), None)
-    restless = next((e for e in state.touched if not e.law.has_rest), None)
+    restless = next((e for e in state.environments if not e.law.has_rest), None)
     at = ("controllers", str(name), "Kt")
     if name is not None and state.coordinates == "force":
         yield AssemblyError(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from nrs_design.robot.models import design_balance
 from nrs_design.robot.models.balance import LegBalance
 from nrs_design.robot.models.neuroboscope import robot, robot_spec
-from nrs_design.thesis.comparison import Found, Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 
 # Thesis 4.4: M_c and M_b in g, k in N/mm, of the left and the right leg.
 LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
@@ -16,12 +16,12 @@ LEFT, RIGHT = (843.5, 1301.1, 1.8041), (844.1, 1302.4, 1.5919)
 ARM, COUPLER, PAYLOAD = 0.115, 0.220, 0.4428
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterable[Found]:
     """Recompute counter-masses, springs and the misprinted lengths."""
     ours = design_balance(robot_spec(), robot())
     left, arm = ours.left, robot().legs[0]
     moment = 1e-3 * LEFT[0] * left.arm_distance - PAYLOAD * arm.l3
-    found: tuple[Found, ...] = (
+    return (
         *_leg(left),
         *_leg(ours.right),
         1e6 * left.arm_mass * left.arm_distance / LEFT[0],
@@ -32,7 +32,6 @@ def rows() -> tuple[ReproducedValue, ...]:
         ),
         1e3 * moment / arm.arm.mass,
     )
-    return compare_topic("balance", found)
 
 
 def _leg(ours: LegBalance) -> Iterator[Recomputed]:

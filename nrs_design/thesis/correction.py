@@ -9,18 +9,14 @@ import numpy as np
 from nrs_design.robot.models import Correction, correction_coefficients
 from nrs_design.robot.models.correction import DEPTH_SINES, TABLE_3_5, WHOLE_WORKSPACE
 from nrs_design.robot.models.neuroboscope import robot
-from nrs_design.thesis.comparison import Recomputed, ReproducedValue, compare_topic, printed_rows_of
+from nrs_design.thesis.comparison import Recomputed, printed_rows_of
 
 # theta4 in deg of tables 3.7 and of 4.19.
 TILTS = (-10.0, -28.5, -40.0, -70.0)
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterator[Recomputed]:
     """Recompute tables 3.5 and 3.7 along slow sines in phase."""
-    return compare_topic("correction", _results())
-
-
-def _results() -> Iterator[Recomputed]:
     for sine in TABLE_3_5:
         yield Recomputed(_ratios(correction_coefficients(robot(), sine)))
     found = correction_coefficients(robot(), WHOLE_WORKSPACE)

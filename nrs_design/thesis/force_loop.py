@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 from nrs_design.design.force_limit import Approach, peak_force, steady_force_error
 from nrs_design.design.force_loop import force_loop_response
 from nrs_design.spec.controllers import Offset
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterable[Found]:
     """Recompute the open loop 6.33, what Kp = 0.02 gives, and 6.3.3.3 for both X_i of 6.41."""
     stiffness, loop = float(thesis.SOFT), thesis.EXACT_LOOP
     closed = force_loop_response(loop, stiffness, float(thesis.FORCE_GAIN))
@@ -19,14 +20,13 @@ def rows() -> tuple[ReproducedValue, ...]:
     at_zero = (f"{limit.damping_ratio:.4f}", f"{limit.natural_frequency:.2f}")
     peak, left = _limited("reference", 5.0)
     positions = [_limited("measured", speed) for speed in (3.0, 5.0, 8.0)]
-    found = (
+    return (
         (*(stiffness * b for b in loop.numerator), *loop.denominator),
         Recomputed(closed.damping_ratio, facts=at_zero),
         Recomputed(closed.natural_frequency, facts=at_zero),
         Recomputed((peak, left), facts=(f"{10 / left:.2f}",)),
         (*(force for force, _ in positions), max(error for _, error in positions)),
     )
-    return compare_topic("force_loop", found)
 
 
 def _limited(offset: Offset, speed: float) -> tuple[float, float]:

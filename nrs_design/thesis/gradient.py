@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import GradientResult, find_by_gradient
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
-from nrs_design.thesis.comparison import Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 from nrs_design.thesis.matrices import family, hybrid_rows
 from nrs_design.thesis.switching import tool_and_tissue, withdrawal
 
@@ -25,14 +27,13 @@ def pairs() -> tuple[tuple[str, SwitchedSystem], ...]:
     )
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterable[Found]:
     """Run the iteration on all pairs, in the states of the thesis and in others."""
-    found = (
+    return (
         _result(system, coordinates, ends=section == "6.3.3.2" or coordinates != Coordinates.GIVEN)
         for section, system in pairs()
         for coordinates in reversed(Coordinates)
     )
-    return compare_topic("gradient", found)
 
 
 def run(

@@ -19,7 +19,7 @@ from nrs_design.models.motion_loop import realize
 from nrs_design.simulation.metrics import Effort, effort
 from nrs_design.simulation.time_response import Array
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Recomputed
 from nrs_design.thesis.hands_on import ADMITTANCES
 
 # Thesis 7.2.2: phi goes from 0 to -15 deg; and 6.1: 1002 N/m, at the lever arm of 0.24 m.
@@ -92,11 +92,6 @@ def move(Mt: float, Bt: float, stiffness: float | None = None) -> HandRun:
     return HandRun(t, z[:, angle], speed, torque, found, float(z[-1, velocity]))
 
 
-def rows() -> tuple[ReproducedValue, ...]:
-    """Simulate the six experiments with both operators."""
-    return compare_topic("hand_runs", _results())
-
-
 def changes(values: list[float]) -> tuple[float, ...]:
     """Return by how much each pair of `PAIRS` differs, in % of the first.
 
@@ -108,7 +103,8 @@ def changes(values: list[float]) -> tuple[float, ...]:
     return tuple(100 * (values[after] / values[before] - 1) for before, after in PAIRS)
 
 
-def _results() -> Iterator[Recomputed]:
+def results() -> Iterator[Recomputed]:
+    """Simulate the six experiments with both operators."""
     pushed = [move(*admittance) for admittance in ADMITTANCES]
     led = [move(*admittance, HAND) for admittance in ADMITTANCES]
     slow, fast = (changes([WAY / run.time for run in runs]) for runs in (pushed, led))

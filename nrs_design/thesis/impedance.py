@@ -10,18 +10,14 @@ from nrs_design.design.impedance_optimum import ImpedanceProblem, optimize_imped
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.contact import Elastic
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 from nrs_design.thesis.interaction import DESIRED
 
 LOOPS = (thesis.PRINTED_LOOP, thesis.EXACT_LOOP)
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterator[Found]:
     """Recompute what is desired, the four optima with either G, and how stiff is too stiff."""
-    return compare_topic("impedance", _results())
-
-
-def _results() -> Iterator[Found]:
     desired, soft, stiff = DESIRED, float(thesis.SOFT), float(thesis.STIFF)
     yield from (desired, desired / 2, 2 * pi * thesis.BANDWIDTH_IN_HERTZ, soft, stiff)
     yield soft / 0.24**2

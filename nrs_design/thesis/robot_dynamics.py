@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from nrs_design.robot.models import (
-    Robot,
     correction_coefficients,
     mass_matrix,
     simplified_dynamics,
@@ -19,15 +18,12 @@ from nrs_design.robot.models.body import slender_rod
 from nrs_design.robot.models.correction import TABLE_3_5
 from nrs_design.robot.models.neuroboscope import robot
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterator[Found]:
     """Recompute torque shares and inertia ratios, and what the place of the platform does."""
-    return compare_topic("robot_dynamics", _results(robot()))
-
-
-def _results(ours: Robot) -> Iterator[Found]:
+    ours = robot()
     poses = thesis_grid()
     yield tuple(100 * share for share in torque_shares(ours, poses).means)
     # The 36.7 mm of table 3.1, read both ways.

@@ -19,7 +19,7 @@ from nrs_design.robot.models import (
 from nrs_design.robot.models.geometry import direction
 from nrs_design.robot.models.neuroboscope import robot
 from nrs_design.robot.models.vectors import Array
-from nrs_design.thesis.comparison import Found, Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 
 POSE = (0.1, -0.2, 0.2)
 _ROUNDING = 1e-12
@@ -27,12 +27,9 @@ _ROUNDING = 1e-12
 ACCELERATION_PER_SPEED = 3.7
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterator[Found]:
     """Recompute the crank angle, the orientation and the joint speeds."""
-    return compare_topic("robot_kinematics", _results(robot()))
-
-
-def _results(ours: Robot) -> Iterator[Found]:
+    ours = robot()
     yield float(inverse_kinematics(ours, POSE)[2])
     space = ours.workspace
     poses = pose_grid([0.0], (-space.psi, 0.0, space.psi), np.linspace(*space.d, 101))

@@ -7,12 +7,7 @@ from math import degrees, exp, pi, sqrt
 
 from nrs_design.design.root_locus import PdDesign, design_pd, motion_loop_response
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Recomputed, ReproducedValue, compare_topic
-
-
-def rows() -> tuple[ReproducedValue, ...]:
-    """Recompute the design by angle and magnitude condition, then what it really gives."""
-    return compare_topic("root_locus", _results())
+from nrs_design.thesis.comparison import Found, Recomputed
 
 
 def _pd(time_constant: float) -> PdDesign:
@@ -20,7 +15,8 @@ def _pd(time_constant: float) -> PdDesign:
     return design_pd(gain, time_constant, thesis.DAMPING_RATIO, thesis.SETTLING_TIME)
 
 
-def _results() -> Iterator[Found]:
+def results() -> Iterator[Found]:
+    """Recompute the design by angle and magnitude condition, then what it really gives."""
     # The thesis places the zero with the pole of 4.26b, the gain with the rounded 0.0351 s of 4.29.
     unrounded, rounded = _pd(1 / thesis.BREAK_FREQUENCY), _pd(float(thesis.ACTUATOR.time_constant))
     wn, zeta = rounded.natural_frequency, thesis.DAMPING_RATIO

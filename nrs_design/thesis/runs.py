@@ -18,7 +18,7 @@ from nrs_design.simulation.metrics import (
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.time_response import Array
 from nrs_design.thesis import thesis
-from nrs_design.thesis.comparison import Found, Recomputed, ReproducedValue, compare_topic
+from nrs_design.thesis.comparison import Found, Recomputed
 from nrs_design.thesis.interaction import (
     BLEEDING,
     BY_THRESHOLD,
@@ -37,12 +37,8 @@ from nrs_design.thesis.interaction import (
 )
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterator[Found]:
     """Simulate insertion and withdrawal, the limit on the force, and tissue and tool."""
-    return compare_topic("runs", _results())
-
-
-def _results() -> Iterator[Found]:
     yield from _profile()
     for speed in (5, 3):
         times = [_withdrawal(run) for run in withdrawals(speed)]

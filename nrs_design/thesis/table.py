@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import ModuleType
 
 from nrs_design.progress import Progress, silent
 from nrs_design.thesis import (
@@ -26,7 +27,7 @@ from nrs_design.thesis import (
     tissue,
     tracking,
 )
-from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue
+from nrs_design.thesis.comparison import PrintVerdict, ReproducedValue, compare_topic
 from nrs_design.thesis.errata import Erratum, errata
 
 # In the order of the thesis, but for the formulas.
@@ -69,8 +70,14 @@ def reproduce(progress: Progress = silent) -> tuple[ReproducedValue, ...]:
     table: list[ReproducedValue] = []
     for topic in TOPICS:
         progress(topic.__name__.rpartition(".")[2].replace("_", " "))
-        table.extend(topic.rows())
+        table.extend(topic_rows(topic))
     return tuple(table)
+
+
+def topic_rows(topic: ModuleType) -> tuple[ReproducedValue, ...]:
+    """Return the rows of a topic: those of `rows.yaml`, and what was measured on the robot."""
+    rows = compare_topic(topic.__name__.rpartition(".")[2], topic.results())
+    return (*rows, *tracking.measured()) if topic is tracking else rows
 
 
 def count_verdicts(table: Sequence[ReproducedValue]) -> dict[str, int]:

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from statistics import fmean
 
 from nrs_design.models.contact import KelvinBoltzmann, Maxwell
-from nrs_design.thesis.comparison import (
-    Found,
-    Recomputed,
-    ReproducedValue,
-    compare_topic,
-    format_number,
-)
+from nrs_design.thesis.comparison import Found, Recomputed, format_number
 
 # Thesis tables 2.4 and 2.5: mean coefficients in N m/rad and N m s/rad, and RMSE in N m.
 BOLTZMANN = {
@@ -40,9 +34,9 @@ RMSE: Mapping[str, Mapping[str, tuple[float, ...]]] = {
 }
 
 
-def rows() -> tuple[ReproducedValue, ...]:
+def results() -> Iterable[Found]:
     """Convert the coefficients, and hold the text against the tables."""
-    return compare_topic("tissue", (found for tissue in BOLTZMANN for found in _results(tissue)))
+    return (found for tissue in BOLTZMANN for found in _results(tissue))
 
 
 def _results(tissue: str) -> Iterator[Found]:

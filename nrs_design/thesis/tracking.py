@@ -7,23 +7,18 @@ from math import pi
 
 from nrs_design.robot.simulation.tracking import MOTIONS
 from nrs_design.robot.simulation.tracking.measured import MEASURED
-from nrs_design.thesis.comparison import (
-    PrintedRow,
-    Recomputed,
-    ReproducedValue,
-    compare_topic,
-    judge,
-)
+from nrs_design.thesis.comparison import PrintedRow, Recomputed, ReproducedValue, judge
 
 _BECAUSE = "it was measured on the robot; `nrs-design robot track` shows simulated errors beside it"
 
 
-def rows() -> tuple[ReproducedValue, ...]:
-    """List the root mean square errors of tables 4.2 to 4.10, and the period of half of them."""
-    return (*compare_topic("tracking", (2 * pi / 0.0571,)), *_measured())
+def results() -> tuple[float]:
+    """Recompute the period of half of the measurements."""
+    return (2 * pi / 0.0571,)
 
 
-def _measured() -> Iterator[ReproducedValue]:
+def measured() -> Iterator[ReproducedValue]:
+    """List the root mean square errors of tables 4.2 to 4.10."""
     for controller, tables, prints in MEASURED:
         for moved, table, printed in zip(MOTIONS, tables, prints, strict=True):
             name = f"tracking RMSE of phi, psi, d; {controller}, {moved} moves"

@@ -3,8 +3,6 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import (
     SCHEMA,
@@ -23,13 +21,11 @@ from nrs_design.proof.evidence import (
     GrowingSequence,
     NoCommonQuadratic,
 )
-from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.evidence.growing_sequence import staying
-from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Reset, Switching
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic, mode_quadratic
-from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix, number_in
+from tests.support import COMMUTING, PRINT_ERROR, ROOT, family, matrix
 
 Q = ((1, 0), (0, 1))
 EXAMPLES = ROOT / "specs" / "examples"
@@ -82,37 +78,6 @@ def test_growth_through_resets_says_nothing_about_quadratic_functions():
     system = replace(system, switching=Switching(resets=(doubling,)))
     assert common_quadratic_of(system, (PERIOD,)) is UNKNOWN
     assert common_quadratic_of(system, (UNSTABLE,)) is NONE
-
-
-@given(st.fractions(min_value=Fraction(1, 10**12), max_value=10**12))
-def test_rates_are_rounded_to_the_safe_side(rate):
-    slower, larger = rate_text(rate, Time.CONTINUOUS), rate_text(rate, Time.DISCRETE)
-    assert number_in(slower) <= rate <= number_in(larger)
-    assert number_in(slower) >= rate * (1 - Fraction(1, 10**5))
-    assert number_in(larger) <= rate * (1 + Fraction(1, 10**5))
-
-
-@pytest.mark.parametrize(
-    "rate", [Fraction(10) ** 4000, Fraction(1, 10**4000), Fraction(2, 3) ** 9000]
-)
-def test_rates_of_any_size_have_a_text(rate):
-    assert len(rate_text(rate, Time.CONTINUOUS)) < 20
-
-
-def test_claims_in_words():
-    system = family([[-1, 0], [0, -1]], [[-2, 0], [0, -2]])
-    evidence = common_quadratic(Q, 0, Fraction(2, 3))
-    assert evidence.claim(system) == (
-        "Every solution of x' = A x, switching arbitrarily among the 2 modes, satisfies "
-        "|x(t)| <= exp(-alpha t) |x(0)| with alpha >= 0.666666 1/s, in the norm "
-        "|x| = sqrt(x' Q x)."
-    )
-    discrete = family([[0, 0], [0, 0]], time=Time.DISCRETE)
-    assert "its one mode" in evidence.claim(discrete)
-    assert "rho^t |x(0)| with rho <= 0.666667," in evidence.claim(discrete)
-    rotation = family([[0, 1], [-1, 0]])
-    assert "not Hurwitz (eigenvalue about 0 +- 1j)" in staying("m0").claim(rotation)
-    assert "not Schur" in staying("m0").claim(discrete)
 
 
 @pytest.mark.parametrize(

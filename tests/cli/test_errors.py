@@ -108,8 +108,15 @@ def test_slips_of_the_pen(tmp_path, old, new, said):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("certify", COMMUTING), "did you mean certify-switching?"),
+        (("certify",), "no command 'certify' (did you mean certify-switching?"),
+        (("Gat",), "did you mean gate?"),
+        (("exprot",), "did you mean export?"),
+        (("zzz",), "there are init, check, schema"),
+        (("x",), "there are init, check, schema"),
         (("robot", "chek"), "did you mean check?"),
+        (("tune", COMMUTING), "nothing to tune"),
+        (("simulate", COMMUTING), "describes no interaction"),
+        (("optimize", COMMUTING), "nothing to design"),
         (("verify", COMMUTING, COMMUTING), "this is a spec, not a certificate (name the"),
         (("optimize", COMMUTING), "commuting.nrs.yaml:4:1"),
         (("certify-switching", COMMUTING, "--margin"), "commuting.nrs.yaml:8:1"),
@@ -117,6 +124,11 @@ def test_slips_of_the_pen(tmp_path, old, new, said):
 )
 def test_wrong_use_says_what_is_meant(tmp_path, arguments, said):
     assert said in run(*arguments, cwd=tmp_path, code=2).stderr
+
+
+def test_the_words_of_wrong_usage_are_printable(tmp_path):
+    shown = run("check", "--no-such\u202eoption\x1b[31m", cwd=tmp_path, code=2).stderr
+    assert shown.replace("\n", "").isprintable()
 
 
 def test_a_design_without_answer_points_at_its_field(tmp_path):

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from tests.support import COMMUTING, FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
+from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, document_of, run
 
 
 def test_optimum_of_the_thesis(tmp_path):
@@ -48,10 +48,8 @@ def test_passivity_of_the_sampled_law(tmp_path):
             assert band["passive_up_to_rad_s"] < low <= high
             omega = 2 * math.atan(Fraction(band["not_passive_at_tangent"])) / 0.002
             assert omega == pytest.approx(low, abs=1e-8)
-    assert (
-        document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["controllers"][0]["sampled_passivity"]
-        == []
-    )
+    first, _ = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)["controllers"]
+    assert first["sampled_passivity"] == []
 
 
 def write(tmp_path, text):
@@ -82,9 +80,8 @@ def loaded(*replacements):
 
 def test_a_load_is_in_all_that_is_said(tmp_path):
     """What certify-switching proves at 318.6 and refutes at 318.7 N m/rad has the limit 318.68."""
-    (found,) = document_of("optimize", write(tmp_path, loaded()), cwd=tmp_path, code=0)[
-        "controllers"
-    ]
+    document = document_of("optimize", write(tmp_path, loaded()), cwd=tmp_path, code=0)
+    (found,) = document["controllers"]
     assert found["stiffness_limit"] == pytest.approx(318.6876, abs=1e-3)
     assert found["gain_margin"] > 1
     # Unloaded it ends to be passive at 60.90 rad/s; loaded, Re Y is +0.043 there.
@@ -127,17 +124,18 @@ def test_an_unstable_loop_is_told_the_limit_at_the_worst_age(tmp_path, stiffness
 def test_gains_are_sought_where_the_loop_that_is_proved_is_stable(tmp_path):
     """The loop without the load is unstable with all of these gains."""
     bounds = ("MASS", "0.01 kg*m^2"), ("DAMPING", "{min: 2.1 N*m*s/rad, max: 2.2 N*m*s/rad}")
-    (found,) = document_of("optimize", write(tmp_path, loaded(*bounds)), cwd=tmp_path, code=0)[
-        "controllers"
-    ]
+    document = document_of("optimize", write(tmp_path, loaded(*bounds)), cwd=tmp_path, code=0)
+    (found,) = document["controllers"]
     assert found["stiffness_limit"] > 300
 
 
 def test_one_sensitivity_peak_for_one_controller(tmp_path):
     """Withdrawal over soft tissue: 3.75298 is the supremum; the table is rounded up, as warned."""
     result = run("optimize", SOFT_TISSUE, cwd=tmp_path)
+    assert result.stdout.startswith("soft-tissue: G(s) = (0.99739 s + 56.822)")
     row = next(line for line in result.stdout.splitlines() if "withdrawal" in line)
-    assert "3.753" in row
+    for value in ("1.0743", "43.0356", "0.01", "1.04", "3.753"):
+        assert value in row
     assert "3.578" not in result.stdout + result.stderr
     assert "the worst of the loop that certify-switching is about" in result.stdout
     document = document_of("optimize", SOFT_TISSUE, cwd=tmp_path)
@@ -160,27 +158,8 @@ def test_what_is_not_computed_is_said(tmp_path):
     assert "MISSED" in run("optimize", write(tmp_path, wanted), cwd=tmp_path, code=1).stdout
 
 
-def test_table(tmp_path):
-    lines = run("optimize", SOFT_TISSUE, cwd=tmp_path, code=0).stdout.splitlines()
-    assert lines[0].startswith("soft-tissue: G(s) = (0.99739 s + 56.822)")
-    row = next(line for line in lines if "insertion" in line)
-    for value in ("2.1486", "43.0356", "0.01", "2.15"):
-        assert value in row
-
-
 def test_nothing_to_optimize(tmp_path):
     assert "no impedance controllers" in run("optimize", FORCE_LIMIT, cwd=tmp_path, code=0).stderr
-
-
-def test_given_matrices(tmp_path):
-    result = run("optimize", COMMUTING, cwd=tmp_path, code=2)
-    assert "error[NRS002]" in result.stderr
-    assert "nothing to design" in result.stderr
-    assert result.stdout == ""
-
-
-def test_missing_spec(tmp_path):
-    run("optimize", "none.nrs.yaml", cwd=tmp_path, code=2)
 
 
 def spec_with(tmp_path, goals, *replacements):

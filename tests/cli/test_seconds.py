@@ -4,7 +4,6 @@ import pytest
 import typer
 
 from nrs_design.cli.seconds import seconds
-from tests.support import ROOT, run
 
 
 @pytest.mark.parametrize(
@@ -23,8 +22,3 @@ def test_what_is_no_time_is_refused(text):
 def test_a_time_out_of_range_says_the_range():
     with pytest.raises(typer.BadParameter, match=r"out of range: 0\.001 to 1 s"):
         seconds(1e-3, 1.0)("3 s")
-
-
-def test_a_command_takes_it(tmp_path):
-    spec = ROOT / "docs/examples/scenarios.nrs.yaml"
-    assert "parsec" in run("simulate", spec, "--period", "1 parsec", cwd=tmp_path, code=2).stderr

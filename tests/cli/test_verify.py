@@ -4,7 +4,6 @@ import json
 import shutil
 import subprocess
 import sys
-from time import perf_counter
 
 import pytest
 
@@ -21,8 +20,6 @@ from tests.support import (
     typed,
     write_spec,
 )
-
-HEAVY = ("control", "cvxpy", "scipy", "matplotlib", "clarabel", "numpy", "typst", "jinja2")
 
 
 @pytest.fixture(scope="module")
@@ -48,11 +45,6 @@ def test_the_derivative_gain_is_that_of_a_program(tmp_path):
     shown = run("verify", "c.json", "slow.nrs.yaml", cwd=tmp_path, code=0).stdout
     assert "Kd = 2060 rpm*s/rad" in shown
     assert "multiplies by Kd/T = 686666.6875 rpm/rad, which makes its Kd about 2060.000062" in shown
-
-
-def test_refutation_holds(certified):
-    result = run("verify", "thesis-print-error.json", PRINT_ERROR, cwd=certified, code=1)
-    assert result.stdout.startswith("REFUTED: the certificate holds")
 
 
 @pytest.mark.parametrize(
@@ -81,9 +73,20 @@ def test_without_a_spec_what_is_altered_is_rejected(certified, tmp_path):
     assert "REJECTED: V does not decrease" in run("verify", "c.json", cwd=tmp_path, code=1).stdout
 
 
-def test_coordinates_need_a_spec(certified):
-    result = run("verify", "soft-tissue.json", "--coordinates", "force", cwd=certified, code=2)
-    assert "needs a SPEC" in result.stderr
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (("thesis-print-error.json", PRINT_ERROR), 1, "REFUTED: the certificate holds"),
+        (("soft-tissue.json", COMMUTING), 1, "REJECTED: it belongs to another spec"),
+        (("soft-tissue.json", PRINT_ERROR), 1, "REJECTED: it belongs to another spec"),
+        (("soft-tissue.json", "--coordinates", "force"), 2, "needs a SPEC"),
+        (("commuting.json", "none.nrs.yaml"), 2, "error[NRS001]"),
+        (("commuting.json", COMMUTING, "--deployed", "x.h"), 2, "no gains that could be deployed"),
+    ],
+)
+def test_what_is_no_proof_of_the_spec_says_why(certified, arguments, code, said):
+    result = run("verify", *arguments, cwd=certified, code=code)
+    assert said in (result.stderr if code == 2 else result.stdout)
 
 
 def test_quiet(certified):
@@ -129,12 +132,6 @@ def test_other_coordinates_must_be_asked_for(tmp_path):
     assert "coordinates: force" in asked.stdout
 
 
-@pytest.mark.parametrize("spec", [COMMUTING, PRINT_ERROR])
-def test_wrong_spec(certified, spec):
-    result = run("verify", "soft-tissue.json", spec, cwd=certified, code=1)
-    assert result.stdout.startswith("REJECTED: it belongs to another spec")
-
-
 def test_altered(certified, tmp_path):
     document = json.loads((certified / "commuting.json").read_text())
     document["statements"][0]["nodes"][0]["form"][0][0] += 1
@@ -167,11 +164,6 @@ def test_not_a_certificate(tmp_path, content):
     assert result.stdout == ""
 
 
-def test_missing_spec(certified):
-    result = run("verify", "commuting.json", "none.nrs.yaml", cwd=certified, code=2)
-    assert "error[NRS001]" in result.stderr
-
-
 def test_changed_spec(certified, tmp_path):
     copy = tmp_path / "commuting.nrs.yaml"
     shutil.copy(COMMUTING, copy)
@@ -199,35 +191,6 @@ def test_disagreement_is_an_internal_error(certified):
         assert "InternalError" in result.stderr
         assert "PROVED" not in result.stdout
     assert not (certified / "reports").exists()
-
-
-@pytest.mark.parametrize("command", ["verify", "help"])
-def test_light_imports(certified, command):
-    program = (
-        "import sys; from nrs_design.cli import main\n"
-        "try: main()\n"
-        f"finally: print([m for m in {HEAVY} if m in sys.modules], file=sys.stderr)"
-    )
-    arguments = (
-        ["--help"] if command == "help" else ["verify", "soft-tissue.json", str(SOFT_TISSUE)]
-    )
-    start = perf_counter()
-    result = subprocess.run(
-        [sys.executable, "-c", program, *arguments],
-        capture_output=True,
-        text=True,
-        cwd=certified,
-        check=False,
-    )
-    # For the reader of `pytest -s`; a time limit would only measure the machine.
-    print(f"{command}: {perf_counter() - start:.2f} s")
-    assert result.returncode == 0
-    assert result.stderr.strip().endswith("[]"), result.stderr
-
-
-def test_example_of_the_help_is_a_real_spec():
-    assert "soft-tissue" in run("verify", "--help", cwd=ROOT).stdout
-    assert SOFT_TISSUE.is_file()
 
 
 WHAT = {
@@ -268,12 +231,6 @@ def test_deployed_numbers_are_those_of_the_certificate(tmp_path):
     run(*check, "nothing.h", cwd=tmp_path, code=2)
     result = run("verify", "x.cert.json", COMMUTING, "--deployed", "x.h", cwd=tmp_path, code=1)
     assert "another spec" in result.stdout
-
-
-def test_given_matrices_have_nothing_to_deploy(certified, tmp_path):
-    proof = certified / "commuting.json"
-    result = run("verify", proof, COMMUTING, "--deployed", "x.h", cwd=tmp_path, code=2)
-    assert "no gains that could be deployed" in result.stderr
 
 
 def test_swapped_files_are_named_in_their_order(tmp_path):

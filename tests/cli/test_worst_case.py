@@ -1,11 +1,9 @@
 """`nrs-design simulate --worst-case`, as a user types it."""
 
-import json
-
 import pytest
 
 from tests.simulation.interactions import text_of
-from tests.support import run
+from tests.support import document_of, run
 
 LAW = {"insertion": "{type: impedance, environment: soft, Mt: 0 kg*m^2, Bt: 2.15 N*m*s/rad}"}
 SOFT = {
@@ -24,9 +22,7 @@ def spec(tmp_path):
 
 @pytest.mark.slow
 def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
-    result = run("simulate", spec, "--worst-case", "--json", "--out", "runs", cwd=tmp_path)
-    assert result.returncode == 0, result.stderr
-    document = json.loads(result.stdout)
+    document = document_of("simulate", spec, "--worst-case", "--out", "runs", cwd=tmp_path, code=0)
     assert document["schema"] == "nrs-design/simulate/1"
     found = {item["output"]: item for item in document["worst_case"]["found"]}
     assert found.keys() == {"force", "velocity", "deflection"}
@@ -43,19 +39,14 @@ def test_the_worst_case_beside_limits_and_bounds(spec, tmp_path):
 
 
 def test_options_that_nothing_would_heed_are_refused(spec, tmp_path):
-    result = run("simulate", spec, "--worst-case", "--scenario", "run", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", spec, "--worst-case", "--scenario", "run", cwd=tmp_path, code=2)
     assert not result.stdout
     assert "not within a scenario" in result.stderr
-    result = run("simulate", spec, "--seed", "1", cwd=tmp_path)
-    assert result.returncode == 2
-    assert "needs --worst-case" in result.stderr
 
 
 def test_what_no_adversary_plays_against_is_said(tmp_path):
     path = tmp_path / "small.nrs.yaml"
     path.write_text(text_of({"position": "{type: position}"}, SOFT))
-    result = run("simulate", path, "--worst-case", cwd=tmp_path)
-    assert result.returncode == 2
+    result = run("simulate", path, "--worst-case", cwd=tmp_path, code=2)
     assert "position is given a position" in result.stderr
     assert "without --worst-case" in result.stderr

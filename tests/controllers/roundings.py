@@ -1,9 +1,25 @@
-"""How often the terms of a law are rounded."""
+"""The map of a law without rounding, and how often its terms are rounded."""
 
 from fractions import Fraction
 from itertools import chain
 
 from nrs_design.controllers.step_analysis import rounded_terms
+from nrs_design.models.linear_form import combine
+
+ONE = Fraction(1)
+FORMS = {
+    "add": lambda left, right: combine((ONE, left), (ONE, right)),
+    "subtract": lambda left, right: combine((ONE, left), (-ONE, right)),
+    "multiply": lambda left, right: combine((left[0], right)),
+    "saturate": lambda _, right: right,
+}
+
+
+def linear_forms(law, mode, given):
+    """Return every value of a step as a linear form, without rounding or saturation."""
+    held = {c.name: [c.of(mode)] for c in law.coefficients}
+    found = law.read(held | given, FORMS)
+    return {name: form for name, form in found.items() if name not in held}
 
 
 def term_counts(law, mode=0):

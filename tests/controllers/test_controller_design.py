@@ -1,7 +1,3 @@
-from dataclasses import FrozenInstanceError
-
-import pytest
-
 from nrs_design.controllers.laws import Admittance, PositionControl, ProportionalForce
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
@@ -21,9 +17,3 @@ def test_position_control_touches_nothing():
     position, force = run_design(read_spec(FORCE_LIMIT)).design.controllers
     assert (position.law, position.environment, position.contacts) == (PositionControl(), None, ())
     assert isinstance(force.law, ProportionalForce)
-
-
-def test_frozen():
-    design = run_design(read_spec(FORCE_LIMIT)).design
-    with pytest.raises(FrozenInstanceError):
-        design.controllers = ()

@@ -90,20 +90,6 @@ def test_not_single_precision(text):
     assert not is_float32(Fraction(text))
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (0, "0"),
-        ("-1/2", "-0.5"),
-        ("1/1024", "0.0009765625"),
-        (2**100, str(2**100)),
-        ("5/4", "1.25"),
-    ],
-)
-def test_exact_decimal(value, text):
-    assert exact_decimal(Fraction(value)) == text
-
-
 def test_no_terminating_expansion():
     with pytest.raises(ValueError, match="1/3"):
         exact_decimal(Fraction(1, 3))
@@ -130,17 +116,6 @@ def test_round_significant(value, digits, rounded):
 )
 def test_neighbors_are_one_step_of_the_last_digit_away(value, digits, expected):
     assert neighbors(value, digits) == pytest.approx(expected)
-
-
-@given(st.floats(2**-149, 2**127, width=32), st.fractions(0, 1))
-def test_the_number_below(value, share):
-    """Between a number and the next one there is no other."""
-    low, high = (
-        Fraction(value),
-        Fraction(float(np.nextafter(np.float32(value), np.float32(np.inf)))),
-    )
-    between = low + share * (high - low)
-    assert float32_not_above(between) == (high if share == 1 else low)
 
 
 @given(st.fractions(min_value=-4, max_value=4), st.integers(-160, 100))

@@ -6,21 +6,16 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from nrs_design.controllers.float32 import is_float32
-from nrs_design.controllers.laws import DiscreteLaw, PositionControl
 from nrs_design.controllers.sensor import (
     LowPass,
     Sensor,
     build_sensor,
     length_between,
 )
-from nrs_design.controllers.step_analysis import linear_forms
-from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import DesignError
-from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.spec.sensor import SensorSpec
 
 F = Fraction
@@ -117,42 +112,14 @@ def test_a_contact_gives_its_arm():
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])
-def test_lags_in_continuous_time(order):
+def test_lags_and_how_a_processor_holds_them(order):
+    """``1/(1 + s/w)^order``; sampled, ``p = exp(-w T)`` and one in the long run."""
     low_pass = LowPass(order, F(200))
-    n = order + 1
-    form = coordinates(n)
-    felt, rates = low_pass.respond(form[-1], form[:-1])
-    A = np.array(rates, dtype=float)
     for omega in (1.0, 150.0, 3000.0):
-        x = np.linalg.solve(1j * omega * np.eye(order) - A[:, :-1], A[:, -1])
-        assert np.array(felt, dtype=float)[:-1] @ x == pytest.approx(
-            (1 + 1j * omega / 200) ** -order
-        )
-        wanted = 1 / np.polyval(low_pass.denominator, 1j * omega)
-        assert wanted == pytest.approx((1 + 1j * omega / 200) ** -order)
-
-
-@pytest.mark.parametrize("order", [1, 3])
-def test_lags_as_a_processor_runs_them(order):
-    """Sample by sample, against the same filters in a row."""
-    step = LowPass(order, F(200)).discretize(F(1, 500))
-    p, q = float(step.p), float(step.q)
+        wanted = (1 + 1j * omega / 200) ** order
+        assert np.polyval(low_pass.denominator, 1j * omega) == pytest.approx(wanted)
+    step = low_pass.discretize(F(1, 500))
     assert is_float32(step.p)
     assert is_float32(step.q)
-    assert p == pytest.approx(np.exp(-0.4), rel=1e-7)
-    force = np.random.default_rng(3).normal(size=50)
-    wanted = force
-    for _ in range(order):
-        wanted = lfilter([q], [1, -p], wanted)
-    law = build_law(StepFrame(F(1), F(1), step), {"one": DiscreteLaw(PositionControl, {})})
-    names = [f"filtered_{i}" for i in range(1, order + 1)]
-    given = {value.name: zero(order + 1) for value in law.values}
-    given |= zip([*names, "torque"], coordinates(order + 1), strict=True)
-    forms = linear_forms(law, 0, given)
-    rows = np.array([forms[law.following[name]] for name in names], dtype=float)
-    x, found = np.zeros(order), []
-    for sample in force:
-        x = rows @ [*x, sample]
-        found.append(x[-1])
-    assert found == pytest.approx(wanted)
+    assert float(step.p) == pytest.approx(np.exp(-0.4), rel=1e-7)
     assert float(step.lasting_gain) == pytest.approx(1, abs=1e-6)

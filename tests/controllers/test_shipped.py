@@ -10,13 +10,13 @@ from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.shipped import shipped_law, step_limits
-from nrs_design.controllers.step_analysis import linear_forms
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import coordinates, zero
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
-from tests.support import FORCE_LIMIT, ROBOT, ROOT, SOFT_TISSUE
+from tests.controllers.roundings import linear_forms
+from tests.support import ROBOT, ROOT, SOFT_TISSUE
 
 PERIOD = Fraction(1, 500)
 PARALLEL = ROOT / "docs/examples/parallel.nrs.yaml"
@@ -80,14 +80,6 @@ def test_coefficients_are_those_of_the_sampled_design():
         wanted = controller.law.discretize(PERIOD, "exact").numbers
         assert {name: law.coefficient[name].of(k) for name in wanted} == wanted
     assert law_of(found, 2 * PERIOD) != law
-
-
-def test_force_control_ships_with_its_gain():
-    found = run_design(read_spec(FORCE_LIMIT))
-    position, force = found.design.controllers
-    law = law_of(found)
-    assert law.modes == (position.name, force.name)
-    assert law.coefficient["Kf"].values == (0, force.law.Kp)
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,11 @@ import pytest
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
 from nrs_design.controllers.step_analysis import (
     check_range,
-    linear_forms,
     rounded_terms,
 )
 from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import combine, coordinates
-from tests.controllers.roundings import term_counts
+from tests.controllers.roundings import linear_forms, term_counts
 from tests.exporters.programs import LAWS, law
 
 ONE = Fraction(1)
@@ -25,20 +24,6 @@ def of(*operations, coefficients=(HALF,)):
     """Return a law whose last operation is its output."""
     last = operations[-1].name
     return StepLaw(("a",), (X, Y), (), coefficients, operations, {"o": last}, {}, {"o": "1"})
-
-
-def test_forms_by_hand():
-    """h (x - y) + y is (x + y)/2; a saturation changes no form."""
-    made = of(
-        Operation("d", "subtract", "x", "y"),
-        Operation("p", "multiply", "h", "d"),
-        Operation("s", "saturate", "h", "p"),
-        Operation("z", "add", "s", "y"),
-    )
-    x, y = coordinates(2)
-    forms = linear_forms(made, 0, {"x": x, "y": y})
-    assert forms["z"] == [Fraction(1, 2), Fraction(1, 2)]
-    assert forms["s"] == forms["p"]
 
 
 def test_counts_by_hand():
@@ -95,6 +80,6 @@ def test_what_is_not_linear_has_no_forms(kind, left):
     """Nor may it pass for something else."""
     made = of(Operation("z", kind, left, "x"))
     x, y = coordinates(2)
-    for ask in (lambda: linear_forms(made, 0, {"x": x, "y": y}), lambda: check_range(made)):
+    for ask in (lambda: rounded_terms(made, 0, {"x": x, "y": y}), lambda: check_range(made)):
         with pytest.raises(ValueError, match=f"not linear: {kind}"):
             ask()

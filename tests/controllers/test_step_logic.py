@@ -2,14 +2,10 @@
 
 from fractions import Fraction
 
-import numpy as np
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
 
 from nrs_design.controllers.float32 import is_float32
 from nrs_design.controllers.step_logic import LONGEST, StepLogic
-from nrs_design.controllers.threshold_logic import ThresholdLogic
 from nrs_design.errors import DesignError
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 
@@ -38,24 +34,6 @@ def spec(hold=None, above="0.5 rad/s"):
         ],
     }
     return ThresholdLogicSpec.model_validate(document | ({"hold": hold} if hold else {}))
-
-
-SIGNALS = st.sampled_from([-1.0, -0.5, -0.25, 0.0, 0.0625, 0.1, 0.125, 0.5, 1.0, np.nan, np.inf])
-
-
-@example([(-1.0, 1.0)] * 40 + [(1.0, 1.0)] * 40)
-@given(st.lists(st.tuples(SIGNALS, SIGNALS), min_size=1, max_size=150))
-def test_it_is_the_logic_in_seconds(signals):
-    """Thresholds that are single-precision numbers: the same controller at every sample."""
-    for hold in (None, {"withdrawal": "30 ms"}):
-        logic = spec(hold)
-        seconds, samples = ThresholdLogic.of(logic), StepLogic.of(logic, MODES, PERIOD)
-        state, (mode, held) = seconds.start(), (samples.start, 0)
-        for k, (command, torque) in enumerate(signals):
-            seen = {"command": command, "torque": torque}
-            state = seconds.step(state, float(PERIOD) if k else 0.0, seen)
-            mode, held = samples.step(mode, held, seen)
-            assert MODES[mode] == state.controller
 
 
 def test_thresholds_are_rounded_away_from_each_other():

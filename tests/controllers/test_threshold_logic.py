@@ -1,15 +1,17 @@
 """The logic as it runs: what is proved about the time between two switches, seen in runs."""
 
+from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.controllers.threshold_logic import LogicState, ThresholdLogic
+from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 
-PERIOD, AGE, NOISE, RATE = 1e-3, 4e-3, 0.1, 40.0
+PERIOD, NOISE, RATE = 1e-3, 0.1, 40.0
 SPEC = ThresholdLogicSpec.model_validate(
     {
         "type": "thresholds",
@@ -21,18 +23,18 @@ SPEC = ThresholdLogicSpec.model_validate(
         ],
     }
 )
-LOGIC = ThresholdLogic.of(SPEC)
-NO_TIMER = ThresholdLogic(LOGIC.initial, LOGIC.switches, {})
+LOGIC = StepLogic.of(SPEC, ("in", "out"), Fraction(1, 1000))
+NO_TIMER = replace(LOGIC, stays=(0, 0))
 
 
 def switch_times(logic, values):
     """Times of all switches, for values of the command that the logic sees."""
-    state, times = logic.start(), []
+    (mode, held), times = (logic.start, 0), []
     for k, value in enumerate(values):
-        after = logic.step(state, PERIOD if k else 0.0, {"command": value})
-        if after.controller != state.controller:
+        before = mode
+        mode, held = logic.step(mode, held, {"command": value})
+        if mode != before:
             times.append(k * PERIOD)
-        state = after
     return times
 
 
@@ -78,12 +80,3 @@ def test_the_bound_is_reached():
 def test_the_timer_holds_whatever_the_signals_do(values):
     times = [0.0, *switch_times(LOGIC, values)]
     assert all(b - a >= 0.016 - 1e-9 for a, b in pairwise(times))
-
-
-def test_steps_by_hand():
-    """Held for 16 ms; then the first switch that is due; no number is no reason."""
-    state = LOGIC.step(LOGIC.start(), 0.015, {"command": -1.0})
-    assert state == LogicState("in", 0.015)
-    assert LOGIC.step(state, 0.002, {"command": float("nan")}).controller == "in"
-    assert LOGIC.step(state, 0.002, {"command": -1.0}) == LogicState("out")
-    assert LOGIC.step(state, 0.002, {"command": -0.499}).controller == "in"

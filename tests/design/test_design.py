@@ -7,9 +7,7 @@ import pytest
 from nrs_design.controllers.float32 import is_float32, to_float32
 from nrs_design.design.design import design_controllers, root_locus_design
 from nrs_design.design.laws.impedance import desired_impedance
-from nrs_design.design.laws.law import to_transfer_function
 from nrs_design.errors import DesignError
-from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.spec import load_spec, parse_spec
 from nrs_design.spec.build_plant import build_plant
 from tests.support import FORCE_LIMIT, ROBOT, SOFT_TISSUE
@@ -90,9 +88,3 @@ def test_desired_impedance():
     )
     spec = parse_spec(given)
     assert desired_impedance(spec, spec.controllers["withdrawal"]) == 3.5
-
-
-def test_transfer_function_in_floating_point():
-    loop = MotionLoop((Fraction(1, 2),), (Fraction(1), Fraction(1, 3)))
-    found = to_transfer_function(loop)
-    assert (found.numerator, found.denominator) == ((0.5,), (1.0, 1 / 3))

@@ -38,24 +38,21 @@ def hundredths(low, high):
     return st.integers(low, high).map(lambda n: n / 100)
 
 
-@settings(max_examples=25)
-@given(hundredths(2500, 9040), hundredths(0, 50), hundredths(0, 300), hundredths(400, 800))
-def test_against_the_responses(k, b, Mt, Bt):
+@settings(max_examples=40)
+@given(
+    hundredths(2500, 9040),
+    hundredths(0, 50),
+    st.one_of(st.just(0), hundredths(1, 20)),
+    hundredths(0, 300),
+    hundredths(400, 800),
+)
+def test_against_the_responses(k, b, m, Mt, Bt):
     """Hands of the thesis, and admittances as in table 7.1, all of which they leave stable."""
-    hand = KelvinVoigt(k, b)
-    requirement = held_by(hand)
-    lowest, highest = by_grid(k, b, Mt, Bt)
+    if m:
+        Mt = 2.0
+    requirement = held_by(Hand(k, b, m) if m else KelvinVoigt(k, b))
+    lowest, highest = by_grid(k, b, Mt, Bt, m)
     gains = np.array([Mt]), np.array([Bt])
-    assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)
-    assert requirement.values(HAND_EFFORT, *gains)[0][0] == pytest.approx(highest, rel=1e-4)
-
-
-@settings(max_examples=25)
-@given(hundredths(2500, 9040), hundredths(0, 50), hundredths(1, 20), hundredths(400, 800))
-def test_with_a_mass_against_the_responses(k, b, m, Bt):
-    requirement = held_by(Hand(k, b, m))
-    lowest, highest = by_grid(k, b, 2.0, Bt, m)
-    gains = np.array([2.0]), np.array([Bt])
     assert requirement.values(TRANSPARENCY, *gains)[0][0] == pytest.approx(lowest, rel=1e-4)
     assert requirement.values(HAND_EFFORT, *gains)[0][0] == pytest.approx(highest, rel=1e-4)
 
@@ -118,13 +115,6 @@ def test_admittances_of_table_7_1_and_a_hand_that_changes_its_grip(tmp_path, mas
 def test_a_hand_that_lets_go_is_proved(tmp_path):
     result = run("certify-switching", HANDS_ON, "--out", "ours.json", cwd=tmp_path, code=0)
     assert "contact lost and made again at any time" in result.stdout
-
-
-def test_only_for_impedance_control(tmp_path):
-    text = (ROOT / "specs/neuroboscope/force-limit.nrs.yaml").read_text()
-    (tmp_path / "force.nrs.yaml").write_text(text + "goals: {min_transparency: 0.5}\n")
-    result = run("check", "force.nrs.yaml", cwd=tmp_path, code=2)
-    assert "min_transparency is for impedance controllers" in result.stderr
 
 
 def test_a_spring_in_the_admittance(tmp_path):

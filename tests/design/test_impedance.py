@@ -21,18 +21,36 @@ from tests.design.classical import (
 from tests.design.motion_loops import EXACT, PRINTED, SOFT
 
 
-def test_displayed_impedance_and_sensitivity_close_the_loop():
+@pytest.mark.parametrize(
+    ("contact", "Ze", "Kt"),
+    [
+        (KelvinVoigt(SOFT, 0.4), lambda s: SOFT / s + 0.4, 0.0),
+        # Thesis 2.5 and table 2.4.
+        (Maxwell(1.129, 120.233), lambda s: 120.233 / (1 + 120.233 / 1.129 * s), 0.0),
+        (
+            KelvinBoltzmann(0.233, 0.972, 23.631),
+            lambda s: (0.18795 / s + 19.06169) / (1 + 19.61079 * s),
+            0.0,
+        ),
+        # Thesis 2.2.6.2.
+        (KelvinVoigt(SOFT, 0.3), lambda s: SOFT / s + 0.3, 0.8),
+    ],
+)
+def test_displayed_impedance_and_sensitivity_close_the_loop(contact, Ze, Kt):
+    loop = ImpedanceLoop(EXACT, contact, Kt)
+    omega = np.array([0.01, 0.3, 12.0, 200.0])
+    s = 1j * omega
+    G, Y = frequency_response(EXACT, omega), 1 / (0.01 * s + 2.15 + Kt / s)
+    L = G * Ze(s) * Y
+    assert frequency_response(open_loop(loop, 0.01, 2.15), omega) == pytest.approx(L, rel=1e-4)
+    assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + L), rel=1e-4)
+    displayed = displayed_impedance_at(loop, 0.01, 2.15, omega)
+    assert displayed == pytest.approx(L / Y / (1 + L), rel=1e-4)
+
+
+def test_steady_contact_shows_the_virtual_damping():
+    """There the loop gain is infinite."""
     loop = ImpedanceLoop(EXACT, KelvinVoigt(SOFT, 0.4))
-    omega = np.array([0.1, 3.0, 12.0, 200.0])
-    G = frequency_response(EXACT, omega)
-    Ze = SOFT / (1j * omega) + 0.4
-    Y = 1 / (0.01 * 1j * omega + 2.15)
-    assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + G * Ze * Y))
-    assert displayed_impedance_at(loop, 0.01, 2.15, omega) == pytest.approx(
-        G * Ze / (1 + G * Ze * Y)
-    )
-    assert frequency_response(open_loop(loop, 0.01, 2.15), omega) == pytest.approx(G * Ze * Y)
-    # In steady contact the robot shows its virtual damping, and the loop gain is infinite.
     assert displayed_impedance_at(loop, 0.01, 2.15, 0.0) == pytest.approx(2.15)
     assert sensitivity(loop, 0.01, 2.15, 0.0) == 0
 
@@ -89,27 +107,6 @@ def test_admittance_refuses_bad_input(Mt, Bt):
 
 
 @pytest.mark.parametrize(
-    ("contact", "Ze"),
-    [
-        # Thesis 2.5 and table 2.4.
-        (Maxwell(1.129, 120.233), lambda s: 120.233 / (1 + 120.233 / 1.129 * s)),
-        (
-            KelvinBoltzmann(0.233, 0.972, 23.631),
-            lambda s: (0.18795 / s + 19.06169) / (1 + 19.61079 * s),
-        ),
-    ],
-)
-def test_loop_in_viscoelastic_contact(contact, Ze):
-    omega = np.array([0.01, 0.3, 12.0, 200.0])
-    loop = ImpedanceLoop(EXACT, contact)
-    G, Y = frequency_response(EXACT, omega), 1 / (0.01 * 1j * omega + 2.15)
-    L = G * Ze(1j * omega) * Y
-    assert sensitivity(loop, 0.01, 2.15, omega) == pytest.approx(1 / (1 + L), rel=1e-4)
-    displayed = displayed_impedance_at(loop, 0.01, 2.15, omega)
-    assert displayed == pytest.approx(L / Y / (1 + L), rel=1e-4)
-
-
-@pytest.mark.parametrize(
     "contact", [Maxwell(1.0, 0.0), Maxwell(0.0, 1.0), KelvinBoltzmann(1.0, 1.0, 0.0)]
 )
 def test_viscoelastic_parameters_are_positive(contact):
@@ -117,35 +114,20 @@ def test_viscoelastic_parameters_are_positive(contact):
         ImpedanceLoop(EXACT, contact)
 
 
-class TestSpring:
-    """An admittance ``1/(Mt s + Bt + Kt/s)`` (thesis 2.2.6.2)."""
+def test_poles_with_a_spring_are_those_that_python_control_closes():
+    """The s that Ze and Y have in common is left out: python-control keeps it, a zero more."""
+    s = control.tf("s")
+    G = control.tf(EXACT.numerator, EXACT.denominator)
+    Ze = (0.3 * s + SOFT) / s
+    Y = s / (0.01 * s**2 + 1.04 * s + 0.8)
+    wanted = np.sort_complex(control.feedback(G * Ze * Y, 1).poles())
+    loop = ImpedanceLoop(EXACT, KelvinVoigt(SOFT, 0.3), 0.8)
+    found = np.roots(closed_loop_polynomial(loop, 0.01, 1.04))
+    assert np.sort_complex([*found, 0]) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
 
-    omega = np.array([0.05, 0.7, 12.0, 200.0])
-    contact = KelvinVoigt(SOFT, 0.3)
-    loop = ImpedanceLoop(EXACT, contact, 0.8)
 
-    def test_the_loop_is_the_formula(self):
-        s = 1j * self.omega
-        forward = frequency_response(EXACT, self.omega) * (SOFT / s + 0.3)
-        Y = 1 / (0.01 * s + 1.04 + 0.8 / s)
-        L = forward * Y
-        assert frequency_response(open_loop(self.loop, 0.01, 1.04), self.omega) == pytest.approx(L)
-        assert sensitivity(self.loop, 0.01, 1.04, self.omega) == pytest.approx(1 / (1 + L))
-        displayed = displayed_impedance_at(self.loop, 0.01, 1.04, self.omega)
-        assert displayed == pytest.approx(forward / (1 + L))
-
-    def test_poles_are_those_that_python_control_closes(self):
-        """The s that Ze and Y have in common is left out: python-control keeps it, a zero more."""
-        s = control.tf("s")
-        G = control.tf(EXACT.numerator, EXACT.denominator)
-        Ze = (0.3 * s + SOFT) / s
-        Y = s / (0.01 * s**2 + 1.04 * s + 0.8)
-        wanted = np.sort_complex(control.feedback(G * Ze * Y, 1).poles())
-        found = np.roots(closed_loop_polynomial(self.loop, 0.01, 1.04))
-        assert np.sort_complex([*found, 0]) == pytest.approx(wanted, rel=1e-6, abs=1e-9)
-
-    def test_what_has_no_rest_position_has_no_spring(self):
-        with pytest.raises(DesignError, match="no rest position"):
-            ImpedanceLoop(EXACT, Maxwell(1.129, 120.233), 0.8)
-        with pytest.raises(DesignError, match="not be negative"):
-            ImpedanceLoop(EXACT, self.contact, -1.0)
+def test_what_has_no_rest_position_has_no_spring():
+    with pytest.raises(DesignError, match="no rest position"):
+        ImpedanceLoop(EXACT, Maxwell(1.129, 120.233), 0.8)
+    with pytest.raises(DesignError, match="not be negative"):
+        ImpedanceLoop(EXACT, KelvinVoigt(SOFT, 0.3), -1.0)

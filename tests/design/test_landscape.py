@@ -102,12 +102,3 @@ def test_delay_borne_is_the_delay_margin_at_that_stiffness(insertion):
     assert borne[0] == pytest.approx(loop_margins(loop, *gains).delay_margin, rel=1e-6)
     assert 0 < borne[1] < 1e-3
     assert borne[2] == 0
-
-
-def test_delay_borne_falls_with_stiffness(insertion):
-    loop = insertion.problem.loop
-    margin = loop_margins(loop, insertion.Mt, 2 * insertion.Bt).delay_margin
-    stiffness = np.array([1, 2, 3]) * loop.contact.stiffness
-    borne = delay_borne(insertion.requirement, insertion.Mt, 2 * insertion.Bt, stiffness)
-    assert borne[0] == pytest.approx(margin, rel=1e-6)
-    assert (np.diff(borne) < 0).all()

@@ -14,7 +14,6 @@ from nrs_design.design.transfer import (
     poles,
     positive_roots,
     static_gain,
-    to_control,
     trim,
 )
 from nrs_design.errors import DesignError
@@ -42,14 +41,6 @@ def test_frequency_response_at_one_hand_computed_point():
 
 def test_integrator_has_infinite_static_gain():
     assert static_gain(TransferFunction((2.0,), (1.0, 0.0))) == math.inf
-
-
-@pytest.mark.parametrize("omega", [0.0, 0.3, 40.0])
-def test_control_object_is_the_same_function(omega):
-    tf = TransferFunction((0.0, 0.99, 56.82), (0.0351, 1.99, 56.82))
-    assert complex(to_control(tf)(1j * omega)) == pytest.approx(
-        complex(frequency_response(tf, omega))
-    )
 
 
 def test_trim_keeps_the_last_coefficient():

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from nrs_design.controllers.float32 import exact_decimal
-from nrs_design.errors import CertificateError, DesignError
+from nrs_design.errors import CertificateError
 from nrs_design.exporters.build import build_record
 from nrs_design.exporters.export import export_design
 from nrs_design.exporters.record import dump_record
@@ -62,13 +62,9 @@ def test_proof_is_that_of_the_certificate(record, continuous_export):
     assert proof.coordinates == "deflection"
 
 
-def test_the_rate_of_a_sampled_proof_is_one_per_step():
+def test_the_rate_of_a_sampled_proof_is_one_per_step(sampled_export):
     """A factor per step holds for every larger one: it is rounded up."""
-    text = (SPECS / "neuroboscope/soft-tissue.nrs.yaml").read_text()
-    head, _, _ = text.partition("  withdrawal:")
-    text = f"{head}switching: arbitrary\nsampling: {{period: 2 ms, delay: 0}}\n"
-    found = run_certification(LoadedSpec(Path("late.nrs.yaml"), 64 * "0", text, parse_spec(text)))
-    rate = build_record(found.design, found.certificate, None).proof.decay_rate
+    rate = sampled_export.record.proof.decay_rate
     assert rate.unit == "1 per step"
     assert 0.9 < Fraction(rate.exact) <= Fraction(rate.rounded) < 1
 
@@ -99,24 +95,12 @@ def test_force_and_position_controllers():
     assert (force.law, force.environment, force.gains[0].unit) == ("force", "soft", "rad/(N*m)")
 
 
-def test_given_matrices_have_no_gains():
-    with pytest.raises(DesignError, match="no gains") as caught:
-        export_design(read_spec(SPECS / "examples/commuting.nrs.yaml"))
-    assert caught.value.remedy
-
-
 def test_idle_states_are_exported_as_they_are_proved():
     """0.1 is no single-precision number: the robot and the proof hold the one next to it."""
-    text = (SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml").read_text()
-    assert "decay: 20 1/s" in text
-    spec = parse_spec(text.replace("decay: 20 1/s", "decay: 0.1 1/s, reset: false"))
-    loaded = replace(
-        read_spec(SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml"), spec=spec
-    )
-    record = export_design(loaded).record
-    assert record is not None
+    loaded = read_spec(SPECS.parent / "docs/examples/mixed-controllers.nrs.yaml")
+    text = loaded.text.replace("decay: 20 1/s", "decay: 0.1 1/s, reset: false")
+    record = export_design(replace(loaded, spec=parse_spec(text))).record
     idle = record.idle_states
-    assert idle is not None
     assert not idle.reset
     assert (idle.decay.name, idle.decay.unit) == ("decay", "1/s")
     assert idle.decay.float32_bits == "0x3dcccccd"
@@ -127,11 +111,6 @@ def test_offset_is_written_where_force_controllers_have_one():
     """The robot must take X_i as the proof says."""
     record = export_design(read_spec(SPECS / "neuroboscope/force-limit-offset.nrs.yaml")).record
     assert json.loads(dump_record(record))["offset"] == "measured"
-
-
-def test_what_a_design_has_not_is_none(record):
-    document = json.loads(dump_record(record))
-    assert document["idle_states"] is document["offset"] is None
 
 
 def test_a_proof_without_rounding_says_so(sampled_export):

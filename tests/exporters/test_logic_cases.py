@@ -10,12 +10,11 @@ from nrs_design.exporters.logic_cases import COUNT, SPECIAL, logic_document
 from nrs_design.spec import read_spec
 from tests.support import ROOT
 
-SPEC = read_spec(ROOT / "docs/examples/force-by-threshold.nrs.yaml").spec
 
-
-@pytest.fixture(scope="module")
-def logic():
-    return StepLogic.of(SPEC.mode_logic, tuple(SPEC.controllers), Fraction(1, 500))
+@pytest.fixture(scope="module", params=["insertion-by-sign", "force-by-threshold"])
+def logic(request):
+    spec = read_spec(ROOT / f"docs/examples/{request.param}.nrs.yaml").spec
+    return StepLogic.of(spec.mode_logic, tuple(spec.controllers), Fraction(1, 500))
 
 
 def number(bits):
@@ -28,6 +27,8 @@ def test_every_case_is_a_step_of_the_logic(logic):
     for mode, held, *signals, after, count in document["cases"]:
         seen = dict(zip(logic.signals, map(number, signals), strict=True))
         assert logic.step(mode, held, seen) == (after, count)
+        assert 0 <= after < len(logic.stays)
+        assert 1 <= count <= LONGEST
 
 
 def test_cases_hold_what_decides(logic):
@@ -51,9 +52,3 @@ def test_cases_hold_what_decides(logic):
 def test_the_same_seed_gives_the_same_cases(logic):
     first, again, other = (logic_document(logic, 50, seed)["cases"] for seed in (1, 1, 2))
     assert first == again != other
-
-
-def test_after_and_before_are_in_range(logic):
-    for *_, after, count in logic_document(logic)["cases"]:
-        assert 0 <= after < len(logic.stays)
-        assert 1 <= count <= LONGEST

@@ -25,3 +25,7 @@ def text(t, angle, torque, command, modes):
     rows = zip(t, angle, torque, command, modes, strict=True)
     body = "\n".join(f"{a:.4f},{b:.7f},{c:.6f},{d:.2f},{e}" for a, b, c, d, e in rows)
     return f"# synthetic\ntime_s,angle_rad,torque_Nm,command_rpm,mode\n{body}\n"
+
+
+def without_modes(data):
+    return "\n".join(line.rsplit(",", 1)[0] for line in text(*data).split("\n"))

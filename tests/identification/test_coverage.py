@@ -6,12 +6,11 @@ Of 200, 95 % are 190 with a standard deviation of 3: 92 to 98 % is what chance a
 import numpy as np
 import pytest
 
-from nrs_design.identification.actuator import identify_actuator
 from nrs_design.identification.tissue import fit_model, fit_record
 from nrs_design.models.contact import Elastic, HuntCrossley, KelvinVoigt, Maxwell, Motion
 from tests.identification import synthetic
 from tests.identification.coverage import OPTIONS, SEEDS, TISSUES, rates
-from tests.identification.support import MOTOR, quick, record, sinusoids, slow
+from tests.identification.support import holds, quick, record, slow
 from tests.support import ROOT
 
 
@@ -31,10 +30,6 @@ SINGLE = [
     (synthetic.CONCHA, slow, 0.0085, 1e-4),
     (HuntCrossley(0.28, 15.328, 1.2), slow, 0.0096, 0.0),
 ]
-
-
-def holds(estimates, values):
-    return [e.covers(v) for e, v in zip(estimates, values, strict=True)]
 
 
 def shares_of(law, motion, noise, q, seeds=SEEDS):
@@ -116,15 +111,3 @@ def test_pooled_over_three_records(spread):
         ]
         hits += holds(fit_model(Elastic, data).estimates, [750.0])
     assert 0.92 <= np.mean(hits) <= 0.98, np.mean(hits)
-
-
-@pytest.mark.nightly
-def test_actuator():
-    truth = (synthetic.GAIN, synthetic.TIME_CONSTANT, synthetic.FRICTION)
-    hits = []
-    for seed in range(SEEDS):
-        fit = identify_actuator(sinusoids(seed, (1.2, 2, 3, 4.5, 6, 9, 14)), MOTOR).chosen
-        hits.append(holds((fit.gain, fit.time_constant, fit.friction), truth))
-    shares = np.mean(hits, axis=0)
-    assert (shares >= 0.90).all(), shares
-    assert (shares <= 0.99).all(), shares

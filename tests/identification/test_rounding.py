@@ -55,12 +55,6 @@ def test_rounding_dominates_a_slow_velocity():
     assert rounding_of_velocity(TIME, coarse) == pytest.approx(1 - true / seen, abs=0.1)
 
 
-def test_a_stretch_of_equal_readings_is_one_error():
-    readings = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 2.0])
-    J = np.ones((6, 1))
-    assert rounding_scatter(readings, J, 3.0)[0, 0] == pytest.approx(9 / 12 * (9 + 4 + 1))
-
-
 def test_rests_with_one_reading_are_one_error():
     readings = np.repeat([0.0, 1.0, 2.0, 1.0, 0.0], [20, 2, 2, 2, 20])
     J = np.ones((46, 1))

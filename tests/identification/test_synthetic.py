@@ -32,15 +32,3 @@ def test_samples_are_read_as_synthetic(name):
     readers = {"tool": read_poses, "actuator": read_actuator}
     found = readers.get(name.partition("-")[0], read_tissue)(DATA / name)
     assert (found[0] if isinstance(found, tuple) else found).source.synthetic
-
-
-def test_the_seed_decides():
-    one, same, other = (synthetic.actuator_record(3.0, seed)[2] for seed in (1, 1, 2))
-    assert (one == same).all()
-    assert (one != other).any()
-
-
-def test_writing(tmp_path, monkeypatch):
-    monkeypatch.setattr(synthetic, "samples", lambda: iter([("a.csv", "text")]))
-    synthetic.write_samples(tmp_path)
-    assert (tmp_path / "a.csv").read_text() == "text"

@@ -4,7 +4,6 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 
-import numpy as np
 import pytest
 
 from nrs_design.errors import DataError, SpecError
@@ -17,13 +16,13 @@ from nrs_design.identification.write_spec import (
     merge_delay,
     merge_tissue,
 )
-from nrs_design.models.contact import Elastic, KelvinVoigt, Maxwell
+from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.changes import spec_changes
-from nrs_design.spec.environment import KelvinBoltzmannSpec, MaxwellSpec
+from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
-from tests.support import COMMUTING, FORCE_LIMIT, ROBOT, SOFT_TISSUE
+from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
 
 SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
 
@@ -95,15 +94,6 @@ def test_the_range_is_rounded_outwards(silicone):
     ]
 
 
-@pytest.mark.slow
-def test_again_is_the_same(tmp_path, silicone, motor):
-    once = merge_tissue(read_spec(SOFT_TISSUE), silicone, None, None)
-    twice = merge_tissue(merged(tmp_path, once), silicone, None, None)
-    assert twice == once
-    both = merge_actuator(merged(tmp_path, once), motor)
-    assert merge_actuator(merged(tmp_path, both), motor) == both
-
-
 def test_one_of_several_environments(silicone):
     loaded = read_spec(ROBOT / "tissue-and-tool.nrs.yaml")
     spec = parse_spec(merge_tissue(loaded, silicone, "stiff", "0.2 m"))
@@ -152,17 +142,6 @@ def test_line_ends_stay(tmp_path, silicone):
     loaded = merged(tmp_path, SOFT_TISSUE.read_text().replace("\n", "\r\n"))
     text = merge_tissue(loaded, silicone, None, None)
     assert text.count("\r\n") == text.count("\n")
-
-
-def test_actuator(motor):
-    loaded = read_spec(FORCE_LIMIT)
-    spec = parse_spec(merge_actuator(loaded, motor))
-    assert spec.actuator.gain.nominal.si == pytest.approx(motor.chosen.gain.value, rel=1e-5)
-    low, high = spec.actuator.intervals.time_constant
-    assert low.si <= motor.chosen.time_constant.low
-    assert high.si >= motor.chosen.time_constant.high
-    assert spec.controllers == loaded.spec.controllers
-    assert len(spec.actuator.provenance) == 5
 
 
 @pytest.mark.parametrize("file", [SAMPLED, SOFT_TISSUE])
@@ -238,26 +217,15 @@ def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
     assert ("intervals" in again, "range_covers: confidence" in again) == (False, True)
 
 
-@pytest.mark.parametrize("spec", [SOFT_TISSUE, SAMPLED])
-def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(spec, late):
+def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(late):
     """It acts in the motion loop, which no proof here delays."""
-    loaded = read_spec(spec)
+    loaded = read_spec(SAMPLED)
     written = parse_spec(merge_actuator(loaded, late))
     assert late.doubts == ()
     (doubt,) = written.actuator.doubts
     assert "dead time of 0.007" in doubt
     assert "counted from the row that first holds a command" in doubt
     assert written.sampling == loaded.spec.sampling
-
-
-@pytest.mark.slow
-def test_doubts_about_the_actuator_are_noted():
-    made = motors.record("multisine", 1, limit=1800.0)
-    found = identify_actuator([made], MOTOR)
-    spec = parse_spec(merge_actuator(read_spec(SOFT_TISSUE), found))
-    assert found.doubts
-    assert spec.actuator.doubts == found.caveats
-    assert any("saturation" in doubt for doubt in spec.actuator.doubts)
 
 
 @pytest.mark.slow
@@ -270,18 +238,6 @@ def test_delay_in_periods_of_the_processor():
     written = parse_spec(merge_delay(replace(loaded, spec=faster), found)).sampling
     assert (written.delay, written.doubts) == ((3, 7), ())
     assert [source.file for source in written.provenance] == ["pair.csv"]
-
-
-@pytest.mark.slow
-def test_a_varying_delay_is_noted_as_a_doubt():
-    late = np.where(np.arange(signals.COUNT) < 1000, 1.0, 4.0)
-    found = identify_delay(signals.copy(2, delay=late))
-    spec = parse_spec(merge_delay(read_spec(SAMPLED), found))
-    low, high = spec.sampling.delay
-    assert low <= 1 < 4 <= high
-    assert spec.sampling.doubts == found.caveats
-    assert any("the delay varies" in doubt for doubt in found.caveats)
-    assert spec.identified["sampling",] is spec.sampling
 
 
 @pytest.mark.parametrize(
@@ -320,35 +276,12 @@ def test_the_law_of_the_nose_has_a_place(tmp_path, silicone, nose):
     assert "parallel_stiffness" not in back
 
 
-def test_maxwell_has_a_place_in_a_spec(tmp_path):
-    data = [record(Maxwell(1.0, 8.0), slow(i), 0.01, i, rotational=True) for i in range(2)]
-    text = merge_tissue(read_spec(SOFT_TISSUE), identify_tissue(data, "maxwell"), None, None)
-    soft = merged(tmp_path, text).spec.environments["soft"]
-    assert isinstance(soft, MaxwellSpec)
-    assert soft.stiffness.nominal.si == pytest.approx(1.0, rel=0.05)
-
-
 def test_laws_without_a_place_in_a_spec():
     data = [record(synthetic.NOSE, slow(i), 0.01, i) for i in range(2)]
     found = identify_tissue(data, "hunt-crossley")
     with pytest.raises(DataError, match="hunt-crossley has no place") as caught:
         merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
     assert "--model kelvin-boltzmann" in caught.value.remedy
-
-
-def test_unlimited_ranges_are_not_written():
-    found = identify_tissue([record(Elastic(750.0), quick(), 0.1)], "kelvin-voigt")
-    with pytest.raises(DataError, match="is unlimited"):
-        merge_tissue(read_spec(SOFT_TISSUE), found, None, None)
-
-
-def test_given_matrices_have_no_place(silicone, motor):
-    for merge in (
-        lambda s: merge_tissue(s, silicone, None, None),
-        lambda s: merge_actuator(s, motor),
-    ):
-        with pytest.raises(SpecError, match="no place"):
-            merge(read_spec(COMMUTING))
 
 
 @pytest.mark.slow
@@ -365,16 +298,6 @@ def test_doubts_are_noted_and_a_reason_holds_for_them_only(tmp_path, silicone):
     other = merge_tissue(merged(tmp_path, accepted), silicone, None, None)
     soft = parse_spec(other).environments["soft"]
     assert (soft.doubts, soft.accept_doubt) == ((), None)
-
-
-@pytest.mark.slow
-def test_what_the_range_holds_is_noted():
-    data = [record(Elastic(k), quick(i), 0.1, i) for i, (k, _) in enumerate(synthetic.SOFT)]
-    found = identify_tissue(data, "elastic", coverage="tolerance")
-    soft = parse_spec(merge_tissue(read_spec(SOFT_TISSUE), found, None, None)).environments["soft"]
-    assert soft.range_covers == "tolerance"
-    assert soft.range_id == soft.values_id()
-    assert "95 % of all such specimens" in found.covers
 
 
 @pytest.mark.slow

@@ -28,8 +28,6 @@ from nrs_design.proof.exact import (
     scaled,
     spectrum_work,
     stein_decrease,
-    stein_factor,
-    step_decrease,
 )
 from tests.support import exact, is_definite_by_ldl, is_stable_by_lyapunov, matrix
 
@@ -273,6 +271,10 @@ class TestProducts:
     def test_factors_that_do_not_fit(self, left, right):
         with pytest.raises(ValueError, match=r"needs as many|argument 2 is"):
             multiply(left, right)
+
+
+def stein_factor(denominator, factor):
+    return (denominator * factor.denominator) ** 2
 
 
 class TestForms:
@@ -523,8 +525,5 @@ def test_semidefinite_needs_a_symmetric_matrix(M):
         is_positive_semidefinite(M)
 
 
-def test_a_step_from_one_function_to_another():
-    """``rho^2 5 - 3 (7/2)^2`` for rho = 2/3, times ``(2 * 3)^2``."""
-    image = congruence([[7]], [[3]])
-    assert step_decrease([[5]], image, 2, Fraction(2, 3)) == [[5 * 4 * 4 - 3 * 49 * 9]]
+def test_multiples():
     assert scaled([[1, -2]], 3) == [[3, -6]]

@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nrs_design.proof.matrix import RationalMatrix, leading, multiply, with_crossing
+from nrs_design.proof.matrix import (
+    RationalMatrix,
+    bordered,
+    identity,
+    leading,
+    multiply,
+    with_crossing,
+)
 
 ROWS = st.integers(1, 4).flatmap(
     lambda n: st.lists(st.lists(st.fractions(), min_size=n, max_size=n), min_size=n, max_size=n)
@@ -109,3 +116,20 @@ def test_entries_beyond_floating_point():
     assert A.floats() == [[inf, -inf], [1.0, 1e300]]
     tiny = RationalMatrix(((1, 10**200),), 10**400)
     assert tiny.floats() == [[0.0, 1e-200]]
+
+
+def test_the_shape_of_rows_of_different_lengths_is_that_of_the_first():
+    ragged = RationalMatrix(((1, 2), (3,)))
+    assert ragged.shape == (2, 2)
+    assert not ragged.is_well_formed
+
+
+def test_the_identity():
+    assert identity(2) == RationalMatrix(((1, 0), (0, 1)))
+
+
+def test_a_bordered_matrix():
+    form = bordered([[1, 2], [2, 3]], [Fraction(1, 2), 4], Fraction(5))
+    assert form.fractions() == [[1, 2, Fraction(1, 2)], [2, 3, 4], [Fraction(1, 2), 4, 5]]
+    with pytest.raises(ValueError, match="zip"):
+        bordered([[1, 2], [2, 3]], [Fraction(1)], Fraction(5))

@@ -17,8 +17,6 @@ from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.second_opinion import agrees
 from nrs_design.proof.steps import (
     Acting,
-    find_odd_multipliers,
-    find_odd_roundings,
     flow_step,
     map_step,
     multiplier_names,
@@ -29,8 +27,10 @@ from tests.proof.systems import Entry, bouncing, bouncing_in_steps, family, matr
 from tests.proof.truth import (
     combine,
     holds,
+    inequality,
     is_in_other_units,
     is_positive_multiple,
+    moves,
     times,
     transpose,
 )
@@ -143,29 +143,6 @@ def test_a_disturbance_is_rounded_too():
         assert candidate(Fraction("2.99"), Fraction(t, 200)).find_fault(system) is not None
 
 
-def changed(**changes: object) -> SwitchedSystem:
-    system = bouncing_and_rounded("1/1000")
-    return replace(system, roundings=(replace(system.roundings[0], **changes),))
-
-
-@pytest.mark.parametrize(
-    ("system", "fault"),
-    [
-        (changed(columns=(matrix([[1], [0]]),) * 2), "one column and row for every mode"),
-        (changed(columns=(matrix([[1]]),) * 3), "the size of the state"),
-        (changed(rows=(matrix([[1, 1, 1]]),) * 3), "the size of the state"),
-        (changed(rows=(matrix([[1, 1]]),) * 3), "depends on the deflection in free motion"),
-        (
-            replace(changed(), roundings=changed().roundings * 2),
-            "is said twice",
-        ),
-        (replace(family([[-1]]), roundings=rounded(0, 0).roundings), "there are no steps"),
-    ],
-)
-def test_roundings_that_make_no_sense(system, fault):
-    assert fault in find_contradiction(system)
-
-
 @settings(deadline=None)
 @given(
     st.lists(st.integers(-8, 8), min_size=4, max_size=4),
@@ -251,89 +228,27 @@ def three_states(*, contact: bool) -> SwitchedSystem:
     )
 
 
-def by_hand(k, before, after, *, keeps, acting, roundings, crossing=None, lands=True, flies=False):
-    """The form of the module, in fractions, over the state, what acts, and the errors."""
-    exact, covered = [matrix(A).fractions() for A in MAPS3], range(len(roundings))
-    moved = [list(row) for row in exact[k]]
-    for columns in (*(PUSHES3[i] for i in acting), *(ERRORS3[i] for i in covered)):
-        for row, (entry,) in zip(moved, matrix(columns[k]).fractions(), strict=True):
-            row.append(entry)
-    sizes = [matrix(SIZES3[i][k]).fractions()[0] for i in covered]
-    zeros = [Fraction(0)] * len(roundings)
-    sizes = [[*q[:3], *(q[3 + i] for i in acting), *zeros] for q in sizes]
-    if flies:
-        moved, sizes = ([[*row[:2], *row[3:]] for row in rows] for rows in (moved, sizes))
-    image = moved if lands else moved[:2]
-    form = combine((-1, times(transpose(image), times(after, image))))
-    for i, row in enumerate(before):
-        for j, entry in enumerate(row):
-            form[i][j] += keeps * entry
-    n = len(before)
-    for i in range(len(acting)):
-        form[n + i][n + i] += WEIGHTS[i]
-    for i, (tau, q) in enumerate(zip(roundings, sizes, strict=True), n + len(acting)):
-        form[i][i] += Fraction(tau, 4)
-        form = combine((1, form), (-Fraction(tau, 4), [[a * b for b in q] for a in q]))
-    if crossing is not None:
-        e, c = [Fraction(int(i == 2)) for i in range(len(form))], moved[2]
-        product = [[e[i] * c[j] + c[i] * e[j] for j in range(len(c))] for i in range(len(c))]
-        form = combine((1, form), (Fraction(crossing, 4), product))
-    return form
-
-
-QUARTERS = [[Fraction(entry, 4) for entry in row] for row in Q3]
-INNER = [row[:2] for row in QUARTERS[:2]]
-
-
 @pytest.mark.parametrize("acting", [(), (1,), (2, 0)])
 @pytest.mark.parametrize("roundings", [(), (4, 9), (0, 1)])
 @pytest.mark.parametrize("keeps", [Fraction(5, 7), Fraction(25, 49)])
 def test_every_form_by_hand(keeps, acting, roundings):
-    weights = WEIGHTS[: len(acting)]
-    numbers = {"keeps": keeps, "acting": acting, "roundings": roundings}
-    wanted = [
-        ("in mode m0", by_hand(0, QUARTERS, QUARTERS, **numbers)),
-        (
-            "where contact is lost in mode m0",
-            by_hand(0, QUARTERS, INNER, **numbers, crossing=5, lands=False),
-        ),
-        ("in mode m1", by_hand(1, QUARTERS, QUARTERS, **numbers)),
-        (
-            "where contact is lost in mode m1",
-            by_hand(1, QUARTERS, INNER, **numbers, crossing=5, lands=False),
-        ),
-    ]
-    for k, name in ((2, "f"), (3, "g")):
-        flight = by_hand(k, INNER, INNER, **numbers, lands=False, flies=True)
-        landing = by_hand(k, INNER, QUARTERS, **numbers, flies=True)
-        wanted += [(f"in free motion, mode {name}", flight)]
-        wanted += [(f"where contact is made, mode {name}", landing)]
-    system = three_states(contact=True)
-    assert find_contradiction(system) is None
-    kept = [form for form in wanted if form[0].startswith("in mode")]
-    for given_system, true in ((system, wanted), (three_states(contact=False), kept)):
-        crossings = (5,) if given_system.contact else ()
+    weights, quarters = WEIGHTS[: len(acting)], combine((Fraction(1, 4), Q3))
+    known = {"lost": Fraction(5, 4)}
+    known |= {f"rounding {i}": Fraction(tau, 4) for i, tau in enumerate(roundings, 1)}
+    for contact in (True, False):
+        system = three_states(contact=contact)
+        assert find_contradiction(system) is None
+        wanted = [
+            (move.where, inequality(move, quarters, quarters, keeps, known.get, weights))
+            for move in moves(system, lost=True, channels=acting, rounding=bool(roundings))
+            if "surface" not in move.where
+        ]
         what = Acting(acting, weights, bool(roundings))
-        found = list(forms_of_steps(given_system, what, (Q3, 2), keeps, crossings, roundings))
-        assert [where for where, _ in found] == [where for where, _ in true]
-        for (_, form), (_, form_by_hand) in zip(found, true, strict=True):
-            assert is_in_other_units(form, form_by_hand)
-
-
-@pytest.mark.parametrize(
-    ("roundings", "fault"),
-    [
-        ((), None),
-        ((1, 2), None),
-        ((0, 0), None),
-        ((1,), "there is not one multiplier for each rounding"),
-        ((1, 2, 3), "there is not one multiplier for each rounding"),
-        ((-1, 2), "the multiplier of a rounding is negative"),
-        ((2, -1), "the multiplier of a rounding is negative"),
-    ],
-)
-def test_multipliers_of_roundings(roundings, fault):
-    assert find_odd_roundings(roundings, three_states(contact=True)) == fault
+        crossings = (5,) if contact else ()
+        found = forms_of_steps(system, what, (Q3, 2), keeps, crossings, roundings)
+        for (where, form), (true_where, true) in zip(found, wanted, strict=True):
+            assert where == true_where
+            assert is_in_other_units(form, true)
 
 
 def test_names_of_multipliers():
@@ -343,11 +258,6 @@ def test_names_of_multipliers():
     pulled = ("pull 1", "pull 1 lost", "lost pull 1", "pull 2", "pull 2 lost", "lost pull 2")
     assert multiplier_names(bouncing_in_steps(1)) == ("lost", *pulled)
     assert multiplier_names(bouncing(1)) == ("pull 1 free", "pull 2 free")
-    needed = "there is not one multiplier for each condition that needs it"
-    assert find_odd_multipliers((4, 0), bouncing(1)) is None
-    assert find_odd_multipliers((4,), bouncing(1)) == needed
-    assert find_odd_multipliers((1,), replace(bouncing(1), contact=None)) == needed
-    assert find_odd_multipliers((4, -1), bouncing(1)) == "a multiplier is negative"
 
 
 def test_a_map_and_a_flow_by_hand():

@@ -3,8 +3,10 @@
 Fractions and NumPy only: no lift, no elimination and no enclosure of the package is used.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations_with_replacement, product
 from math import lcm, prod
@@ -12,7 +14,6 @@ from random import Random
 
 import numpy as np
 
-from nrs_design.proof.channels import Channel, Rounding
 from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
@@ -239,25 +240,6 @@ def _saturated_ellipsoid(system: SwitchedSystem, item: SaturatedEllipsoid) -> bo
     return all(item.level**2 * times(transpose(x), times(Q, x))[0][0] < 1 for x in starts)
 
 
-def _as_roundings(system: SwitchedSystem, roundings: Sequence[int]) -> SwitchedSystem:
-    """Return one axis by itself, to which each coupling is an error, where its rows allow for it.
-
-    The forms are the same, though one axis alone may break the bound.
-    """
-    width = system.order + len(system.channels)
-    assert not any(any(row.numerators[0][width:]) for c in system.couplings for row in c.rows)
-    errors = (
-        Rounding(
-            c.name,
-            c.columns,
-            tuple(RationalMatrix((row.numerators[0][:width],), row.denominator) for row in c.rows),
-        )
-        for c in system.couplings
-    )
-    kept = system.roundings[: len(roundings)]
-    return replace(system, couplings=(), roundings=(*kept, *errors))
-
-
 def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
     """What every step asks of the forms before and after it, from the definition."""
     if (
@@ -273,24 +255,49 @@ def _graph(system: SwitchedSystem, item: FormsOnGraph) -> bool:
         return False
     if item.degree > 1:
         return _polynomials(system, item, lost=lost)
-    turns = [None] if system.clock is None else list(range(system.clock.length))
-    steps = [step for turn in turns for step in _steps(system, item, turn, lost=lost)]
     if not all(is_definite(node.form) for node in item.nodes):
         return False
-    if system.couplings and not any(m.fact.startswith("coupling") for m in item.multipliers):
+    facts = {m.fact for m in item.multipliers}
+    rounding, coupling = (
+        any(f.startswith(kind) for f in facts) for kind in ("rounding", "coupling")
+    )
+    if system.couplings and not coupling:
         return False
+    turns = [None] if system.clock is None else list(range(system.clock.length))
+    steps = [
+        move
+        for turn in turns
+        for move in moves(system, turn=turn, lost=lost, rounding=rounding, coupling=coupling)
+    ]
     taken: set[tuple[int, int, int]] = set()
-    for k, step in enumerate(steps):
-        for a, b in product(range(len(item.nodes)), repeat=2):
-            places = item.nodes[a].place, item.nodes[b].place
-            if places != (step["source"], step["target"]) or (step["flows"] and a != b):
-                continue
-            if not any(_joins(edge, a, step["mode"], b) for edge in item.edges):
-                continue
-            taken.add((a, k, b))
-            if not is_definite(_inequality(system, item, step, a, b), strictly=step["strict"]):
-                return False
+    for k, a, b in edges_at(item, steps):
+        taken.add((a, k, b))
+        if not is_definite(edge_form(item, steps[k], a, b), strictly=steps[k].strict):
+            return False
     return _leaves_no_word(item, steps, taken)
+
+
+def edges_at(item: FormsOnGraph, steps: Sequence[Move]) -> Iterator[tuple[int, int, int]]:
+    """Yield the number of each step with the nodes that it leads between."""
+    places = [node.place for node in item.nodes]
+    for k, move in enumerate(steps):
+        for a, b in product(range(len(places)), repeat=2):
+            joined = any(_joins(edge, a, move.mode, b) for edge in item.edges)
+            there = (places[a], places[b]) == (move.source, move.target)
+            if there and joined and (a == b or not move.flows):
+                yield k, a, b
+
+
+def edge_form(item: FormsOnGraph, move: Move, a: int, b: int) -> Rows:
+    """Return the inequality of a graph for a step between two nodes."""
+
+    def multiplier(fact: str) -> int:
+        own = [m.value for m in item.multipliers if (m.fact, m.target) == (fact, b)]
+        shared = [m.value for m in item.multipliers if (m.fact, m.target) == (fact, None)]
+        return (own or shared or [0])[0]
+
+    keeps = 2 * item.rate if move.flows else item.rate**2 if move.strict else Fraction(1)
+    return inequality(move, item.nodes[a].form, item.nodes[b].form, keeps, multiplier)
 
 
 def _joins(edge, a: int, mode: str, b: int) -> bool:
@@ -300,113 +307,146 @@ def _joins(edge, a: int, mode: str, b: int) -> bool:
 def _leaves_no_word(item: FormsOnGraph, steps, taken) -> bool:
     """Follow words of up to six steps from every place, by brute force."""
     runs = {(p, frozenset(k for k, n in enumerate(item.nodes) if n.place == p))
-            for p in {step["source"] for step in steps}}  # fmt: skip
+            for p in {step.source for step in steps}}  # fmt: skip
     for _ in range(6):
         following = set()
         for place, nodes in runs:
             for k, step in enumerate(steps):
-                if step["source"] == place:
+                if step.source == place:
                     after = frozenset(b for a, j, b in taken if j == k and a in nodes)
                     if not after:
                         return False
-                    following.add((step["target"], after))
+                    following.add((step.target, after))
         runs = following
     return True
 
 
-def _steps(system: SwitchedSystem, item: FormsOnGraph, turn: int | None, *, lost: bool):
-    """List maps (or flows) of the state and the errors, with where they lead and what is known."""
-    contact, n, flows = system.contact, system.order, system.time is Time.CONTINUOUS
+@dataclass(frozen=True)
+class Move:
+    """What a system may do at a place: a map, or the derivative of a flow."""
+
+    where: str
+    mode: str
+    source: str
+    target: str
+    image: Rows  # Over the state before, disturbances, and errors
+    states: int
+    sizes: Sequence[tuple[str, list[Fraction]]]  # By name, the row that limits each error
+    crossings: Sequence[tuple[str, list[Fraction]]]
+    flows: bool
+    strict: bool = True  # It takes some time
+
+
+def moves(
+    system: SwitchedSystem,
+    *,
+    lost: bool,
+    turn: int | None = None,
+    channels: Sequence[int] = (),
+    rounding: bool = False,
+    coupling: bool = False,
+) -> Iterator[Move]:
+    """Yield maps (or flows) of the state, what acts and the errors, and what is known of them."""
+    contact, n, flows = (
+        system.contact if lost else None,
+        system.order,
+        system.time is Time.CONTINUOUS,
+    )
     at = "" if turn is None else f" {turn}"
     to = at if turn is None else f" {(turn + 1) % system.clock.length}"
-    facts = {m.fact for m in item.multipliers}
-    kept = [(kind, i, part) for kind, parts in (("rounding", system.roundings),
-            ("coupling", system.couplings)) if any(f.startswith(kind) for f in facts)
-            for i, part in enumerate(parts, 1)]  # fmt: skip
-    rounded = sum(kind == "rounding" for kind, _, _ in kept)
     pulls = () if contact is None else contact.pulls
+    rounded = len(system.roundings) * rounding
+    errors = [(f"rounding {i}", r) for i, r in enumerate(system.roundings[:rounded], 1)]
+    errors += [(f"coupling {i}", c) for i, c in enumerate(system.couplings, 1) if coupling]
+    width = n + len(channels) + len(errors)
+
+    def padded(row: Sequence[Fraction]) -> list[Fraction]:
+        return [*row, *[Fraction(0)] * (width - len(row))]
+
+    def size(row: list[Fraction]) -> list[Fraction]:
+        own = row[n + len(system.channels) :][:rounded] or [Fraction(0)] * rounded
+        return padded([*row[:n], *(row[n + i] for i in channels), *own])
+
     free = () if contact is None else contact.free
-
-    def step(k, mode, source, target, image, **more):
-        sizes = []
-        for kind, i, part in kept:
-            q = part.rows[k].fractions()[0]
-            own = q[n + len(system.channels) :][:rounded] if kind == "coupling" else []
-            row = [*q[:n], *own]
-            sizes.append((f"{kind} {i}", [*row, *[Fraction(0)] * (n + len(kept) - len(row))]))
-        return {"mode": mode, "source": source + at, "target": target + (at if flows else to),
-                "image": image, "sizes": sizes, "flows": flows, "strict": True, "flies": False,
-                "crossings": [], **more}  # fmt: skip
-
-    found = []
     for k, mode in enumerate((*system.modes, *free)):
         if turn is not None and (mode.name in system.clock.first) != (turn == 0):
             continue
-        wide = [list(row) for row in mode.A.fractions()]
-        for _, _, part in kept:
-            for row, (entry,) in zip(wide, part.columns[k].fractions(), strict=True):
-                row.append(entry)
-        inner = [[*row[: n - 1], *row[n:]] for row in wide]
-        if k < len(system.modes):
-            found.append(step(k, mode.name, "modes", "modes", wide))
-            if lost and not flows:
-                crossing = [("lost", wide[-1])]
-                found.append(step(k, mode.name, "modes", "free", wide[:-1], crossings=crossing))
+        wide, count = mode.A.fractions(), len(system.modes)
+        for part in (*(system.channels[i] for i in channels), *(part for _, part in errors)):
+            wide = [
+                [*row, *entry] for row, entry in zip(wide, part.columns[k].fractions(), strict=True)
+            ]
+        sizes = [(name, size(part.rows[k].fractions()[0])) for name, part in errors]
+
+        def move(where, source, target, image, *crossings, mode=mode.name, sizes=sizes):
+            flies = source == "free"
+            if flies:
+                image, rows = _without([*image], n - 1), _without([q for _, q in sizes], n - 1)
+                sizes = [(name, q) for (name, _), q in zip(sizes, rows, strict=True)]
+            after = at if flows else to
+            where = where.format(mode) if turn is None else f"{where.format(mode)}, at step {turn}"
+            places = source + at, target + after
+            return Move(where, mode, *places, image, n - flies, sizes, crossings, flows)
+
+        if k < count:
+            yield move("in mode {}", "modes", "modes", wide)
+            if contact is not None and not flows:
+                crossing = ("lost", wide[-1])
+                yield move("where contact is lost in mode {}", "modes", "free", wide[:-1], crossing)
             continue
-        if not lost:
-            continue
-        flight = {"flies": True}
-        found.append(step(k, mode.name, "free", "free", inner[:-1], **flight))
+        yield move("in free motion, mode {}", "free", "free", wide[:-1])
         if not flows:
-            found.append(step(k, mode.name, "free", "modes", inner, **flight))
-            found.append(step(k, mode.name, "free", "modes", inner[:-1], **flight))
+            yield move("where contact is made, mode {}", "free", "modes", wide)
+            surface = "where contact is made at the surface, mode {}"
+            yield move(surface, "free", "modes", wide[:-1])
         for i, q in enumerate(pulls, 1):
             # The numerators of a force in discrete time.
-            row = [Fraction(e) for e in q.numerators[0]]
-            force = [*(q.fractions()[0] if flows else row), *[Fraction(0)] * len(kept)]
+            force = padded(q.fractions()[0] if flows else [Fraction(e) for e in q.numerators[0]])
             own = f"pull {i} {mode.name}" if flows else f"pull {i}"
-            found.append(step(k, mode.name, "modes", "modes", wide, crossings=[(own, force)]))
+            where = "while the environment lags, mode {}"
+            yield move(where, "modes", "modes", wide, (own, force))
             if not flows:
-                crossing = [(f"pull {i} lost", force), (f"lost pull {i}", wide[-1])]
-                found.append(step(k, mode.name, "modes", "free", wide[:-1], crossings=crossing))
-    if flows and lost:
-        same = [row[: n - 1] for row in identity(n - 1)]
-        for source, target in (("modes", "free"), ("free", "modes")):
-            found.append({"mode": "", "source": source, "target": target, "image": same,
-                          "sizes": [], "flows": False, "strict": False, "flies": True,
-                          "crossings": []})  # fmt: skip
-    return found
+                both = (f"pull {i} lost", force), (f"lost pull {i}", wide[-1])
+                where = "where a lagging environment is left, mode {}"
+                yield move(where, "modes", "free", wide[:-1], *both)
+    if flows and contact is not None:
+        for ends in (("modes", "free"), ("free", "modes")):
+            yield Move("", "", *ends, identity(n - 1), n - 1, (), (), flows=False, strict=False)
 
 
-def _inequality(system: SwitchedSystem, item: FormsOnGraph, step, a: int, b: int) -> Rows:
-    image, n = step["image"], system.order - step["flies"]
-    size = len(image[0])
-    before, after = ([list(row) for row in item.nodes[k].form] for k in (a, b))
-    before = [row[:n] for row in before[:n]]
-    after = [row[: len(image)] for row in after[: len(image)]]
-    seen = [[Fraction(int(i == j)) for j in range(size)] for i in range(n)]
-    kept = times(transpose(seen), times(before, seen))
-    if step["flows"]:
-        half = times(transpose(seen), times(before, image))
-        form = combine((-1, half), (-1, transpose(half)), (-2 * item.rate, kept))
+def inequality(
+    move: Move,
+    before: Rows,
+    after: Rows,
+    keeps: Fraction,
+    multiplier: Callable[[str], Fraction | int],
+    weights: Sequence[Fraction] = (),
+) -> Rows:
+    """Return what a step asks of the forms before and after it, from the definition."""
+    image, n = move.image, move.states
+    size, m = len(image[0]) if move.strict else n, len(image)
+    after = [list(row[:m]) for row in after[:m]]
+    seen = identity(size)[:n]
+    kept = times(transpose(seen), times([list(row[:n]) for row in before[:n]], seen))
+    if move.flows:
+        half = times(transpose(seen), times(after, image))
+        form = combine((-1, half), (-1, transpose(half)), (-keeps, kept))
     else:
-        factor = item.rate**2 if step["strict"] else Fraction(1)
-        form = combine((factor, kept), (-1, times(transpose(image), times(after, image))))
-
-    def multiplier(fact: str) -> int:
-        own = [m.value for m in item.multipliers if (m.fact, m.target) == (fact, b)]
-        shared = [m.value for m in item.multipliers if (m.fact, m.target) == (fact, None)]
-        return (own or shared or [0])[0]
-
-    for i, (fact, q) in enumerate(step["sizes"], n):
-        row = [*q[: system.order - 1], *q[system.order :]] if step["flies"] else q
-        outer = [[-x * y for y in row] for x in row]
-        outer[i][i] += 1
-        form = combine((1, form), (multiplier(fact), outer))
-    for fact, row in step["crossings"]:
-        cross = times([[Fraction(int(i == n - 1))] for i in range(size)], [row])
+        form = combine((keeps, kept), (-1, times(transpose(image), times(after, image))))
+    for i, weight in enumerate(weights, n):
+        form[i][i] += weight
+    for i, (fact, q) in enumerate(move.sizes, n + len(weights)):
+        form = combine((1, form), (-multiplier(fact), times(transpose([q]), [q])))
+        form[i][i] += multiplier(fact)
+    for fact, row in move.crossings:
+        cross = times([[entry] for entry in identity(size)[n - 1]], [row])
         form = combine((1, form), (multiplier(fact), cross), (multiplier(fact), transpose(cross)))
     return form
+
+
+def _without(M: Rows, k: int) -> Rows:
+    """Leave out a column."""
+    return [[*row[:k], *row[k + 1 :]] for row in M]
 
 
 def _polynomials(system: SwitchedSystem, item: FormsOnGraph, *, lost: bool) -> bool:
@@ -463,118 +503,35 @@ def _invariant_ellipsoid(system: SwitchedSystem, item: InvariantEllipsoid) -> bo
         return False
     if system.couplings and system.axes is None:
         return False
-    axes, system = system.axes or 1, _as_roundings(system, item.roundings)
+    if item.roundings and len(item.roundings) != len(system.roundings):
+        return False
     scale = Fraction(1, 2**item.denominator_log2)
     Q = combine((scale, [list(map(Fraction, row)) for row in item.Q]))
-    weights = [scale * entry for entry in item.multipliers]
-    taus = [scale * entry for entry in (*item.roundings, *item.taus)]
-    n, contact = system.order, system.contact
-    errors = _errors(system, named, taus)
-    if errors is None or min(weights, default=0) < 0:
+    acting = {
+        "channels": [system.channels.index(channel) for channel in named],
+        "rounding": bool(item.roundings),
+        "coupling": bool(item.taus),
+    }
+    steps = list(moves(system, lost=True, **acting))
+    crossings = dict.fromkeys(fact for move in steps for fact, _ in move.crossings)
+    if len(crossings) != len(item.multipliers):
         return False
-    wide, slacks = errors
-    inner, size = [row[:-1] for row in Q[:-1]], len(wide[0][0])
-    allowed = [share / c.bound**2 for share, c in zip(item.shares, named, strict=True)]
-    allowed += [Fraction(0)] * len(taus)
-
-    def ball(M: Rows) -> Rows:
-        """Return the form ``sum a_i d_i^2/bound_i^2 - a V`` of state, disturbances and errors."""
-        m = len(M)
-        form = [[Fraction(0)] * (m + len(allowed)) for _ in range(m + len(allowed))]
-        for i, row in enumerate(M):
-            form[i][:m] = [-a * entry for entry in row]
-        for i, entry in enumerate(allowed, m):
-            form[i][i] = entry
-        return form
-
-    def rise(M: Rows, A: Rows, after: Rows) -> Rows:
-        """Return the form of V' or of ``V+ - V``."""
-        seen = identity(len(M) + len(allowed))[: len(M)]
-        if discrete:
-            before = times(transpose(seen), times(M, seen))
-            return combine((1, times(transpose(A), times(after, A))), (-1, before))
-        half = times(transpose(seen), times(M, A))
-        return combine((1, half), (1, transpose(half)))
-
-    def crossing(row: list[Fraction], weight: Fraction) -> list[tuple[Fraction, Rows]]:
-        product_ = times([[entry] for entry in identity(size)[n - 1]], [row])
-        return [(weight, product_), (weight, transpose(product_))]
-
-    count = len(system.modes)
-    touching = list(zip(wide[:count], slacks[:count], strict=True))
-    flying, others = wide[count:], [_cut(slack, n - 1) for slack in slacks[count:]]
-    blocks = [
-        ([row[: n - 1] + row[n:] for row in A], slack)
-        for A, slack in zip(flying, others, strict=True)
+    known = dict(zip(crossings, item.multipliers, strict=True))
+    known |= {f"rounding {i}": entry for i, entry in enumerate(item.roundings, 1)}
+    known |= {f"coupling {i}": entry for i, entry in enumerate(item.taus, 1)}
+    if min(known.values(), default=0) < 0:
+        return False
+    weights = [share / c.bound**2 for share, c in zip(item.shares, named, strict=True)]
+    forms = [Q] + [
+        inequality(move, Q, Q, 1 - a if discrete else a, lambda fact: scale * known[fact], weights)
+        for move in steps
+        if move.strict
     ]
-    forms = [Q] + [combine((1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)) for A, S in touching]
-    if discrete:
-        pulls = [] if contact is None else [q.numerators[0] for q in contact.pulls]
-        if len(weights) != (0 if contact is None else 1 + 3 * len(pulls)):
-            return False
-        for A, S in touching if contact is not None else []:
-            kept = (1, ball(Q)), (-1, rise(Q, A[:-1], inner)), (1, S)
-            forms.append(combine(*kept, *crossing(A[-1], weights[0])))
-        for A, S in blocks:
-            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner)), (1, S)))
-            forms.append(combine((1, ball(inner)), (-1, rise(inner, A, Q)), (1, S)))
-        lagging = zip(flying, slacks[count:], strict=True)
-        for (A, S), (k, q) in product(lagging, enumerate(pulls)):
-            stays, leaves, weight = weights[3 * k + 1 : 3 * k + 4]
-            row = [*map(Fraction, q), *(Fraction(0) for _ in allowed)]
-            kept = (1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)
-            forms.append(combine(*kept, *crossing(row, stays)))
-            lost = (*crossing(row, leaves), *crossing(A[-1], weight))
-            forms.append(combine((1, ball(Q)), (-1, rise(Q, A[:-1], inner)), (1, S), *lost))
-    else:
-        for A, S in blocks:
-            forms.append(combine((1, ball(inner)), (-1, rise(inner, A[:-1], inner)), (1, S)))
-        pulls = () if contact is None else contact.pulls
-        lagging = zip(flying, slacks[count:], strict=True)
-        pairs = [(A, S, q.fractions()[0]) for A, S in lagging for q in pulls]
-        if len(pairs) != len(weights):
-            return False
-        for (A, S, q), weight in zip(pairs, weights, strict=True):
-            row = [*q, *(Fraction(0) for _ in allowed)]
-            kept = (1, ball(Q)), (-1, rise(Q, A, Q)), (1, S)
-            forms.append(combine(*kept, *crossing(row, weight)))
     for q in output.rows:
         row = q.fractions()[0]
         outer = [[x * y for y in row] for x in row]
-        forms.append(combine((item.level**2 / axes, Q), (-1, outer)))
+        forms.append(combine((item.level**2 / (system.axes or 1), Q), (-1, outer)))
     return all(map(is_definite, forms))
-
-
-def _cut(M: Rows, k: int) -> Rows:
-    """Leave out a row and a column."""
-    return [[*row[:k], *row[k + 1 :]] for i, row in enumerate(M) if i != k]
-
-
-def _errors(
-    system: SwitchedSystem, named: Sequence[Channel], taus: Sequence[Fraction]
-) -> tuple[list[Rows], list[Rows]] | None:
-    """Return [A, B, C] of all modes, and ``sum tau (r^2 - (q (x, d))^2)``; None if they misfit."""
-    if min(taus, default=0) < 0 or (taus and len(taus) != len(system.roundings)):
-        return None
-    free = () if system.contact is None else system.contact.free
-    n, c = system.order, len(named)
-    chosen = [*range(n), *(n + system.channels.index(channel) for channel in named)]
-    wide, slacks = [], []
-    for k, mode in enumerate((*system.modes, *free)):
-        A = mode.A.fractions()
-        items = system.roundings[: len(taus)]
-        for column in (*(c.columns[k] for c in named), *(i.columns[k] for i in items)):
-            A = [[*row, *entry] for row, entry in zip(A, column.fractions(), strict=True)]
-        size = n + c + len(taus)
-        slack = [[Fraction(0)] * size for _ in range(size)]
-        for i, (tau, item) in enumerate(zip(taus, items, strict=True)):
-            q = [item.rows[k].fractions()[0][j] for j in chosen] + [Fraction(0)] * len(taus)
-            outer = [[-x * y for y in q] for x in q]
-            outer[n + c + i][n + c + i] += 1
-            slack = combine((1, slack), (tau, outer))
-        wide.append(A)
-        slacks.append(slack)
-    return wide, slacks
 
 
 def _basis(n: int, d: int) -> list[tuple[int, ...]]:

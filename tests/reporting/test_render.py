@@ -30,11 +30,6 @@ CASES = [
 ]
 
 
-@pytest.mark.slow
-def test_same_report_gives_the_same_bytes(report, page):
-    assert page("proved") == render_html(report("proved"))
-
-
 @pytest.mark.parametrize("path", [COMMUTING, pytest.param(SOFT_TISSUE, marks=pytest.mark.slow)])
 def test_same_spec_gives_the_same_bytes(path):
     assert render_html(report_of(path)) == render_html(report_of(path))

@@ -90,6 +90,12 @@ def lines(illustration):
     return {line.get_label(): line for line in illustration.figure.axes[0].get_lines()}
 
 
+def table_of(report, title):
+    """Return the first table of a section."""
+    section = next(part for part in report.sections if part.title == title)
+    return next(block for block in section.blocks if isinstance(block, Table))
+
+
 def figure(report, name):
     return next(item for item in report.illustrations if item.name == name)
 
@@ -131,15 +137,13 @@ def test_every_axis_is_labelled_with_its_unit(report, case):
     ],
 )
 def test_published_values(report, case, section, label, published, tolerance):
-    part = next(part for part in report(case).sections if part.title == section)
-    table = next(block for block in part.blocks if isinstance(block, Table))
-    row = next(row for row in table.rows if row[0] == label)
+    row = next(row for row in table_of(report(case), section).rows if row[0] == label)
     assert [float(cell) for cell in row[1:]] == pytest.approx(published, abs=tolerance)
 
 
 @pytest.mark.slow
 def test_worst_values_stand_beside_the_goals(tmp_path):
-    text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
+    text = SOFT_TISSUE.read_text()
     goals = "goals: {max_sensitivity_peak: 2, min_delay_margin: 5 ms}\nswitching:"
     text = text.replace("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 1.04 N*m*s/rad")
     text = text.replace("Mt: {min: 0.01 kg*m^2, max: 1 kg*m^2}", "Mt: 0.01 kg*m^2")
@@ -147,8 +151,7 @@ def test_worst_values_stand_beside_the_goals(tmp_path):
     path.write_text(text.replace("switching:", goals))
     result = run_certification(read_spec(path), method=Method.LMI)
     found = build_report(result, run_analysis(result.designed))
-    section = next(part for part in found.sections if part.title == "Design goals")
-    table = next(block for block in section.blocks if isinstance(block, Table))
+    table = table_of(found, "Design goals")
     rows = {row[:2]: row[2:] for row in table.rows}
     where = "soft, k = 44.2466 N·m/rad"
     assert rows["insertion", "sensitivity peak Ms"] == ("at most 2", "3.753", where, "MISSED")
@@ -229,8 +232,7 @@ def test_simulated_run_stays_below_its_bound(report, case):
 @pytest.mark.slow
 def test_given_motion_loop_is_named(tmp_path):
     # Thesis 6.1 prints G with these rounded coefficients.
-    text = (ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml").read_text()
-    text = text.replace(
+    text = SOFT_TISSUE.read_text().replace(
         "  derivative_gain: 2060 rpm*s/rad\n  zero: 56.9706 1/s\n",
         "  transfer_function:\n    numerator: [0.99, 56.82]\n"
         "    denominator: [0.0351, 1.99, 56.82]\n",
@@ -439,9 +441,7 @@ def test_margin_over_the_parameter_stays_above_the_claim(report):
 
 
 def test_obstruction_weights_sum_to_one(report):
-    title = "No common quadratic function"
-    part = next(p for p in report("polynomial").sections if p.title == title)
-    table = next(block for block in part.blocks if isinstance(block, Table))
+    table = table_of(report("polynomial"), "No common quadratic function")
     assert {row[0] for row in table.rows} <= {"a", "b"}
     assert sum(float(row[1]) for row in table.rows) == pytest.approx(1, abs=1e-3)
 
@@ -541,18 +541,16 @@ def test_the_gradient_iteration_stands_beside_the_lmi_where_asked_for():
     _, runs = run_comparison(loaded, limits)
     assert "methods" not in {item.name for item in build_report(result).illustrations}
     page = build_report(result, comparison=runs)
-    section = next(item for item in page.sections if item.title == "Gradient iteration beside LMI")
-    table = next(block for block in section.blocks if isinstance(block, Table))
+    title = "Gradient iteration beside LMI"
+    table = table_of(page, title)
     assert [row[0] for row in table.rows] == [run.name for run in runs]
     assert all(row[2].startswith("alpha") for row in table.rows)
-    figure = next(item for item in page.illustrations if item.name == "methods").figure
-    assert [axes.get_title() for axes in figure.axes] == ["Modes in turn", "Modes at random"]
+    drawn = figure(page, "methods").figure.axes
+    assert [axes.get_title() for axes in drawn] == ["Modes in turn", "Modes at random"]
     # Three curves, each with a mark where it ended.
-    assert [len(axes.lines) for axes in figure.axes] == [6, 6]
+    assert [len(axes.lines) for axes in drawn] == [6, 6]
     timed = build_report(result, comparison=runs, times=True)
-    section = next(item for item in timed.sections if item.title == section.title)
-    table = next(block for block in section.blocks if isinstance(block, Table))
-    assert table.columns[-1] == "Time [ms]"
+    assert table_of(timed, title).columns[-1] == "Time [ms]"
 
 
 def test_force_and_velocity_stay_within_what_is_certified(report):

@@ -85,7 +85,8 @@ def test_a_square_root_lies_between(value):
 
 
 def test_a_rational_damping_is_a_point():
-    assert axis_damping(axis("2", "1.5", "8")).low == axis_damping(axis("2", "1.5", "8")).high == 12
+    found = axis_damping(axis("2", "1.5", "8"))
+    assert found.low == found.high == 12
     found = axis_damping(axis("2", "-1.5", "7"))
     assert found.low < found.high < 0
 

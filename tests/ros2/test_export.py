@@ -14,7 +14,7 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_design
 from nrs_design.ros2.check import Question, check_file
 from nrs_design.ros2.export import export_controllers
-from nrs_design.ros2.law import AXES, read_law
+from nrs_design.ros2.law import read_law
 from nrs_design.ros2.parameters import parse_nodes
 from nrs_design.ros2.traps import find_traps
 from nrs_design.search.certification import Limits
@@ -84,26 +84,6 @@ def test_the_certificate_is_about_the_numbers_as_written(found):
         assert checked.certificate.evidence.covers_lost_contact
 
 
-def test_a_run_of_the_controller_is_a_step_of_the_proof(found):
-    """One period in floating point, as the source has it, beside the exact map."""
-    item = found[0]
-    law, system = law_in(item.text), item.certificate.system
-    axis = law.axes[AXES.index("ry")]
-    T, M, d = 0.002, float(axis.mass), float(law.joint_damping)
-    k = float(720.56 * 0.24**2)
-    (mode,) = [m for m in system.modes if m.name.endswith("k-min/E-min")]
-    E = np.exp(-T / float(LAG[0]))
-    rng = np.random.default_rng(3)
-    for v, e, step, delta in rng.normal(0, 1, (20, 4)):
-        # delta is where the robot was a period ago, e its distance to the command.
-        new = v + T * (-k * delta / M - d * v)
-        ahead = e + T * new
-        expected = [new, E * ahead, (1 - E) * ahead, delta + step]
-        state = np.array([v, e, step, delta])
-        A = np.array([[float(entry) for entry in row] for row in mode.A.fractions()])
-        assert A @ state == pytest.approx(expected, rel=1e-9, abs=1e-12)
-
-
 def test_the_checker_of_files_agrees(found, tmp_path):
     file = tmp_path / "exported.ros2.yaml"
     file.write_text(found[0].text)
@@ -171,6 +151,7 @@ def test_the_filter_is_written_out():
     [
         ([("sampling: {period: 2 ms, delay: 1}\ncontact: losable\n", "")], "when its law runs"),
         ([("period: 2 ms", "period: 3 ms")], "no whole number of periods"),
+        ([("delay: 1", "outer_period: 1 ms, delay: 1")], "has one period"),
         ([("delay: 1", "delay: [0, 1]")], "for one age of the force only"),
         ([("contact: losable", f"{FILTER}contact: losable"), ("order: 1", "order: 2")], "order 2"),
         (
@@ -183,15 +164,9 @@ def test_the_filter_is_written_out():
         ([("    Bt: {min", "    Kt: {nominal: 1 N*m/rad}\n    Bt: {min")], "a spring"),
         ([("Mt: {min: 0.01 kg*m^2", "Mt: {min: 5e-5 kg*m^2")], "mass: .* is not between 0.0001"),
     ],
-    ids=["sampling", "rate", "contact", "filter", "damping", "spring", "bounds"],
+    ids=["sampling", "rate", "periods", "contact", "filter", "damping", "spring", "bounds"],
 )
 def test_what_it_cannot_run(changes, message):
     with pytest.raises(DesignError, match=message) as caught:
         exported(designed(*changes))
     assert caught.value.remedy
-
-
-def test_two_periods_are_refused():
-    two = designed(("delay: 1", "outer_period: 1 ms, delay: 1"))
-    with pytest.raises(DesignError, match="has one period"):
-        list(export_controllers(two, AXES[0], LAG, Limits()))

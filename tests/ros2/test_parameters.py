@@ -4,7 +4,6 @@ import pytest
 
 from nrs_design.errors import SpecError
 from nrs_design.ros2.parameters import read_bool, read_double, read_integer, read_nodes
-from tests.ros2.support import EXAMPLE
 
 INTEGERS = ["5", "-5", "+3"]
 
@@ -63,9 +62,3 @@ def test_what_is_no_parameter_file(tmp_path):
     file.write_text("kind: robot\n")
     with pytest.raises(SpecError, match="ros__parameters"):
         read_nodes(file)
-
-
-def test_the_example():
-    manager, controller = read_nodes(EXAMPLE)
-    assert manager.name == "controller_manager"
-    assert controller.place("admittance.mass", 2).line == 30

@@ -14,16 +14,18 @@ from nrs_design.search.common_quadratic import (
     decide_one_state,
     search_by_gradient,
     search_by_lmi,
+)
+from nrs_design.search.family import Family, floats_in_silence
+from nrs_design.search.graphs import (
+    search_modes,
+    search_polynomial,
     search_preconditioned,
     search_raw,
 )
-from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.mixture import search_mixture
-from nrs_design.search.mode_quadratic import search_mode_functions
 from nrs_design.search.obstruction import search_obstruction
 from nrs_design.search.parameter_quadratic import search_parameter_quadratic
 from nrs_design.search.period import search_period
-from nrs_design.search.polynomial import search_polynomial
 from nrs_design.search.unstable_mode import examine_every_mode, examine_suspicious_modes
 from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.graphs import shape_of
@@ -87,7 +89,7 @@ def test_other_coordinates_find_evidence_too(search):
     stretched = family(*([[-1, x], [y, -1]] for x, y in ((1000, 0), (500, "1/9999"))))
     for system in (GOOD, stretched):
         evidence, words = outcome(search, system)
-        assert words == "found"
+        assert words == "found with the largest decay rate"
         assert holds(system, evidence)
     evidence, words = outcome(search, dayawansa_martin(6))
     assert (evidence, words) == (None, NO_MARGIN)
@@ -110,7 +112,7 @@ SHEARS = family([[-1, 10], [0, -1]], [[-1, 0], [10, -1]])
             "parameter-quadratic",
         ),
         (
-            search_mode_functions,
+            search_modes,
             replace(dayawansa_martin(12), switching=Switching(dwell_time=Fraction(10))),
             "mode-quadratic",
         ),

@@ -28,7 +28,7 @@ from nrs_design.search.gradient import GradientResult
 from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.proof.graphs import common_quadratic, shape_of
-from tests.support import ROOT, dayawansa_martin, family, holds, is_stable_by_lyapunov
+from tests.support import ROOT, dayawansa_martin, family, holds
 
 ROTATION = [[0, 1], [-1, 0]]
 SINGULAR = [["-0.36", "-0.48"], ["-0.48", "-0.64"]]
@@ -226,10 +226,6 @@ class TestModes:
         assert settle(family([[-tiny]], [[-1]])).verdict is Verdict.PROVED
         assert settle(family([[tiny]], [[-1]])).verdict is Verdict.REFUTED
 
-    def test_identical_modes(self):
-        pair = family(*[[[-1, 4], [-4, -2]]] * 5)
-        assert settle(pair).verdict is Verdict.PROVED
-
     def test_many_modes(self):
         """300 modes around -I, more than enter the solver at once."""
         generator = np.random.default_rng(3)
@@ -271,13 +267,6 @@ class TestScales:
         pair = [[[-1, -s], [1 / s, -1]], [[-1, -5 * s], [1 / (5 * s), -1]]]
         assert settle(family(*pair)).verdict is Verdict.PROVED
 
-    def test_entries_from_1e_minus_5_to_1e5(self):
-        A = [["-1e-5", "1e5", 0], [0, "-1e5", "1"], ["-1e-5", 0, "-1e-1"]]
-        stable = is_stable_by_lyapunov(family(A).modes[0].A.fractions())
-        result = settle(family(A))
-        assert stable
-        assert result.verdict is not Verdict.REFUTED
-
     @pytest.mark.parametrize(
         "scale", ["1e-190", *map(slow, ("1e-100", "1e-5", "1e5", "1e100")), "1e190"]
     )
@@ -304,15 +293,6 @@ class TestScales:
 
 
 class TestMethods:
-    @pytest.mark.slow
-    @pytest.mark.parametrize(
-        "system",
-        [STABLE, dayawansa_martin("1/5"), family([[-1, 1], [-1, -1]], [[-2, 3], [-3, -2]])],
-    )
-    def test_gradient_and_lmi_agree_where_it_is_easy(self, system):
-        for method in (Method.GRADIENT, Method.LMI, Method.AUTO):
-            assert settle(system, method).verdict is Verdict.PROVED
-
     @pytest.mark.slow
     def test_gradient_proves_the_robot(self):
         loaded = read_spec(ROOT / "specs" / "neuroboscope" / "soft-tissue.nrs.yaml")
@@ -603,7 +583,7 @@ class TestLyingSolvers:
                 x = np.resize(lie(2).ravel(), rows.shape[1])
                 return x if np.isfinite(x).all() else None
 
-            for module in ("lmi", "obstruction", "polynomial", "mode_quadratic"):
+            for module in ("forms", "obstruction", "sdp"):
                 monkeypatch.setattr(f"nrs_design.search.{module}.maximize_margin", answer)
 
         # Rates are claimed for what is found, and here is nothing.

@@ -4,7 +4,6 @@ from functools import partial
 
 import pytest
 
-from nrs_design.errors import DesignError
 from nrs_design.proof.mode import Time
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
@@ -53,11 +52,3 @@ def test_a_refuted_mode_leaves_nothing_to_iterate():
     run = compare_methods(partial(certify, unstable), QUICK)[1]
     assert (run.certification.verdict, run.updates) == ("refuted", None)
     assert run.outcome == "not needed"
-
-
-def test_a_start_that_there_is_not():
-    with pytest.raises(DesignError, match="cannot start with mode 'nobody'") as caught:
-        compare_methods(
-            partial(certify, dayawansa_martin(5)), Limits(gradient=Gradient(start="nobody"))
-        )
-    assert caught.value.remedy

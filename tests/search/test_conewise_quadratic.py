@@ -12,7 +12,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.search.certify import Limits, certify
-from nrs_design.search.conewise_quadratic import search_conewise
+from nrs_design.search.graphs import search_together
 from tests.proof.graphs import shape_of
 from tests.proof.systems import bouncing, bouncing_in_steps, matrix
 from tests.search.support import found, outcome, thesis_robot
@@ -26,7 +26,7 @@ slow = pytest.mark.slow
 @pytest.mark.parametrize("optimize_rate", [False, True])
 def test_a_bouncing_mass(system, optimize_rate):
     assert (
-        shape_of(found(search_conewise, system, optimize_rate=optimize_rate))
+        shape_of(found(search_together, system, optimize_rate=optimize_rate))
         == "conewise-quadratic"
     )
 
@@ -42,7 +42,7 @@ def test_free_motion_that_does_not_slow_down_is_not_found():
         (),
         contact=Contact((free,)),
     )
-    evidence, why = outcome(search_conewise, sliding)
+    evidence, why = outcome(search_together, sliding)
     assert evidence is None
     assert why
 
@@ -58,13 +58,13 @@ def test_free_motion_that_does_not_slow_down_is_not_found():
 )
 def test_rates_in_continuous_time(k, Bt, Mt, rate):
     system = thesis_robot(k, Bt, Mt)
-    evidence = found(search_conewise, system)
+    evidence = found(search_together, system)
     assert shape_of(evidence) == "conewise-quadratic"
     assert float(evidence.rate) > 0.98 * rate
 
 
 def test_stiffer_tissue_has_no_quadratic_function():
-    assert found(search_conewise, thesis_robot(STIFF, BOTH, "0.01"), optimize_rate=False) is None
+    assert found(search_together, thesis_robot(STIFF, BOTH, "0.01"), optimize_rate=False) is None
 
 
 SAMPLED = [
@@ -101,7 +101,7 @@ LEAST = [
 def test_the_least_damping_of_withdrawal(Mt, Bt, delay, tolerance):
     sampling = f"{{period: 2 ms, delay: {delay}}}"
     system = thesis_robot(SOFT, ("2.15", Bt), Mt, tolerance, sampling=sampling)
-    evidence = found(search_conewise, system, optimize_rate=False)
+    evidence = found(search_together, system, optimize_rate=False)
     assert shape_of(evidence) == "conewise-quadratic"
     assert evidence.covers_rounding
 
@@ -109,7 +109,7 @@ def test_the_least_damping_of_withdrawal(Mt, Bt, delay, tolerance):
 @slow
 def test_the_least_damping_that_takes_one_function_for_each_mode():
     system = thesis_robot(SOFT, ("2.15", "0.94"), "0.005", sampling="{period: 2 ms, delay: [0, 2]}")
-    assert found(search_conewise, system, optimize_rate=False) is None
+    assert found(search_together, system, optimize_rate=False) is None
     result = certify(system, limits=Limits(optimize_rate=False))
     assert shape_of(result.evidence) == "conewise-mode-quadratic"
 
@@ -118,7 +118,7 @@ def test_the_least_damping_that_takes_one_function_for_each_mode():
 def test_rates_of_the_sampled_loop(k, Bt, Mt, delay, tolerance, rate):
     sampling = f"{{period: 2 ms, delay: {delay}}}"
     system = thesis_robot(k, Bt, Mt, tolerance, sampling=sampling)
-    evidence = found(search_conewise, system, optimize_rate=rate is not None)
+    evidence = found(search_together, system, optimize_rate=rate is not None)
     assert shape_of(evidence) == "conewise-quadratic"
     assert rate is None or -log(float(evidence.rate)) / 0.002 > 0.98 * rate
 
@@ -127,7 +127,7 @@ def test_rates_of_the_sampled_loop(k, Bt, Mt, delay, tolerance, rate):
 def test_too_much_at_once_is_not_found():
     """Both controllers with up to two samples of delay and a tolerance of 2 %."""
     system = thesis_robot(SOFT, BOTH, "0.01", "0.02", sampling="{period: 2 ms, delay: [0, 2]}")
-    assert found(search_conewise, system, optimize_rate=False) is None
+    assert found(search_together, system, optimize_rate=False) is None
 
 
 def test_five_samples_of_delay_are_refuted():

@@ -45,12 +45,6 @@ def test_positions_run_from_stability_to_the_limit():
     assert contractions == pytest.approx([1.0, 0.6, 0.2])
 
 
-def test_commuting_modes_reach_the_limit():
-    # Narendra and Balakrishnan 1994: the identity works up to the rate of the slower mode.
-    modes = np.array([[[-1.0, 1.0], [-1.0, -1.0]], [[-2.0, 3.0], [-3.0, -2.0]]])
-    assert largest_position(modes, 1.0) > 1 - 10 * FINE
-
-
 def test_position_of_dayawansa_martin():
     """The pair shifted by alpha is a scaled pair; the threshold falls where it must."""
     position = largest_position(PAIR, 1.0)
@@ -62,10 +56,6 @@ def test_rate_shown_by_a_function(rate):
     Q = np.array([[2.0, 0.5], [0.5, 1.0]])
     assert rate_of(-rate * np.eye(2)[None], Q, Time.CONTINUOUS) == pytest.approx(rate)
     assert rate_of(rate * np.eye(2)[None], Q, Time.DISCRETE) == pytest.approx(rate)
-
-
-def test_still_modes_show_the_best_contraction():
-    assert rate_of(np.zeros((1, 2, 2)), np.eye(2), Time.DISCRETE) == 0.0
 
 
 def test_indefinite_functions_show_nothing():

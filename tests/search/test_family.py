@@ -39,3 +39,8 @@ def test_modes_that_differ_by_the_last_digits_have_one_that_stands_for_them():
     ruled = family(*matrices, time=Time.DISCRETE, switching=Switching(Fraction(3)))
     assert Family.of(ruled).stand_ins() == {}
     assert Family.of(family(*matrices)).stand_ins() == {}
+
+
+def test_numbers_that_no_machine_integer_holds():
+    with floats_in_silence():
+        assert Family.of(family([["-1/3", 10**30], [0, -1]])).limit == 1 / 3

@@ -1,6 +1,7 @@
 """One program for forms on any graph."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,21 +12,31 @@ from nrs_design.search.family import Family, floats_in_silence
 from nrs_design.search.forms import FormsProgram
 from nrs_design.search.graphs import (
     draw_conewise_modes,
+    draw_each_mode,
     draw_together,
     draw_turns,
     search_conewise_modes,
+    search_conewise_polynomial,
     search_coupled_axes,
+    search_modes,
     search_periodic_quadratic,
+    search_polynomial,
+    search_together,
 )
 from nrs_design.work import Allowance, NotAffordableError
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
     bouncing_in_turns,
+    dayawansa_martin,
+    geromel_colaneri,
     leaning,
+    two_ways,
 )
 from tests.search.support import found
 
+QUARTIC = partial(search_polynomial, degree=2)
+QUARTIC_WITH_FLIGHT = partial(search_conewise_polynomial, degree=2)
 DRAWN = [
     (search_conewise_modes, bouncing_in_steps(), draw_conewise_modes),
     (
@@ -38,6 +49,10 @@ DRAWN = [
         leaning(bouncing(), "1/8"),
         lambda f: draw_together(f, 1, lost=True, solved=("coupling",)),
     ),
+    (search_together, bouncing(), lambda f: draw_together(f, 1, lost=True)),
+    (search_modes, geromel_colaneri(3), lambda f: draw_each_mode(f, 1)),
+    (QUARTIC, dayawansa_martin(6), lambda f: draw_together(f, 2)),
+    (QUARTIC_WITH_FLIGHT, bouncing(), lambda f: draw_together(f, 2, lost=True)),
 ]
 
 
@@ -52,7 +67,11 @@ def at_rest(system):
 def test_solutions_that_lie_give_no_false_evidence(monkeypatch, search, system, draw, spoil):
     with floats_in_silence():
         solution = FormsProgram(draw(Family.of(system))).solve(at_rest(system), Allowance())
-        lie = replace(solution, forms=[spoil(Q) for Q in solution.forms])
+        lie = replace(
+            solution,
+            forms=[spoil(Q) for Q in solution.forms],
+            vanishing=[spoil(N) for N in solution.vanishing],
+        )
     monkeypatch.setattr(FormsProgram, "solve", lambda *_: lie)
     try:
         evidence = found(search, system, optimize_rate=False)
@@ -73,3 +92,22 @@ def test_a_program_that_does_not_fit_is_not_built(monkeypatch, search, system, d
 def test_a_solution_shows_the_rate_that_it_was_asked_for(search, system, draw):
     program = FormsProgram(draw(Family.of(system)))
     assert program.own_rate(program.solve(0.99, Allowance())) < 0.99
+
+
+@pytest.mark.parametrize(("search", "system", "draw"), DRAWN[:2])
+def test_edges_that_a_solution_violates_are_added(monkeypatch, search, system, draw):
+    monkeypatch.setattr(forms, "FIRST_EDGES", 1)
+    program = FormsProgram(draw(Family.of(system)))
+    assert len(program.active) == 1
+    assert program.solve(0.99, Allowance()) is not None
+    whole = FormsProgram(draw(Family.of(system)))
+    whole.active = list(range(len(whole.edges)))
+    assert whole.solve(0.99, Allowance()) is not None
+    assert whole.solve(0.5, Allowance()) is None
+    assert program.solve(0.5, Allowance()) is None
+    assert len(program.active) > 1
+
+
+def test_forms_that_are_nearly_zero_are_no_solution():
+    """The best rate is ``sqrt(3)/2``; below it, the solver finds none but zero, with a margin."""
+    assert found(search_modes, two_ways(3)).rate < 0.8665

@@ -11,7 +11,6 @@ from nrs_design.proof.mode import Time
 from nrs_design.search.balance import own_norm
 from nrs_design.search.certification import Limits
 from nrs_design.search.certify import certify
-from nrs_design.search.decay import rate_of
 from nrs_design.search.family import Family
 from nrs_design.search.gradient import (
     PER_ROUND,
@@ -90,24 +89,6 @@ def test_one_update_by_hand(time):
     after = (vectors * np.maximum(values, 0)) @ vectors.T
     assert told[0] == (0, pytest.approx(max(largest(M, Q, time) for M in matrices)))
     assert told[1] == (1, pytest.approx(max(largest(M, after, time) for M in matrices)))
-
-
-def test_it_starts_with_the_named_mode():
-    seen = []
-
-    def tell(updates, v):
-        seen.append((updates, v))
-
-    for start in (0, 1):
-        iterate_gradient(PAIR, Time.CONTINUOUS, Gradient(max_updates=0, tell=tell), start)
-    expected = [max(largest(M, own_norm(A, Time.CONTINUOUS)) for M in PAIR) for A in PAIR]
-    assert seen == [(0, pytest.approx(v)) for v in expected]
-
-
-def test_one_mode_needs_no_update_but_for_rounding():
-    result = iterate_gradient(PAIR[:1], Time.CONTINUOUS, Gradient(radius=1e-2))
-    assert result.updates < 5
-    np.testing.assert_allclose(result.Q, np.eye(2) / 2, atol=2e-2)
 
 
 @pytest.mark.parametrize("order", Order)
@@ -210,14 +191,6 @@ def test_the_bisection_for_the_rate_ends_early_without_work():
     allowance = Allowance(5 * PER_ROUND)
     result = find_faster_by_gradient(ring, found, allowance)
     np.testing.assert_array_equal(result.Q, found)
-
-
-def test_raising_the_rate_never_lowers_it():
-    pair = Family.of(family(*PAIR.tolist()))
-    found = find_by_gradient(pair).Q
-    faster = find_faster_by_gradient(pair, found).Q
-    rates = [rate_of(pair.matrices, Q, Time.CONTINUOUS) for Q in (found, faster)]
-    assert rates[0] <= rates[1]
 
 
 def test_equal_modes_and_blocks_keep_their_start():

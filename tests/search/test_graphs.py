@@ -12,11 +12,11 @@ from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.search import graphs
 from nrs_design.search.candidates import NO_MARGIN
 from nrs_design.search.certify import Limits, certify
-from nrs_design.search.conewise_quadratic import search_conewise
 from nrs_design.search.graphs import (
     search_conewise_modes,
     search_coupled_axes,
     search_periodic_quadratic,
+    search_together,
 )
 from nrs_design.search.ladder import applicable_methods
 from nrs_design.search.method import Method
@@ -49,7 +49,7 @@ def test_a_stiffness_that_moves_far_is_proved_while_contact_is_lost(k, Mt, delay
     """Where no single function is found: the largest k that was proved in kept contact."""
     sampling = f"{{period: 2 ms, delay: {delay}}}"
     system = thesis_robot(("20", k), BOTH, Mt, sampling=sampling, contact="losable")
-    assert found(search_conewise, system, optimize_rate=False) is None
+    assert found(search_together, system, optimize_rate=False) is None
     result = certify(system, limits=Limits(optimize_rate=False))
     assert result.verdict is Verdict.PROVED
     assert shape_of(result.evidence) == "conewise-mode-quadratic"

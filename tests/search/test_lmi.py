@@ -11,7 +11,6 @@ from nrs_design.search.lmi import (
     decreases,
     find_common_quadratic,
     margins,
-    solve_by_clarabel,
 )
 from nrs_design.work import Allowance, NotAffordableError
 from tests.support import thinned
@@ -28,15 +27,14 @@ def exists_by_cvxpy(matrices):
     return float(t.value)
 
 
-@pytest.mark.parametrize("solve", [None, solve_by_clarabel])
 @pytest.mark.parametrize("seed", thinned(range(30), 12))
-def test_existence_agrees_with_cvxpy(seed, solve):
+def test_existence_agrees_with_cvxpy(seed):
     generator = np.random.default_rng(seed)
     n, m = generator.integers(2, 7), generator.integers(2, 6)
     shift = generator.uniform(0.5, 2.5) * np.sqrt(n)
     matrices = generator.standard_normal((m, n, n)) - shift * np.eye(n)
     margin = exists_by_cvxpy(matrices)
-    found = find_common_quadratic(matrices, Time.CONTINUOUS, 0.0, solve)
+    found = find_common_quadratic(matrices, Time.CONTINUOUS, 0.0)
     if margin > 1e-4:
         assert found is not None
         assert margins(matrices, found, Time.CONTINUOUS, 0.0).min() > 0
@@ -82,15 +80,14 @@ def test_decrease_is_the_definition(time, rate):
         np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("answer", [None, np.full((2, 2), np.nan), np.diag([np.inf, 1.0])])
+@pytest.mark.parametrize("answer", [np.full((2, 2), np.nan), np.diag([np.inf, 1.0])])
 def test_useless_answers_end_the_search(monkeypatch, answer):
     monkeypatch.setattr(lmi, "solve_by_interior_point", lambda *arguments: answer)
     with np.errstate(all="ignore"):
         assert find_common_quadratic(-np.eye(2)[None], Time.CONTINUOUS, 0.0) is None
 
 
-@pytest.mark.parametrize("solve", [None, solve_by_clarabel])
-def test_what_does_not_fit_is_not_even_built(monkeypatch, solve):
+def test_what_does_not_fit_is_not_even_built(monkeypatch):
     def build(n):
         raise AssertionError("built")
 
@@ -101,7 +98,7 @@ def test_what_does_not_fit_is_not_even_built(monkeypatch, solve):
         (Allowance(memory=1e8), "GB of memory, .*--memory"),
     ):
         with pytest.raises(NotAffordableError, match=words):
-            find_common_quadratic(matrices, Time.CONTINUOUS, 0.0, solve, allowance)
+            find_common_quadratic(matrices, Time.CONTINUOUS, 0.0, allowance)
 
 
 def test_a_search_that_runs_out_of_work_does_not_say_that_there_is_nothing():

@@ -211,13 +211,6 @@ class TestBox:
         assert box.proved == 1
         assert Fraction(19, 10) <= box.refuted <= Fraction(39, 20)
 
-    def test_lying_refutations_below_a_proof_are_not_asked_for(self):
-        """Only scales above the largest proved one are reported as refuted."""
-        assemble, decide, _ = deciding_by(between(Fraction(3, 2), Fraction(3)))
-        box = find_margin(assemble, decide)
-        assert box.proved == Fraction(3, 2)
-        assert 3 <= box.refuted < 3.05
-
 
 class TestDwell:
     @pytest.mark.slow
@@ -267,15 +260,6 @@ class TestDwell:
         assert {dwell.proved, dwell.refuted} <= {*asked, own}
         assert own not in asked
         assert len(set(asked)) == len(asked)
-
-    @settings(deadline=None)
-    @given(st.fractions("1/100", 4096))
-    def test_never_contradicts_what_is_known(self, own):
-        """A longer search has proved what the quick one does not find."""
-        system = replace(ANY, switching=Switching(own))
-        known = verdict_at(system, lambda time: Verdict.PROVED)
-        dwell = find_shortest_dwell(system, undecided, known)
-        assert (dwell.proved, dwell.proof) == (own, known)
 
     @pytest.mark.parametrize(
         ("verdict", "proved", "refuted"),

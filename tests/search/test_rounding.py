@@ -21,12 +21,6 @@ from nrs_design.search.rounding import (
 CONTINUOUS, DISCRETE = Time.CONTINUOUS, Time.DISCRETE
 
 
-def test_the_ladder_goes_from_near_to_far_and_from_few_digits_to_many():
-    assert list(BACK_OFFS) == sorted(BACK_OFFS, reverse=True)
-    assert max(BACK_OFFS) < 1
-    assert list(BITS) == sorted(BITS)
-
-
 @pytest.mark.parametrize(("time", "limit"), [(CONTINUOUS, 3.7), (DISCRETE, 0.3)])
 def test_claims_are_below_the_position_the_fastest_first(time, limit):
     proposed = list(claims(0.8, limit, time))

@@ -4,9 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from nrs_design.design.design import design_controllers
+from nrs_design.simulation.bodies import simulate_on_body
 from nrs_design.simulation.build_scenario import build_scenario, default_scenario
 from nrs_design.simulation.exact import simulate_exactly
-from nrs_design.simulation.sampled import sampled_axis, simulate_sampled
+from nrs_design.simulation.sampled import sampled_axis
 from nrs_design.spec import parse_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.spec.sampling import SamplingSpec
@@ -58,8 +59,10 @@ def simulated(text, engine="exact", sampling=None, **options):
         if spec.scenarios
         else default_scenario(spec, plant)
     )
-    simulate = {"exact": simulate_exactly, "sampled": simulate_sampled}[engine]
-    return simulate(spec, plant, design, scenario, **options)
+    if engine == "exact":
+        return simulate_exactly(spec, plant, design, scenario, **options)
+    (run,) = simulate_on_body(spec, plant, design, (scenario,), engine, **options)
+    return run
 
 
 def axes_of(text, count=1):

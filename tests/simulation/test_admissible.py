@@ -46,19 +46,6 @@ def test_only_allowed_switches_are_made():
     assert all((a + 1) % 3 == b for a, b in pairwise(order))
 
 
-def test_without_transitions_it_stays():
-    run = admissible_run(system(*PAIR, switching=Switching(transitions=())), UNIT, 0.05, 50)
-    assert len(stays(run)) == 1
-
-
-def test_dwell_time_in_discrete_time_is_counted_in_steps():
-    shears = ([["1/2", 1], [0, "1/2"]], [["1/2", 0], [1, "1/2"]])
-    rules = Switching(Fraction(3))
-    run = admissible_run(system(*shears, time=Time.DISCRETE, switching=rules), UNIT, 1.0, 60)
-    assert all(count >= 3 for _, count in stays(run)[:-1])
-    assert run.time.tolist() == list(range(len(run.time)))
-
-
 def test_resets_between_states_of_different_size():
     # The large mode decays faster than its state is mapped into the small one.
     rules = Switching(
@@ -112,14 +99,6 @@ def test_a_mode_that_must_be_left_after_a_step():
     run = admissible_run(system(*pair, time=Time.DISCRETE, switching=rules), UNIT, 1.0, 50)
     assert all(count == 1 for mode, count in stays(run) if mode == 0)
     assert len(stays(run)) > 20
-
-
-def test_the_run_ends_where_no_mode_may_follow():
-    rules = Switching(transitions=(), stays=(("m0", Stay(Fraction(1), Fraction(4))),))
-    pair = ([[2]], [["1/100"]])
-    unit = {f"m{i}": np.eye(1) for i in range(2)}
-    run = admissible_run(system(*pair, time=Time.DISCRETE, switching=rules), unit, 1.0, 50)
-    assert stays(run) == [(0, 4)] or len(run.mode) >= 50
 
 
 def test_the_worst_of_several_resets_is_taken():

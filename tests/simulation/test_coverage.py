@@ -11,9 +11,9 @@ from nrs_design.pipeline import run_certification
 from nrs_design.pipeline.certified_runs import hold_bounds, hold_rate
 from nrs_design.pipeline.scenarios import Runs, run_scenarios
 from nrs_design.search.certification import Limits
+from nrs_design.simulation.bodies import simulate_on_body
 from nrs_design.simulation.coverage import uncovered
 from nrs_design.simulation.exact import simulate_exactly
-from nrs_design.simulation.sampled import simulate_sampled
 from nrs_design.simulation.scenario import Control, Errors, Profile
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.sampling import DisturbancesSpec
@@ -88,7 +88,8 @@ def test_no_run_of_the_law_that_ships_leaves_its_bound(sampled, velocities, stay
     times = np.repeat(stay * np.arange(len(velocities) + 1), 2)[1:-1]
     profile = Profile.through(times, np.radians(np.repeat(velocities, 2)))
     scenario = replace(usual.scenario, profile=profile, duration=stay * len(velocities))
-    run = simulate_sampled(designed.spec, designed.plant, designed.design, scenario)
+    given = designed.spec, designed.plant, designed.design, (scenario,)
+    (run,) = simulate_on_body(*given, "sampled")
     found = bounds(sampled, replace(usual, scenario=scenario, run=run))
     assert not found["force"].uncovered
     assert np.abs(run.response["torque"]).max() <= found["force"].level

@@ -93,14 +93,3 @@ def test_signals_that_stay_do_not_cross(seed, count):
     crosses = bool((np.array(fine) @ rows.T * sides < -1e-9).any())
     assert not (stays and crosses)
     event(f"stays: {stays}, crosses: {crosses}")
-
-
-@given(st.floats(-5.5, -1), st.integers(0, 3))
-def test_a_pair_of_crossings_in_a_later_step_is_no_stay(exponent, later):
-    d = 10.0**exponent
-    one, side = flow(np.cos(d)), np.array([-1.0])
-    begin = np.pi / 2 - (later + 1 / 3) * one.h
-    z = np.array([np.sin(begin), np.cos(begin), 1.0])
-    assert one.first_doubtful(one.chunk(z, later), side) == later
-    # On the other side from the beginning, and not for long.
-    assert one.first_doubtful(one.chunk(z, CHUNK), -side) <= CHUNK

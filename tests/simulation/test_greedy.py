@@ -1,11 +1,8 @@
 """The greedy adversary keeps to what contact and clock allow, and stays below proved bounds."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from nrs_design.proof.switching import Clock
 from nrs_design.reporting.evidence.norms import step_norms
 from nrs_design.reporting.evidence.offers import offer_of
 from nrs_design.simulation.greedy import all_modes, greedy_run, relative_norms
@@ -46,11 +43,6 @@ def test_no_run_is_above_a_proved_bound(kept):
     assert all_modes(system).contact is None
 
 
-def test_only_what_takes_turns_is_run():
-    kept = replace(bouncing_in_turns(), contact=None, clock=Clock(2, ("push 1", "push 2")))
-    assert all_modes(kept) is kept
-
-
 def test_adversary_is_at_least_as_bad_as_any_single_mode():
     norm, x = quadratic_norm(np.diag([1.0, 5.0])), np.array([1.0, 0.0])
     dayawansa_martin = modes([[-1, -1], [1, -1]], [[-1, -5], [1, -1]])
@@ -58,9 +50,3 @@ def test_adversary_is_at_least_as_bad_as_any_single_mode():
     for mode in range(2):
         single = simulate_switching(dayawansa_martin, np.array([mode]), x, 0.1)
         assert relative_norms(run, norm)[-1] >= relative_norms(single, norm)[-1]
-
-
-def test_norms_start_at_one():
-    norm = quadratic_norm(np.eye(2))
-    run = simulate_switching(modes([[-1, 1], [-1, -1]]), np.array([0]), np.array([3.0, 4.0]), 1.0)
-    assert relative_norms(run, norm) == pytest.approx([1.0, np.exp(-1)])

@@ -2,8 +2,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nrs_design.proof.mode import Time
 from nrs_design.simulation.rates import mode_rates
@@ -20,9 +18,3 @@ def test_mode_rates_of_rotations_are_their_real_parts():
 def test_mode_rates_in_discrete_time_are_singular_values():
     discrete = system([[0, 2], [0, 0]], [[0, 0], [0, 0]], time=Time.DISCRETE)
     assert mode_rates(discrete, np.eye(2)) == pytest.approx([2.0, 0.0])
-
-
-@given(st.floats(1e-6, 1e6))
-def test_mode_rates_do_not_depend_on_the_scale_of_Q(factor):
-    Q = np.array([[2.0, 0.5], [0.5, 1.0]])
-    assert mode_rates(COMMUTING, factor * Q) == pytest.approx(mode_rates(COMMUTING, Q))

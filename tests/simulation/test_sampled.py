@@ -43,36 +43,6 @@ def test_a_run_is_that_of_its_seed():
     assert (np.diff(one.t) > 0).all()
 
 
-def test_resolutions_noise_and_delay_are_felt_by_the_law():
-    """What the law computes from is what the scenario says: seen in its first lag of the force."""
-    more = SAMPLED.replace("delay: 1", "delay: 3")
-    coarse = RUN + ", errors: {force_step: 0.05 N*m, encoder_step: 0.01 deg}"
-    response = sampled(coarse, more).response
-    law = response["velocity"], response["torque"]
-    assert np.abs(law[1]).max() > 0.05
-    # v+ = a v + b f: from the law's own velocity follows the sample that it took.
-    vm = response["state velocity"].astype(np.float32)
-    a = np.float32(math.exp(-2.15 * 0.002 / 0.01))
-    b = (1 - a) / np.float32(2.15)
-    still = response.mode[:-1] == 0
-    taken = ((vm[1:] - a * vm[:-1]) / b)[still]
-    wanted = np.round(np.concatenate([np.zeros(3), response["torque"][:-4]]) / 0.05) * 0.05
-    assert taken == pytest.approx(wanted[still], abs=1e-4)
-
-
-def test_a_power_law_pushes_as_it_says():
-    power = (
-        "{model: hunt-crossley, stiffness: 43 N*m/rad, damping: 0.1 N*m*s/rad, exponent: 1.2, "
-        "about: 0.01 rad, preload: [0.005 rad, 0.02 rad]}"
-    )
-    response = sampled(environments={"soft": power}, more=SAMPLED + "contact: kept\n").response
-    depth, v = response["depth"], response["velocity"]
-    rho, lam = 43 / (1.2 * 0.01**0.2), 0.1 / 0.01**1.2
-    wanted = np.maximum((rho + lam * v) * depth**1.2, 0)
-    assert response["torque"] == pytest.approx(wanted, abs=1e-12)
-    assert wanted.max() > 0.05
-
-
 def test_an_environment_that_remembers_is_as_in_continuous_time():
     solid = (
         "{model: kelvin-boltzmann, parallel_stiffness: 60 N*m/rad, series_stiffness: 80 N*m/rad, "
@@ -161,7 +131,7 @@ def two_clocks(period, outer, delay, duration):
 
 @pytest.mark.parametrize(
     ("period", "outer", "delay"),
-    [("2 ms", "0.1 ms", 1), ("2 ms", "0.1 ms", 0), ("1 ms", "4 ms", 1)],
+    [("2 ms", "0.1 ms", 1), ("1 ms", "4 ms", 1)],
 )
 def test_two_periods(period, outer, delay):
     """Thesis 4.3: 2 ms and 0.1 ms. The peer has its own law, its own clocks and motor."""

@@ -56,18 +56,6 @@ def test_no_run_from_the_edge_leaves(dampings, lost):
     assert cut[1] >= 2 or len(dampings) == 2
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("lost", [False, True])
-def test_runs_from_far_beyond_the_region_come_to_rest(lost):
-    """From 60 N m, at the speed limit: nothing is proved of it, and it takes ten seconds."""
-    system = thesis("2.15", "1.04", lost=lost)
-    norm, start = quadratic_norm(np.diag([1e-9, 1e-3, 1e-9, 1.0])), np.array([0, 0, 0, 60 / 43])
-    run = greedy_run(system, norm, start, 1e-3, 16000)
-    assert run.state[8000, -1] > 0.2
-    assert np.abs(run.state[-2000:, :3]).max() < 1e-3
-    assert run.state[-2000:, -1].max() < 1e-3
-
-
 def test_the_known_region_is_that_of_the_runs():
     system, _ = genuine("saturated-ellipsoid, scalar")
     assert system == pushed_away()

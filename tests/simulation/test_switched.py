@@ -31,14 +31,6 @@ def test_simulation_is_the_matrix_exponential():
     assert run.time.tolist() == [0.0, 0.5, 1.0, 1.5]
 
 
-def test_commuting_modes_do_not_depend_on_the_order():
-    ends = [
-        simulate_switching(COMMUTING, np.array(order), np.array([1.0, 2.0]), 0.1).state[-1]
-        for order in ([0, 1, 0, 1], [1, 1, 0, 0])
-    ]
-    assert ends[0] == pytest.approx(ends[1])
-
-
 def test_slowest_direction_decays_at_the_smallest_rate():
     Q = np.array([[2.0, 0.5], [0.5, 1.0]])
     x = worst_direction(COMMUTING, Q)

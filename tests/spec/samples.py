@@ -92,6 +92,13 @@ def refusal(text: str) -> SpecError:
     return caught.value
 
 
+def assert_refused(text: str, said: str, at: str | None = None) -> None:
+    """Check what is said of a faulty text, and that it is said where a piece first stands."""
+    error = refusal(text)
+    assert said in f"{error.message} ({error.remedy})"
+    assert at is None or (error.line, error.column) == place_of(text, at)
+
+
 def assert_inside(error: SpecError, text: str) -> None:
     """Check that the position of an error is one of the text's."""
     assert error.line is not None

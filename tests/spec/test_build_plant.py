@@ -51,11 +51,6 @@ def test_lever_arm_applies_to_stiffness_and_damping():
     assert rotational.ranges[1] == Interval.point(F(1, 2))
 
 
-def test_unknown_environment():
-    with pytest.raises(StopIteration):
-        build_plant(load_spec(SOFT_TISSUE)).environment("other")
-
-
 def test_every_environment_of_a_spec_has_its_law():
     """Its keys are those of the ranges that the spec declares."""
     specs = {

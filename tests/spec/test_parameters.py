@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from .samples import place_of, refusal, spoiled, switched
+from .samples import assert_refused, refusal, spoiled, switched
 
 SAMPLE = """\
 kind: switched-system
@@ -82,10 +82,7 @@ def test_a_matrix_needs_the_value_of_every_parameter() -> None:
     ],
 )
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(SAMPLE, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(SAMPLE, old, new), said, at)
 
 
 def test_parameters_are_a_mapping() -> None:
@@ -103,15 +100,11 @@ def test_the_number_of_parameters_is_limited() -> None:
     )
     assert "parameters: more than" in refusal(text).message
     fewer = text.replace("  p16: {nominal: 0, range: [-1, 1]}\n", "").replace(" + p16", "")
-    error = refusal(fewer)
-    assert "65536 corners in all, at most 20000" in error.message
-    assert (error.line, error.column) == place_of(fewer, "parameters:")
+    assert_refused(fewer, "65536 corners in all, at most 20000", "parameters:")
 
 
 def test_a_dwell_time_needs_constant_matrices() -> None:
     text = spoiled(SAMPLE, "switching: arbitrary", "switching: {dwell_time: 1 s}")
-    error = refusal(text)
-    assert "the range of parameter 'k' exclude each other" in error.message
-    assert (error.line, error.column) == place_of(text, "1 s}")
+    assert_refused(text, "the range of parameter 'k' exclude each other", "1 s}")
     point = text.replace("range: [25, 90]", "range: [43, 43]").replace('["1/2", 2]', "[1, 1]")
     assert switched(point).switching.dwell_time is not None

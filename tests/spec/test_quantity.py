@@ -20,11 +20,6 @@ def test_desired_impedance_of_the_thesis() -> None:
     assert torque.si / velocity.si == pytest.approx(2.14859, rel=1e-5)
 
 
-def test_band_of_the_thesis() -> None:
-    # Thesis 6.3.1: 2 Hz is 12.57 rad/s.
-    assert parse_quantity("2 Hz", kinds.BANDWIDTH).si == pytest.approx(12.566, rel=1e-4)
-
-
 def test_keeps_what_was_written() -> None:
     quantity = parse_quantity("4.8417e-4 rad/s/rpm", kinds.ACTUATOR_GAIN)
     assert quantity.text == "4.8417e-4 rad/s/rpm"
@@ -61,18 +56,6 @@ def test_units_with_pi_are_refused_in_what_enters_a_proof(
     with pytest.raises(SpecError, match="factor of pi") as caught:
         parse_quantity(text, kind)
     assert said in str(caught.value.remedy)
-
-
-@pytest.mark.parametrize("kind", [v for v in vars(kinds).values() if isinstance(v, QuantityKind)])
-def test_what_may_hold_pi_is_an_angle_or_one_per_time(kind: QuantityKind) -> None:
-    # A deflection may be an angle; only ratios of deflections enter a proof.
-    names = {"an angle", "an angular velocity", "an angular acceleration", "a bandwidth"}
-    names.add("a deflection")
-    assert kind.rational == (kind.name not in names)
-
-
-def test_ratios_have_units_too() -> None:
-    assert parse_quantity("1/3 s", kinds.DURATION).exact == Fraction(1, 3)
 
 
 @pytest.mark.parametrize(

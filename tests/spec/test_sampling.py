@@ -7,7 +7,7 @@ import pytest
 from nrs_design.errors import SpecError
 from nrs_design.spec import InteractionDesignSpec, parse_spec
 from nrs_design.spec.describe import describe
-from tests.support import FORCE_LIMIT, ROOT, SOFT_TISSUE, typed
+from tests.support import SOFT_TISSUE
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 
@@ -126,12 +126,6 @@ def test_a_wrong_key_is_told_by_the_one_that_is_meant(word, meant):
     assert f"did you mean {meant}? keys here are period, delay, " in message
 
 
-FORCE = FORCE_LIMIT.read_text(encoding="utf-8")
-OFFSET = (ROOT / "specs/neuroboscope/force-limit-offset.nrs.yaml").read_text(encoding="utf-8")
-SAMPLED = "\nsampling: {period: 2 ms, delay: 0}\n"
-BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
-DAMPED = ("model: elastic", "model: kelvin-voigt\n    damping: 1 N*s/m")
-LOSABLE = SAMPLED + "contact: losable\n"
 OUTER = "\nsampling: {period: 2 ms, outer_period: 0.1 ms, delay: 0}\n"
 
 
@@ -140,10 +134,6 @@ def read(text, *changes):
         assert old in text
         text = text.replace(old, new)
     return parse_spec(text)
-
-
-def test_loss_of_damped_contact_is_read():
-    assert read(TEXT + LOSABLE, DAMPED)
 
 
 @pytest.mark.parametrize(
@@ -176,26 +166,3 @@ def test_a_delay_counts_samples_of_the_force():
     text = TEXT + OUTER.replace("delay: 0", "delay: [0, 3]")
     assert read(text).sampling.oldest == Fraction(3, 10_000)
     assert read(text, (", outer_period: 0.1 ms", "")).sampling.oldest == Fraction(3, 500)
-
-
-def test_without_sampling_none_of_this_is_refused():
-    assert read(OFFSET)
-    assert read(TEXT, ("model: elastic", "model: maxwell\n    damping: 20 N*s/m"))
-
-
-def test_ranges_of_gains_and_force_control_are_read():
-    assert read(TEXT + SAMPLED, (f"{BT}}}", f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}"))
-    assert read(FORCE + SAMPLED)
-    assert read(FORCE + LOSABLE)
-
-
-def test_check_says_it_as_a_user_types_it(tmp_path):
-    path = tmp_path / "offset.nrs.yaml"
-    path.write_text(OFFSET + SAMPLED, encoding="utf-8")
-    done = typed("check", path, cwd=tmp_path)
-    assert done.returncode == 2
-    assert (
-        "controllers.force.offset: the offset of 'force' beside a sampled loop: not modelled"
-        in done.stderr
-    )
-    assert "offset.nrs.yaml:42" in done.stderr

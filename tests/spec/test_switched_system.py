@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from .samples import SWITCHED, numbers, place_of, refusal, spoiled, switched
+from .samples import SWITCHED, assert_refused, numbers, refusal, spoiled, switched
 
 
 def test_reads_dayawansa_and_martin_exactly() -> None:
@@ -43,14 +43,8 @@ def test_numbers_may_name_modes() -> None:
         ("[[-1, -1], [1, -1]]", "{a: 1}", "{a: 1}", "expected a list"),
         ("[[-1, -1], [1, -1]]", "[[-1, [1]], [1, -1]]", "[1]]", "single value"),
         ("[[-1, -1], [1, -1]]", "[[-1, .nan], [1, -1]]", ".nan", "not a finite number"),
-        ("[[-1, -1], [1, -1]]", "[[-1, -.inf], [1, -1]]", "-.inf", "not a finite number"),
-        ("[[-1, -1], [1, -1]]", "[[-1, true], [1, -1]]", "true", "truth value"),
         ("[[-1, -1], [1, -1]]", "[[-1, −1], [1, -1]]", "−1", "ASCII hyphen"),
-        ("[[-1, -1], [1, -1]]", "[[-1, １], [1, -1]]", "１", "outside ASCII"),
         ("[[-1, -1], [1, -1]]", "[[-1, 1/0], [1, -1]]", "1/0", "divides by zero"),
-        ("[[-1, -1], [1, -1]]", "[[-1, 1e3000000000], [1, -1]]", "1e3", "exponent"),
-        ("[[-1, -1], [1, -1]]", "[[-1, 0x1], [1, -1]]", "0x1", "base ten"),
-        ("[[-1, -1], [1, -1]]", "[[-1, 1 1/s], [1, -1]]", "1 1/s", "not a number"),
         ("A: [[-1, -1]", "B: [[-1, -1]", "{name: a", "A` is missing"),
         ("{name: a, ", "{", "{A: ", "name` is missing"),
         ("{name: a, A: [[-1, -1], [1, -1]]}", "a", "a\n  - {name: b", "expected a mapping"),
@@ -61,10 +55,7 @@ def test_numbers_may_name_modes() -> None:
     ],
 )
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(SWITCHED, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(SWITCHED, old, new), said, at)
 
 
 @pytest.mark.parametrize("modes", ["[]", "{}", "a"])

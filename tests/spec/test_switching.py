@@ -7,9 +7,9 @@ import pytest
 from nrs_design.spec.switching import DwellTime, SwitchingSpec, parse_dwell_time
 
 from .samples import (
-    FORCE,
     IMPEDANCE,
     SWITCHED,
+    assert_refused,
     interaction,
     message_of,
     place_of,
@@ -58,12 +58,6 @@ def test_arbitrary_has_no_rules() -> None:
     assert switched(SWITCHED).switching == SwitchingSpec()
     assert str(switched(SWITCHED).switching) == "arbitrary"
     assert str(switched(SAMPLE).switching) == "dwell time 2.76 s, 2 allowed transitions"
-
-
-def test_states_of_different_sizes_are_linked_by_resets() -> None:
-    spec = switched(UNEQUAL)
-    assert spec.dimension == 2
-    assert [mode.dimension for mode in spec.modes] == [2, 1]
 
 
 def test_only_allowed_switches_need_a_reset() -> None:
@@ -117,10 +111,7 @@ def test_rules_of_controllers() -> None:
     ],
 )
 def test_refuses_with_place_and_remedy(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(SAMPLE, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(SAMPLE, old, new), said, at)
 
 
 @pytest.mark.parametrize("rules", ["{}", "slow", "Arbitrary", "[a, b]", "[]"])
@@ -139,10 +130,7 @@ def test_refuses_what_is_no_rule(rules: str) -> None:
     ],
 )
 def test_refuses_sizes_that_do_not_fit(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(UNEQUAL, old, new)
-    error = refusal(text)
-    assert said in error.message
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(UNEQUAL, old, new), said, at)
 
 
 def test_missing_reset_is_reported_at_the_transition() -> None:
@@ -181,14 +169,6 @@ def test_refuses_dwell_times(text: str, said: str) -> None:
     assert said in message_of(lambda: parse_dwell_time(text))
 
 
-def test_discrete_time_counts_steps() -> None:
-    discrete = spoiled(SWITCHED, "continuous", "discrete")
-    text = spoiled(discrete, "arbitrary", "{dwell_time: 2 s}")
-    error = refusal(text)
-    assert "'2 s' is not a dwell time in discrete time, expected steps" in error.message
-    assert (error.line, error.column) == place_of(text, "2 s}")
-
-
 @pytest.mark.parametrize(
     ("old", "new", "at", "said"),
     [
@@ -197,10 +177,7 @@ def test_discrete_time_counts_steps() -> None:
     ],
 )
 def test_refuses_rules_of_controllers(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(PAIR, old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(PAIR, old, new), said, at)
 
 
 def test_a_range_that_is_not_touched_does_not_matter() -> None:
@@ -214,12 +191,6 @@ def test_damping_moves_too() -> None:
     ranged = "{nominal: 0.5 N*m*s/rad, range: [0 N*m*s/rad, 1 N*m*s/rad]}"
     error = refusal(spoiled(text, "damping: 0.5 N*m*s/rad", f"damping: {ranged}"))
     assert "beside the range of environment 'hand'" in error.message
-
-
-def test_position_and_force_may_be_ordered() -> None:
-    rules = "{dwell_time: 1 s, transitions: [[position, force], [force, position]]}"
-    spec = interaction(spoiled(FORCE, "switching: arbitrary", f"switching: {rules}"))
-    assert spec.switching.transitions == (("position", "force"), ("force", "position"))
 
 
 DISCRETE = spoiled(SWITCHED, "continuous", "discrete")
@@ -256,10 +227,7 @@ def test_one_longest_time_for_all() -> None:
     ],
 )
 def test_refuses_times_that_cannot_be_kept(old: str, new: str, at: str, said: str) -> None:
-    text = spoiled(spoiled(DISCRETE, "arbitrary", STAYS), old, new)
-    error = refusal(text)
-    assert said in f"{error.message} ({error.remedy})"
-    assert (error.line, error.column) == place_of(text, at)
+    assert_refused(spoiled(spoiled(DISCRETE, "arbitrary", STAYS), old, new), said, at)
 
 
 def test_a_mode_alone_cannot_be_left() -> None:

@@ -12,10 +12,6 @@ from nrs_design.spec.templates import TEMPLATES
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_names() -> None:
-    assert set(TEMPLATES) == {"interaction-design", "hybrid-force", "switched-system", "robot"}
-
-
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_templates_load_and_point_to_their_schema(name: str) -> None:
     text = TEMPLATES[name]
@@ -40,12 +36,6 @@ def test_robot_template_is_the_shipped_robot() -> None:
     template = parse_spec(TEMPLATES["robot"])
     assert isinstance(template, RobotSpec)
     assert template.model_copy(update={"name": shipped.name}) == shipped
-
-
-def test_hybrid_template_has_both_modes() -> None:
-    spec = parse_spec(TEMPLATES["hybrid-force"])
-    assert isinstance(spec, InteractionDesignSpec)
-    assert {controller.type for controller in spec.controllers.values()} == {"position", "force"}
 
 
 def uncommented(name: str) -> str:

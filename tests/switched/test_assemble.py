@@ -109,17 +109,6 @@ def test_missing_gains():
         assemble_from_text(spec, {"motion": gains["motion"]}, "deflection")
 
 
-def test_motion_loop_from_the_gains_that_ship():
-    """Thesis 6.1 with Kd = 2060 and z = 56.9706: 0.9974, 56.82 over 0.0351, 1.9974, 56.82."""
-    spec, design, _ = design_of(SOFT_TISSUE)
-    loop = build_plant(spec).motion_loop(design.motion.Kp, design.motion.Kd)
-    assert loop.numerator == (
-        2060 * Fraction("4.8417e-4"),
-        Fraction("117359.4375") * Fraction("4.8417e-4"),
-    )
-    assert loop.denominator == (Fraction("0.0351"), 1 + loop.numerator[0], loop.numerator[1])
-
-
 def test_motion_loop_that_the_spec_states():
     text = SOFT_TISSUE.read_text().replace("motion_loop:\n", GIVEN_LOOP)
     spec = parse_spec(text)

@@ -93,49 +93,6 @@ def test_power_law_decays_about_any_rest_however_far_and_fast(proved):
     assert worst <= 1e-9
 
 
-@pytest.mark.slow
-def test_run_with_an_adversary(proved):
-    """Greedy switching between the controllers, as long as the deflection is in the preload."""
-    Q, rate = lyapunov(proved)
-    rng = np.random.default_rng(3)
-    step, seen = 2e-4, 0
-    for _ in range(10):
-        loop = Loop(proved, hunt_crossley(rng), rng.uniform(LOW, HIGH))
-        x = np.array([0.0, 0.0, 0.0, rng.uniform(LOW, HIGH) - loop.rest])
-        before = x @ Q @ x
-        for _ in range(1000):
-            choices = [advance(loop, x, controller, step) for controller in (0, 1)]
-            x = max(choices, key=lambda state: state @ Q @ state)
-            if not LOW <= x[3] + loop.rest <= HIGH:
-                break
-            after = x @ Q @ x
-            assert after <= before * np.exp(-2 * rate * step) * (1 + 1e-9)
-            before, seen = after, seen + 1
-    assert seen > 1000
-
-
-def advance(loop, x, controller, step):
-    """One step of the classical Runge-Kutta method."""
-    a = loop.rate(x, controller)
-    b = loop.rate(x + step / 2 * a, controller)
-    c = loop.rate(x + step / 2 * b, controller)
-    d = loop.rate(x + step * c, controller)
-    return x + step / 6 * (a + 2 * b + 2 * c + d)
-
-
-def test_outside_the_preload_nothing_is_claimed_and_nothing_holds(proved):
-    """Without the preload the tests above would fail: deep enough, V grows."""
-    Q, _ = lyapunov(proved)
-    rng = np.random.default_rng(1)
-    found = False
-    for _ in range(2000):
-        loop = Loop(proved, hunt_crossley(rng), 0.0)
-        scale = 10.0 ** rng.uniform(-4, 4, size=3)
-        x = np.array([*(rng.normal(size=3) * scale), rng.uniform(10, 100)])
-        found = found or any(x @ Q @ loop.rate(x, controller) > 0 for controller in (0, 1))
-    assert found
-
-
 def test_words_of_a_preload(proved):
     texts = " ".join(proved.certification.system.assumptions)
     assert (

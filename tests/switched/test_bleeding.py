@@ -15,6 +15,7 @@ from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, text_of
 from tests.support import ROOT
+from tests.switched.support import assembled
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
 PI += "integral_gain: 0.5 rad/(N*m*s)}"
@@ -22,12 +23,6 @@ BOTH = {"position": POSITION, "force": PI}
 IDLE = "idle_states: {decay: 20 1/s}"
 KM, TAU, KD, KP = 4.8417e-4, 0.0351, 2060.0, float(np.float32(2060 * 56.9706))
 GAIN = float(np.float32(0.02))
-
-
-def assembled(controllers, more=IDLE):
-    spec = parse_spec(text_of(controllers, more=more))
-    plant = build_plant(spec)
-    return assemble(spec, plant, design_controllers(spec, plant), "deflection")
 
 
 def matrices(system):
@@ -47,7 +42,7 @@ def to_states(system, theta, omega, reference):
 @pytest.mark.parametrize("controller", ["position", "force", "insertion", "hold"])
 def test_run_against_motor_and_firmware(controller):
     """Motor, PD, admittance and integral as they are, against the mode of the controller."""
-    system = assembled(BOTH | {"insertion": INSERTION, "hold": FORCE})
+    system = assembled(text_of(BOTH | {"insertion": INSERTION, "hold": FORCE}, more=IDLE))
     assert system.states == ("xi1", "xi2", "vm [rad/s]", "reference [rad]", "integral [rad]")
     k, Mt, Bt = 43.0, float(np.float32(0.01)), float(np.float32(2.15))
 
@@ -106,24 +101,24 @@ def stiffness_of(text):
 
 def test_the_known_answer_has_a_common_quadratic_function():
     """Kp 0.02, Ki 0.5, decay 20 1/s: position and PI force control, switched at will."""
-    found = certify(assembled(BOTH))
+    found = certify(assembled(text_of(BOTH, more=IDLE)))
     assert str(found.verdict) == "proved"
     assert str(found.common_quadratic) == "exists"
 
 
 def test_an_integral_that_is_held_is_refuted():
     """Without decay the position mode keeps it for ever."""
-    found = certify(assembled(BOTH, "idle_states: {decay: 0 1/s}"))
+    found = certify(assembled(text_of(BOTH, more="idle_states: {decay: 0 1/s}")))
     assert str(found.verdict) == "refuted"
 
 
 def test_beside_impedance_control_it_is_proved():
-    found = certify(assembled({"insertion": INSERTION, **BOTH}))
+    found = certify(assembled(text_of({"insertion": INSERTION, **BOTH}, more=IDLE)))
     assert str(found.verdict) == "proved"
 
 
 def test_alone_nothing_is_idle():
-    system = assembled({"force": PI}, "")
+    system = assembled(text_of({"force": PI}))
     assert system.states == ("xp1", "xp2", "integral [rad]")
     assert str(certify(system).verdict) == "proved"
 

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
-from scipy.linalg import expm
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.laws import (
@@ -22,7 +20,7 @@ from nrs_design.controllers.laws import (
     ProportionalForce,
 )
 from nrs_design.errors import AssemblyError
-from nrs_design.models.actuator import Actuator
+from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact import Elastic, KelvinBoltzmann, KelvinVoigt, Maxwell
 from nrs_design.models.contact.environment import Environment, touch_at_once
 from nrs_design.models.interval import Interval
@@ -34,6 +32,7 @@ from nrs_design.switched.shared_state import shared_state
 from tests.switched.support import LOOP, MOTION, objects, polynomial, positive, stable
 
 F = Fraction
+MOTOR = Actuator(F(1), F(1))
 
 
 def impedance(name, Mt, contacts=("soft",)):
@@ -45,7 +44,7 @@ def assembled(*controllers, coordinates="deflection", contact=None):
     hand = Environment(
         "hand", KelvinVoigt, (Interval(F(50), F(25), F(90)), Interval(F(1), F(0), F(2)))
     )
-    plant = Plant(Actuator(F(1), F(1)), (soft, hand))
+    plant = Plant(MOTOR, (soft, hand), ActuatorRanges.point(MOTOR))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), controllers)
     return close_loop("robot", shared_state(plant, LOOP, design, coordinates), contact=contact)
 
@@ -72,7 +71,60 @@ class Lagged(AbstractCompliantLaw):
         return None
 
 
+POSITION = Controller("p", PositionControl(), None, ())
+PUSHING = Controller("f", ProportionalForce(F("0.02")), "soft", ("soft",))
+
+
 class TestAssembly:
+    @pytest.mark.parametrize(
+        ("controller", "options", "said", "unsaid"),
+        [
+            (
+                impedance("in", 0),
+                {},
+                (
+                    "While in is active, nothing but soft is touched.",
+                    "the force may jump",
+                    "bounded, but not how far the axis moves away while contact is lost",
+                    "all modes in contact then rest at one point",
+                ),
+                ("free motion",),
+            ),
+            (
+                impedance("in", 0),
+                {"coordinates": "force"},
+                ("not physical in lasting contact", "free motion is not one of the modes"),
+                (),
+            ),
+            (
+                impedance("in", 0),
+                {"contact": "kept"},
+                (
+                    "free motion is not one of the modes",
+                    "bounded inputs keep the state bounded;",
+                    "all modes then rest at one point",
+                ),
+                (),
+            ),
+            (
+                POSITION,
+                {},
+                ("All inputs are zero", "rest at different points"),
+                ("free motion", "Contact is not lost"),
+            ),
+            (
+                PUSHING,
+                {},
+                ("Contact is not lost while force is controlled",),
+                ("free motion is not one of the modes",),
+            ),
+        ],
+    )
+    def test_what_is_taken_for_granted(self, controller, options, said, unsaid):
+        texts = " ".join(assembled(controller, **options).assumptions)
+        assert all(text in texts for text in said)
+        assert not any(text in texts for text in unsaid)
+
     def test_one_mode_for_each_corner(self):
         system = assembled(impedance("in", "0.01", ("soft", "hand")), impedance("out", "0.1"))
         corners = [f"in/hand/k-{k}/b-{b}" for k, b in product(("min", "max"), repeat=2)]
@@ -88,36 +140,6 @@ class TestAssembly:
         position = assembled(Controller("p", PositionControl(), None, ()))
         assert position.states == ("xp1", "xp2")
         assert position.modes[0].A.fractions() == [list(row) for row in MOTION.A]
-
-    def test_assumptions_name_what_they_depend_on(self):
-        deflection = " ".join(assembled(impedance("in", 0)).assumptions)
-        force = " ".join(assembled(impedance("in", 0), coordinates="force").assumptions)
-        assert "While in is active, nothing but soft is touched." in deflection
-        assert "the force may jump" in deflection
-        assert "not physical in lasting contact" in force
-        kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)
-        assert "free motion is not one of the modes" in kept
-        assert "free motion is not one of the modes" in force
-        assert "free motion" not in deflection
-        position = " ".join(assembled(Controller("p", PositionControl(), None, ())).assumptions)
-        assert "free motion" not in position
-        assert "Contact is not lost" not in position
-
-    def test_assumptions_name_inputs_and_what_follows_for_them(self):
-        for law in (impedance("in", 0), Controller("p", PositionControl(), None, ())):
-            texts = " ".join(assembled(law).assumptions)
-            assert "All inputs are zero" in texts
-            assert "rest at different points" in texts
-            assert "bounded inputs keep the state bounded" in texts
-
-    def test_a_command_in_free_motion_moves_the_axis_ever_further(self):
-        """Bounded inputs keep motion, force and penetration bounded, but not the deflection."""
-        losable = " ".join(assembled(impedance("in", 0)).assumptions)
-        assert "bounded, but not how far the axis moves away while contact is lost" in losable
-        assert "all modes in contact then rest at one point" in losable
-        kept = " ".join(assembled(impedance("in", 0), contact="kept").assumptions)
-        assert "bounded inputs keep the state bounded;" in kept
-        assert "all modes then rest at one point" in kept
 
     def test_a_spring_is_said_and_what_it_does_not_bound(self):
         law = Admittance(F("0.01"), F(2), F("0.5"))
@@ -151,12 +173,6 @@ class TestAssembly:
         with pytest.raises(AssemblyError, match="gel, which has no rest position"):
             viscoelastic("gel", law=sprung.law)
 
-    def test_loss_of_contact_is_named_for_force_control_too(self):
-        law = ProportionalForce(F("0.02"))
-        texts = " ".join(assembled(Controller("f", law, "soft", ("soft",))).assumptions)
-        assert "Contact is not lost while force is controlled" in texts
-        assert "free motion is not one of the modes" not in texts
-
     def test_mixed_inertia(self):
         with pytest.raises(AssemblyError, match="different states of their own") as caught:
             assembled(impedance("a", 0), impedance("b", 1))
@@ -169,16 +185,6 @@ class TestAssembly:
         assert assembled(lagged).states == ("xp1", "xp2", "lag [rad/s]", "delta [rad]")
         with pytest.raises(AssemblyError, match="different states of their own"):
             assembled(impedance("a", 1), lagged)
-
-    def test_kinds_of_commands_are_not_mixed_unless_idle_states_are_declared(self):
-        free = Controller("p", PositionControl(), None, ())
-        with pytest.raises(AssemblyError, match="different states of their own"):
-            assembled(impedance("a", 0), free)
-
-    def test_force_control_of_a_damped_environment(self):
-        law = ProportionalForce(F("0.02"))
-        with pytest.raises(AssemblyError, match="damping"):
-            assembled(Controller("f", law, "hand", ("hand",)))
 
 
 # Thesis table 2.4, the nose: k1, k2, b and, with a name of its own, Maxwell's k, b.
@@ -199,7 +205,7 @@ ENVIRONMENTS = {
 
 @cache
 def viscoelastic(*contacts, Mt="0.01", coordinates="deflection", law=None):
-    plant = Plant(Actuator(F(1), F(1)), tuple(ENVIRONMENTS.values()))
+    plant = Plant(MOTOR, tuple(ENVIRONMENTS.values()), ActuatorRanges.point(MOTOR))
     law = law or Admittance(F(Mt), F(2))
     controller = Controller("in", law, contacts[0], contacts)
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
@@ -229,38 +235,6 @@ class TestViscoelastic:
             found = polynomial(velocity_mode(MOTION, Admittance(Mt, Bt), law))
             assert list(free / free[0]) == found
 
-    @pytest.mark.parametrize("law", [NOSE, GEL], ids=["nose", "gel"])
-    def test_run_of_the_loop_with_the_force_as_the_thesis_writes_it(self, law):
-        """Integrate motion loop, admittance and ``F' = (eta1 delta + eta2 v - F)/eta3``."""
-        A = np.array(velocity_mode(MOTION, Admittance(F("0.01"), F(2)), law), dtype=float)
-        eta1, eta2, eta3 = law.eta if law is NOSE else (0.0, float(law.b), law.relaxation_time)
-        Ap, Cp = np.array(MOTION.A, dtype=float), np.array(MOTION.C, dtype=float)
-
-        def rate(_, x):
-            xp, vm, delta, force = x[:2], x[2], x[3], x[4]
-            v = Cp @ xp
-            dxp = Ap @ xp - np.array([0.0, 1.0]) * vm
-            dF = (eta1 * delta + eta2 * v - force) / eta3
-            return [*dxp, (force - 2.0 * vm) / 0.01, v, dF]
-
-        start = np.zeros(len(A))
-        start[:4] = [1e-3, 0.02, 0.1, 0.3]  # xp, vm, and 0.3 rad or a stretch of 0.3 rad
-        # Neither law lets the velocity through at once.
-        row, _ = law.react([F(0)] * 2, [[F(1), F(0)], [F(0), F(1)]][: len(law.states)])
-        row = row[: len(law.states)]
-        force = sum(float(c) * z for c, z in zip(row, start[3:], strict=True))
-        times = np.linspace(0, 3, 31)
-        run = solve_ivp(rate, (0, 3), [*start[:4], force], "Radau", times, rtol=1e-10, atol=1e-13)
-        ours = np.array([expm(A * t) @ start for t in times]).T
-        assert ours[:3] == pytest.approx(run.y[:3], abs=1e-8)
-        forces = sum(float(c) * z for c, z in zip(row, ours[3:], strict=True))
-        assert forces == pytest.approx(run.y[4], abs=1e-8)
-
-    def test_at_rest_the_nose_relaxes_with_its_time_constant(self):
-        """Errata 2.4: eta3 = 19.61 s; with the deflection held, the damper follows it so."""
-        rows = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), NOSE)
-        assert float(-1 / rows[-1][-1]) == pytest.approx(19.61079, rel=3e-5)
-
     def test_maxwell_has_no_deflection_among_its_states(self):
         """With it the loop had an eigenvalue zero: it creeps, and nothing drives it back."""
         rows = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), GEL)
@@ -277,23 +251,6 @@ class TestViscoelastic:
         gel = viscoelastic("gel")
         assert len(gel.modes) == 4
         assert gel.states == ("xp1", "xp2", "vm [rad/s]", "spring stretch [rad]")
-
-    @given(shares=st.tuples(*[st.fractions(0, 1, max_denominator=50)] * 3))
-    def test_anywhere_in_the_box_is_an_average_of_corners(self, shares):
-        """Affine in k1, k2 and 1/b, each for itself."""
-        k1, k2 = (i.low + t * (i.high - i.low) for i, t in zip(RANGES[:2], shares[:2], strict=True))
-        b = 1 / ((1 - shares[2]) / RANGES[2].low + shares[2] / RANGES[2].high)
-        law = KelvinBoltzmann(k1, k2, b)
-        inside = velocity_mode(MOTION, Admittance(F("0.01"), F(2)), law)
-        weights = [
-            np.prod([t if up else 1 - t for t, up in zip(shares, ups, strict=True)])
-            for ups in product((False, True), repeat=3)
-        ]
-        corners = [mode.A.fractions() for mode in viscoelastic("nose").modes]
-        average = sum(
-            w * objects(*map(list, rows)) for w, rows in zip(weights, corners, strict=True)
-        )
-        assert (average == objects(*map(list, inside))).all()
 
     def test_what_is_not_touched_creeps_back_alone(self):
         system = viscoelastic("nose", "tool", "concha")
@@ -353,7 +310,7 @@ def test_things_touched_at_once():
 def touched_at_once(other, *, losable):
     soft = Environment("soft", Elastic, (Interval(F(43), F(41), F(45)),))
     both = touch_at_once((soft, other), losable=losable)
-    plant = Plant(Actuator(F(1), F(1)), (soft, other, both))
+    plant = Plant(MOTOR, (soft, other, both), ActuatorRanges.point(MOTOR))
     controller = Controller("a", Admittance(F(1), F(2)), "soft", (both.name,))
     design = ControllerDesign(ProportionalDerivative(F(1), F(1)), (controller,))
     return close_loop("robot", shared_state(plant, LOOP, design, "deflection"))

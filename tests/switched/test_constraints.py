@@ -84,12 +84,6 @@ def test_transitions():
     assert [(edge.source.name, edge.target.name) for edge in system.edges()] == [("b", "a")]
 
 
-def test_no_transitions_at_all():
-    system = given(TWO, "{transitions: []}")
-    assert system.edges() == []
-    assert system.assumptions[-1] == "The mode never changes."
-
-
 def test_corners_of_one_mode_follow_each_other_freely():
     system = given(BOX, "{transitions: [[a, b]]}")
     assert set(system.switching.transitions) == {
@@ -212,15 +206,6 @@ def test_controllers_with_a_dwell_time():
         "Every controller stays active for at least 0.5 s before the next switch.",
         "Any controller may follow any other.",
     } <= set(system.assumptions)
-
-
-def test_controllers_in_any_order():
-    system = pair("arbitrary", RANGE, "[soft, hand]")
-    assert system.switching.is_arbitrary
-    assert (
-        "States are continuous at a switch (identity resets); any switching signal is possible."
-        in system.assumptions
-    )
 
 
 def test_times_by_mode():

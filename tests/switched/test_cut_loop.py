@@ -153,7 +153,7 @@ def test_margins_and_limit_against_python_control_and_eigenvalues(tmp_path, feat
     assert loops.gain_margin()[0] <= gain * (1 + 1e-6) if gain > 1 else True
 
 
-@pytest.mark.parametrize("late", ["sampled", "sampled damping", "sampled filter"])
+@pytest.mark.parametrize("late", thinned(["sampled", "sampled damping", "sampled filter"], 1))
 def test_a_force_that_is_older_by_the_delay_margin_is_stable_and_by_more_is_not(tmp_path, late):
     _, designed, axis = one(tmp_path, late, 3)
     assert isinstance(axis, ProcessorAxis)

@@ -1,28 +1,22 @@
 """Ranges of virtual inertia and damping, from the spec to the modes and their proof."""
 
-from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nrs_design.controllers.gains import gains_of
-from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.laws import Admittance, ProportionalForce
+from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError
-from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
-from nrs_design.models.motion_loop import realize
 from nrs_design.pipeline import run_design
 from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
-from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import DECLARED, assemble_from_text
-from nrs_design.switched.gain_box import GainBox
-from nrs_design.switched.modes import to_force_coordinates, velocity_mode
+from nrs_design.switched.gain_box import GainBox, RangedLaw
+from nrs_design.switched.sampled_frame import Frame
 from tests.proof.graphs import shape_of
-from tests.proof.truth import combine, decrease, is_definite
 from tests.support import ROOT
 
 F = Fraction
@@ -43,7 +37,6 @@ JELLY = "{nominal: 0.1 N*m*s/rad, range: [0 N*m*s/rad, 0.2 N*m*s/rad]}"
 MASS = "{nominal: 0.0125 kg*m^2, range: [0.01 kg*m^2, 0.02 kg*m^2]}"
 BT = "{nominal: 2 N*m*s/rad, range: [1.75 N*m*s/rad, 2.5 N*m*s/rad]}"
 FIXED = {"STIFF": "43.0356 N*m/rad", "DAMP": "0 N*m*s/rad", "MASS": "0.01 kg*m^2"}
-shares = st.fractions(0, 1, max_denominator=12)
 
 
 def loaded(**fields):
@@ -91,69 +84,6 @@ class TestCorners:
         system = assembled(loaded(STIFF=TISSUE, DAMP=JELLY, MASS=MASS, BT=BT))
         ends = product(*([f"{symbol}-min", f"{symbol}-max"] for symbol in ("k", "b", "Mt", "Bt")))
         assert [m.name for m in system.modes] == [f"insertion/soft/{'/'.join(e)}" for e in ends]
-
-    @given(
-        st.lists(shares, min_size=4, max_size=4),
-        st.sampled_from(["deflection", "force"]),
-        st.booleans(),
-    )
-    def test_every_loop_of_the_box_is_an_average_of_corners(self, at, coordinates, massless):
-        """Recomputed from the loop itself: shares along k, b, 1/Mt and Bt (massless: 1/Bt)."""
-        (k, b), d = (between(s, *ends) for s, ends in zip(at, BOX[:2], strict=False)), BOX[3]
-        if massless:
-            law, at = Admittance(F(0), inverse_between(at[3], *d)), [*at[:2], at[3]]
-        else:
-            law = Admittance(inverse_between(at[2], *BOX[2]), between(at[3], *d))
-        rows = loop_rows(massless, law, KelvinVoigt(k, b), coordinates)
-        weights = [F(1)]
-        for share in at:
-            weights = [w * part for w in weights for part in (1 - share, share)]
-        corners = [mode.A.fractions() for mode in SYSTEMS[massless, coordinates].modes]
-        mean = combine(*zip(weights, corners, strict=True))
-        assert mean == rows
-
-    def test_a_proof_for_the_corners_holds_inside(self):
-        system = replace(SYSTEMS[False, "deflection"], contact=None)
-        evidence = certify(system, limits=Limits(optimize_rate=False)).evidence
-        assert shape_of(evidence) == "common-quadratic"
-        for at in product((F(0), F(1, 3), F(1, 2), F(1)), repeat=4):
-            k, b, m, d = (between(s, *ends) for s, ends in zip(at, BOX, strict=True))
-            rows = loop_rows(False, Admittance(m, d), KelvinVoigt(k, b), "deflection")
-            assert is_definite(decrease(rows, evidence.nodes[0].form, evidence.rate, system.time))
-
-
-def between(share, low, high):
-    return (1 - share) * low + share * high
-
-
-def inverse_between(share, low, high):
-    return 1 / between(share, 1 / low, 1 / high)
-
-
-# Ends that are single-precision numbers, so that the box is as written: k, b, Mt, Bt.
-BOX = [(F(41), F(45)), (F(0), F("0.2")), (F(1, 128), F(1, 32)), (F("1.75"), F("2.5"))]
-EXACT_MASS = "{nominal: 0.015625 kg*m^2, range: [0.0078125 kg*m^2, 0.03125 kg*m^2]}"
-CASES = {
-    massless: loaded(STIFF=TISSUE, DAMP=JELLY, MASS="0 kg*m^2" if massless else EXACT_MASS, BT=BT)
-    for massless in (False, True)
-}
-SYSTEMS = {
-    (massless, coordinates): assembled(spec, coordinates)
-    for massless, spec in CASES.items()
-    for coordinates in ("deflection", "force")
-}
-MOTIONS = {
-    massless: realize(build_plant(spec.spec).motion_loop(motion.Kp, motion.Kd))
-    for massless, spec in CASES.items()
-    for motion in (run_design(spec).design.motion,)
-}
-
-
-def loop_rows(massless, law, contact, coordinates):
-    rows = velocity_mode(MOTIONS[massless], law, contact)
-    if coordinates == "force":
-        return to_force_coordinates(rows, MOTIONS[massless], contact)
-    return rows
 
 
 class TestStatements:
@@ -220,3 +150,59 @@ def test_shipped_example_needs_a_polynomial():
     assert len(system.modes) == 16
     found = certify(system, limits=Limits(max_degree=4, optimize_rate=False))
     assert (found.verdict, str(found.common_quadratic)) == (Verdict.PROVED, "impossible")
+
+
+PERIOD = Fraction(1, 500)
+
+
+def ranged_law(Mt, Bt, Kt=(0, 0)):
+    ranges = [Interval(*map(Fraction, (low, low, high))) for low, high in (Mt, Bt, Kt)]
+    law = Admittance(*(interval.nominal for interval in ranges))
+    names = ("Mt", "Bt", "Kt") if law.Kt else ("Mt", "Bt")
+    box = GainBox(law, dict(zip(names, ranges, strict=False)))
+    return RangedLaw.of(law.discretize(PERIOD, "exact"), box, PERIOD, "exact")
+
+
+def test_a_point_is_the_law_that_ships():
+    gains = ranged_law(("0.01", "0.01"), (2, 2))
+    assert not gains.box.ranges
+    assert gains.at({"k": Fraction(3)}) is gains.law
+    force = ProportionalForce(Fraction(1, 50)).discretize(PERIOD, "exact")
+    assert (
+        RangedLaw.of(force, GainBox.point(Admittance(*[Fraction(1)] * 2)), PERIOD, "").law is force
+    )
+
+
+def test_the_law_at_a_corner():
+    gains = ranged_law(("0.01", "0.01"), (1, 2), ("0.5", 1))
+    assert set(gains.box.ranges) == {"a", "c", "Kt"}
+    law = gains.at({"a": Fraction(1, 2), "c": Fraction(3, 4), "Kt": Fraction(1), "k": Fraction(9)})
+    T = gains.law.numbers["T"]
+    assert law.numbers == {"a": Fraction(1, 2), "b": Fraction(3, 8), "T": T, "Kt": 1}
+
+
+def test_without_inertia_b_is_in_a_range_itself():
+    gains = ranged_law((0, 0), (1, 2))
+    assert gains.at({"c": Fraction(3, 4)}).numbers["b"] == Fraction(3, 4)
+    assert "b of x stays in [0.5, 1]" in " ".join(gains.texts("x"))
+
+
+def test_corners_hold_what_lies_between_them():
+    """The rows of a frame are affine in a, c and Kt: the box checks that exactly, and yields 8."""
+    step = StepFrame(Fraction(10**5), Fraction(10**6))
+    for springs in (("0.5", 1), (0, 0)):
+        gains = ranged_law(("0.01", "0.02"), (1, 2), springs)
+        frame = Frame(PERIOD, step, (gains.law,), 1, Fraction(1, 20))
+        motor = {"Km": Fraction(1, 2000), "E": Fraction(9, 10), "k": Fraction(43)}
+
+        def rows_at(values, frame=frame, motor=motor, gains=gains):
+            return frame.rows(gains.at(values), 0, {**motor, **values})
+
+        assert len(list(gains.box.corners(rows_at, "x"))) == (
+            8 if gains.law.numbers.get("Kt") else 4
+        )
+
+
+def test_a_box_in_which_single_precision_loses_a_coefficient_is_no_loop():
+    with pytest.raises(AssemblyError, match="loses a coefficient"):
+        ranged_law((1, 10**7), (1, 1))

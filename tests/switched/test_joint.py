@@ -5,18 +5,14 @@ The verdicts and rates were found by an independent program.
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.search.certify import Limits, certify
 from nrs_design.search.method import Method
 from tests.proof.graphs import shape_of
-from tests.proof.truth import combine
 from tests.search.support import thesis_robot
 
 SOFT, BOTH, INSERTION = ("41.5", "44.2"), ("2.15", "1.04"), ("2.15",)
@@ -96,31 +92,3 @@ def _trace(A, power):
         M = [[sum(a * b for a, b in zip(row, c, strict=True)) for c in zip(*A, strict=True)]
              for row in M]  # fmt: skip
     return sum(M[i][i] for i in range(len(M)))
-
-
-@cache
-def corners_of_the_motor():
-    system = thesis_robot(SOFT, INSERTION, "0.01", "0.1", contact="kept")
-    return {m.name.split("/", 3)[3]: m.A.fractions() for m in system.modes if "k-min" in m.name}
-
-
-@given(*[st.fractions(0, 1, max_denominator=20)] * 2)
-def test_every_motor_of_the_ranges_is_an_average_of_corners(gain, share):
-    """Affine in Km, and in one over tau: weights are products."""
-    corners = corners_of_the_motor()
-    low, high = (Fraction("0.0351") * (1 + Fraction(s, 10)) for s in (-1, 1))
-    tau = 1 / ((1 - share) / low + share / high)
-    Km = Fraction("4.8417e-4") * (Fraction(9, 10) + gain / 5)
-    mean = combine(
-        *(
-            (a * b, corners[f"Km-{end}/tau-{other}"])
-            for end, a in (("min", 1 - gain), ("max", gain))
-            for other, b in (("min", 1 - share), ("max", share))
-        )
-    )
-    reference = corners["Km-min/tau-min"]
-    Kd = -reference[0][1]
-    drive = (reference[1][0] * low / (Fraction("4.8417e-4") * Fraction(9, 10))) * Km / tau
-    assert mean[1][0] == drive
-    assert mean[0] == reference[0]
-    assert Kd == 1

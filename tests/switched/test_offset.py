@@ -17,8 +17,7 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
-from nrs_design.switched.modes import position_mode, with_last
-from nrs_design.switched.offset import lead
+from nrs_design.switched.modes import lead, position_mode, with_last
 from tests.support import FORCE_LIMIT, ROBOT
 from tests.switched.support import LOOP, MOTION, polynomial
 

@@ -83,13 +83,6 @@ def test_a_constant_parameter_of_one_value_makes_none():
     assert system.switching.is_arbitrary
 
 
-def test_a_constant_parameter_is_not_arbitrary_switching():
-    spec = box_system({"m": "{nominal: 1, range: [0, 2], varies: false}"}, {"a": "[[m]]"})
-    switching = assemble_from_text(spec, {}, None).switching
-    assert not switching.is_arbitrary
-    assert switching.transitions is None
-
-
 @pytest.mark.slow
 @given(
     st.lists(st.sampled_from(ENTRIES), min_size=4, max_size=4),

@@ -3,16 +3,12 @@
 import numpy as np
 import pytest
 
-from nrs_design.certificates.verify import verify
 from nrs_design.controllers.laws import IntegralForce, PositionControl
-from nrs_design.design.design import design_controllers
 from nrs_design.errors import SpecError
-from nrs_design.spec import parse_spec, read_spec
-from nrs_design.spec.build_plant import build_plant
-from nrs_design.switched.assemble import assemble
+from nrs_design.spec import parse_spec
 from nrs_design.switched.sampled_law import list_law
 from tests.simulation.interactions import FORCE, INSERTION, POSITION, simulated, text_of
-from tests.support import ROOT
+from tests.switched.support import assembled
 
 PI = "{type: pi-force, environment: soft, proportional_gain: 0.02 rad/(N*m), "
 PI += "integral_gain: 0.5 rad/(N*m*s)}"
@@ -22,16 +18,10 @@ KM, TAU, T, K = 4.8417e-4, 0.0351, 2e-3, 43.0
 single = np.float32
 
 
-def assembled(controllers, more=SAMPLED):
-    spec = parse_spec(text_of(controllers, more=more))
-    plant = build_plant(spec)
-    return assemble(spec, plant, design_controllers(spec, plant), "deflection")
-
-
 @pytest.mark.parametrize("controller", ["position", "force", "insertion", "hold"])
 def test_a_period_is_that_of_processor_and_motor(controller):
     """The law as its lines in `controllers.step_law` have it, in doubles, and the motor exactly."""
-    system = assembled(BOTH | {"insertion": INSERTION, "hold": FORCE})
+    system = assembled(text_of(BOTH | {"insertion": INSERTION, "hold": FORCE}, more=SAMPLED))
     names = [state.split(" [")[0] for state in system.states]
     assert names == ["reference", "omega", "e before", "vm", "integral", "F 1 before", "delta"]
     Kp, D = float(single(2060 * 56.9706)), float(single(2060 / T))
@@ -76,13 +66,6 @@ def test_how_often_each_term_is_rounded():
     assert counts["position"]["error"] == {"e": 1}
 
 
-def test_the_shipped_certificate_holds():
-    loaded = read_spec(ROOT / "specs/neuroboscope/force-limit-pi-sampled.nrs.yaml")
-    certificate = ROOT / "reports/force-limit-pi-sampled.cert.json"
-    found = verify(certificate, loaded)
-    assert found.certificate.verdict == "proved"
-
-
 def test_loss_of_contact_is_refused():
     with pytest.raises(SpecError, match="whose integral bleeds, and a sampled loop: not modelled"):
         parse_spec(text_of(BOTH, more=SAMPLED.replace("kept", "losable")))
@@ -99,12 +82,3 @@ def test_the_run_in_single_precision_leaves_no_error():
     )
     run = simulated(text, engine="sampled")
     assert run.response["torque"][-1] == pytest.approx(0.3, abs=2e-6)
-
-
-def test_a_sample_that_adds_nothing_stalls_the_integral():
-    """Half of the last place of w, over Ki T, is the error that single precision leaves."""
-    w, Ki_T = single(0.04), single(0.001)
-    smallest = float(np.spacing(w)) / 2 / float(Ki_T)
-    assert smallest < 2e-6
-    assert w + Ki_T * single(0.9 * smallest) == w
-    assert w + Ki_T * single(1.1 * smallest) > w

@@ -105,15 +105,6 @@ def test_a_loop_that_is_stable_with_every_motor_is_not_refuted(tmp_path):
     assert certify(system, limits=Limits(optimize_rate=False)).verdict is Verdict.PROVED
 
 
-def test_without_inertia_there_is_no_velocity(tmp_path):
-    system = system_of(
-        tmp_path,
-        "{period: 2 ms, delay: 0}",
-        ("min: 0.01 kg*m^2, max: 1 kg*m^2", "min: 0 kg*m^2, max: 0 kg*m^2"),
-    )
-    assert system.order == 4
-
-
 def test_with_a_spring_free_motion_is_a_mode_like_others(tmp_path):
     sprung = (BT, "Kt: 0.5 N*m/rad\n    " + BT)
     system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: losable", sprung)
@@ -136,16 +127,46 @@ def test_force_coordinates_are_refused(tmp_path):
         assemble(designed.spec, designed.plant, designed.design, "force")
 
 
-def test_contact_is_kept_where_the_spec_says_so(tmp_path):
-    system = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: kept")
-    assert system.contact is None
-    assert "Contact is not lost" in " ".join(system.assumptions)
-
-
 DAMPED = (
     "model: elastic",
     "model: kelvin-voigt\n    damping: {nominal: 1 N*s/m, range: [0 N*s/m, 3 N*s/m]}",
 )
+
+
+ONCE = (
+    ("environment: soft\n", "environment: soft\n    contacts: [[soft, other]]\n"),
+    (
+        "environments:\n",
+        "environments:\n  other:\n    model: kelvin-voigt\n    damping: 1 N*s/m\n"
+        "    stiffness: 100 N/m\n    lever_arm: 0.24 m\n",
+    ),
+)
+DOUBTFUL = (
+    (
+        "time_constant: 0.0351 s",
+        'time_constant: 0.0351 s\n  doubts: ["dead time"]\n  accept_doubt: it is short',
+    ),
+    ("    model: elastic", "    model: elastic\n    linearized_about: 2 mm"),
+)
+
+
+@pytest.mark.parametrize(
+    ("contact", "changes", "kept", "said"),
+    [
+        ("", (), False, "all modes in contact then rest at one point"),
+        ("\ncontact: kept", (), True, "Contact is not lost"),
+        ("\ncontact: kept", (), True, "all modes then rest at one point"),
+        ("", (DAMPED, *ONCE), True, "touched at once with others"),
+        ("", DOUBTFUL, False, "actuator is in doubt: dead time; accepted because: it is short"),
+        ("", DOUBTFUL, False, "soft is the linearization about 2 mm"),
+    ],
+)
+def test_whether_contact_is_lost_and_what_is_taken_for_granted(
+    tmp_path, contact, changes, kept, said
+):
+    system = system_of(tmp_path, f"{{period: 2 ms, delay: 0}}{contact}", *changes)
+    assert (system.contact is None) == kept
+    assert said in " ".join(system.assumptions)
 
 
 DAMPED_TOOL = "  tool: {model: kelvin-voigt, stiffness: 5 N*m/rad, damping: 0.3 N*m*s/rad}\n"
@@ -285,34 +306,6 @@ def test_damped_contact_that_is_lost_is_proved(tmp_path, nominal, ends, delay, l
     assert result.verdict is Verdict.PROVED
     assert result.evidence.covers_rounding
     assert (1 - result.evidence.rate) / system.sample_time > Fraction(least)
-
-
-def test_two_damped_things_at_once_are_kept(tmp_path):
-    both = ("environment: soft\n", "environment: soft\n    contacts: [[soft, other]]\n")
-    other = "environments:\n  other:\n    model: kelvin-voigt\n    damping: 1 N*s/m\n"
-    other += "    stiffness: 100 N/m\n    lever_arm: 0.24 m\n"
-    changes = DAMPED, ("environments:\n", other), both
-    system = system_of(tmp_path, "{period: 2 ms, delay: 0}", *changes)
-    assert system.contact is None
-    assert "touched at once with others" in " ".join(system.assumptions)
-
-
-def test_where_free_motion_rests_is_not_said(tmp_path):
-    losable = system_of(tmp_path, "{period: 2 ms, delay: 0}")
-    assert "all modes in contact then rest at one point" in " ".join(losable.assumptions)
-    kept = system_of(tmp_path, "{period: 2 ms, delay: 0}\ncontact: kept")
-    assert "all modes then rest at one point" in " ".join(kept.assumptions)
-
-
-def test_doubts_about_identified_values_are_said(tmp_path):
-    doubtful = (
-        "time_constant: 0.0351 s",
-        'time_constant: 0.0351 s\n  doubts: ["dead time"]\n  accept_doubt: it is short',
-    )
-    about = ("    model: elastic", "    model: elastic\n    linearized_about: 2 mm")
-    texts = system_of(tmp_path, "{period: 2 ms, delay: 0}", doubtful, about).assumptions
-    assert any("actuator is in doubt: dead time; accepted because: it is short" in t for t in texts)
-    assert any("soft is the linearization about 2 mm" in text for text in texts)
 
 
 FORCE = FORCE_LIMIT.read_text(encoding="utf-8")

@@ -4,26 +4,22 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
-from scipy.linalg import expm
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.errors import AssemblyError
 from nrs_design.models.actuator import Actuator
-from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.motion_loop import close_motion_loop, realize
 from nrs_design.pipeline import run_design
-from nrs_design.proof.exact import characteristic_polynomial
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.spec import parse_spec, read_spec
 from nrs_design.spec.build_plant import build_plant
 from nrs_design.switched.assemble import assemble
 from nrs_design.switched.modes import position_mode, velocity_mode
 from tests.support import ROOT
+from tests.switched.support import polynomial
 
 F = Fraction
 MIXED = ROOT / "docs" / "examples" / "mixed-controllers.nrs.yaml"
@@ -31,11 +27,6 @@ MIXED = ROOT / "docs" / "examples" / "mixed-controllers.nrs.yaml"
 GAIN, TAU, KD, KP = F("4.8417e-4"), F("0.0351"), F(2060), F("117359.43")
 MOTION = realize(close_motion_loop(Actuator(GAIN, TAU), KP, KD))
 positive = st.fractions("1/100", 100, max_denominator=100)
-
-
-def polynomial(rows):
-    A = RationalMatrix.from_rows(rows)
-    return [F(c, A.denominator**k) for k, c in enumerate(characteristic_polynomial(A.numerators))]
 
 
 def mixed(**changes):
@@ -54,57 +45,6 @@ def test_impedance_mode_has_the_poles_that_it_has_alone(k, b, Mt, Bt, massless):
     law, contact = Admittance(F(0) if massless else Mt, Bt), KelvinVoigt(k, b)
     shared = position_mode(MOTION, law, contact)
     assert polynomial(shared) == polynomial(velocity_mode(MOTION, law, contact))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("massless", [False, True])
-def test_run_against_actuator_and_firmware(massless):
-    """Motor, PD on both errors, admittance and integrated reference, as they are."""
-    k, b, Bt, Mt = 43.0, 0.4, 2.0, 0.0 if massless else 0.01
-    gain, tau, Kd, Kp = map(float, (GAIN, TAU, KD, KP))
-    law = Admittance(F(Mt).limit_denominator(1000), F(2))
-    A = np.array(position_mode(MOTION, law, KelvinVoigt(F(43), F("0.4"))), float)
-
-    def rate(_, x):
-        theta, omega, vm, r = x
-        force = k * theta + b * omega
-        if massless:
-            vm = force / Bt
-        dr = -vm
-        command = Kp * (r - theta) + Kd * (dr - omega)
-        dvm = 0.0 if massless else (force - Bt * vm) / Mt
-        return [omega, (gain * command - omega) / tau, dvm, dr]
-
-    start = np.array([1e-4, 2e-3, 0.05, 0.02])
-    if massless:
-        start = np.delete(start, 2)
-    C, Ap = np.array(MOTION.C, float), np.array(MOTION.A, float)
-
-    def position_and_velocity(x):
-        return C @ x[:2], C @ (Ap @ x[:2] + np.array([0.0, x[-1]]))
-
-    vm = 0.0 if massless else start[2]
-    begin = [*position_and_velocity(start), vm, start[-1]]
-    times = np.linspace(0, 0.5, 11)
-    run = solve_ivp(rate, (0, 0.5), begin, "Radau", times, rtol=1e-10, atol=1e-13)
-    ours = np.array([position_and_velocity(expm(A * t) @ start) for t in times]).T
-    assert ours == pytest.approx(run.y[:2], abs=1e-7)
-
-
-@given(shares=st.tuples(*[st.fractions(0, 1, max_denominator=20)] * 2))
-def test_affine_in_stiffness_and_damping(shares):
-    law = Admittance(F("0.01"), F(2))
-
-    def at(k, b):
-        rows = position_mode(MOTION, law, KelvinVoigt(k, b))
-        return np.array(rows, dtype=object)
-
-    s, t = shares
-    corners = [
-        (s if high else 1 - s) * (t if damped else 1 - t) * at(F(20 + 40 * high), F(damped))
-        for high, damped in product((False, True), repeat=2)
-    ]
-    assert (sum(corners) == at(20 + 40 * s, t)).all()
 
 
 def test_the_example_has_one_state_for_all():
@@ -189,14 +129,6 @@ def test_force_coordinates_are_refused():
     spec = read_spec(MIXED)
     with pytest.raises(AssemblyError, match="force coordinates do not apply"):
         assemble(spec.spec, build_plant(spec.spec), run_design(spec).design, "force")
-
-
-def test_stiff_contact_in_impedance_mode_is_that_of_the_thesis():
-    """Thesis 6.3.1: Mt = 0.01, Bt = 1.04 is stable up to 75.9 N m/rad."""
-    law = Admittance(F("0.01"), F("1.04"))
-    for k, stable in ((F(75), True), (F(77), False)):
-        rows = position_mode(MOTION, law, Elastic(k))
-        assert (np.linalg.eigvals(np.array(rows, float)).real.max() < 0) == stable
 
 
 def test_a_spring_acts_on_the_reference_that_others_leave_idle(tmp_path):

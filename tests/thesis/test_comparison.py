@@ -9,7 +9,6 @@ from nrs_design.thesis.comparison import (
     Recomputed,
     Tolerance,
     compare_topic,
-    drifted,
     format_number,
     judge,
     meets_standard,
@@ -43,11 +42,6 @@ def test_tolerance_holds_entry_by_entry():
     assert confirm(("1", "1000"), (1.0005, 1000.5), Tolerance(1e-3)).verdict == "reproduced"
 
 
-def test_tolerance_is_about_the_right_value_where_one_is_given():
-    assert confirm("2.15", 2.1514, Tolerance(absolute=1e-4), right="2.1514").verdict == "reproduced"
-    assert confirm("2.15", 2.15, Tolerance(absolute=1e-4), right="2.1514").verdict == "drift"
-
-
 def test_words_in_print_have_no_deviation():
     found = confirm("Hurwitz", (-1.0, -2.0), Tolerance(1e-3), right=("-1", "-2"))
     assert (found.verdict, found.deviation, found.printed) == ("reproduced", None, "Hurwitz")
@@ -58,10 +52,6 @@ def test_misprint_needs_the_right_value():
     assert found.verdict == "printed differently"
     assert found.deviation == pytest.approx(0.0301 / 3.7754, rel=1e-2)
     assert correct("3.7754", 3.7554, Tolerance(1e-4), "3.7454").verdict == "drift"
-
-
-def test_misprint_is_a_drift_if_the_print_is_right_after_all():
-    assert correct("3.7454", 3.7454, Tolerance(1e-4), "3.7454").verdict == "drift"
 
 
 @pytest.mark.parametrize("verdict", ["printed differently", "derived", "reproduced"])
@@ -103,11 +93,6 @@ def test_what_cannot_be_recomputed_says_why():
     assert found.verdict == "not reproducible"
     assert (found.value, found.deviation, found.drift) == (None, None, None)
     assert found.note == "Not reproducible, because there is no record."
-
-
-def test_drifted_picks_the_drifts():
-    good, bad = (confirm("1", value, Tolerance(1e-3)) for value in (1.0, 2.0))
-    assert drifted((good, bad, good)) == (bad,)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

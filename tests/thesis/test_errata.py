@@ -6,7 +6,7 @@ from nrs_design.thesis import formulas, modes, switching
 from nrs_design.thesis.comparison import PrintVerdict
 from nrs_design.thesis.errata import errata
 from nrs_design.thesis.formulas import CHECKS
-from nrs_design.thesis.table import printed_errors
+from nrs_design.thesis.table import printed_errors, topic_rows
 
 
 def test_every_erratum_has_a_row_and_every_row_a_known_erratum(rows):
@@ -19,29 +19,9 @@ def test_what_is_printed_differently_names_its_error(rows):
     assert [row.name for row in wrong if not row.errata] == []
 
 
-def test_ids_are_distinct():
-    names = [one.id for one in errata()]
-    assert len(set(names)) == len(names)
-
-
-# Equations whose error is in a formula, not in a number.
-FORMULAS = (
-    "2.17", "3.18", "3.26", "4.1", "4.16", "4.18", "4.24", "4.25", "4.32", "4.36", "5.18", "5.19",
-    "5.24", "6.21",
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("equation", FORMULAS)
-def test_errata_without_a_number_have_one_row(equation):
-    found = [row for row in formulas.rows() if equation in row.section.split(", ")]
-    assert len(found) == 1
-    assert found[0].verdict == "printed differently"
-    assert found[0].printed != found[0].value
-
-
 def test_one_error_counts_once_with_its_rows():
     """The sign of +1618.80 is in six rows."""
-    found = printed_errors((*modes.rows(), *switching.rows()))
+    found = printed_errors((*topic_rows(modes), *topic_rows(switching)))
     counts = {error.id: len(touched) for error, touched in found}
     assert counts["A(2,1)"] == 6
     assert len(found) == len(counts) == 5
@@ -50,7 +30,7 @@ def test_one_error_counts_once_with_its_rows():
 @pytest.mark.parametrize("name", CHECKS)
 def test_a_formula_that_no_longer_holds_is_a_drift(name, monkeypatch):
     monkeypatch.setattr(formulas, "CHECKS", {**CHECKS, name: lambda: False})
-    drifts = [row for row in formulas.rows() if row.verdict is PrintVerdict.DRIFT]
+    drifts = [row for row in topic_rows(formulas) if row.verdict is PrintVerdict.DRIFT]
     assert len(drifts) == 1
     assert name in drifts[0].section
 

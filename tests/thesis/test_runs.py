@@ -8,6 +8,7 @@ import pytest
 from nrs_design.thesis import hand_runs, runs, thesis
 from nrs_design.thesis.comparison import PrintVerdict
 from nrs_design.thesis.hands_on import ADMITTANCES
+from nrs_design.thesis.table import topic_rows
 
 
 @pytest.mark.parametrize(("Mt", "Bt"), ADMITTANCES)
@@ -34,7 +35,7 @@ def test_a_constant_torque_by_hand():
 
 
 def test_no_row_has_drifted_and_none_is_called_reproduced():
-    for row in (*runs.rows(), *hand_runs.rows()):
+    for row in (*topic_rows(runs), *topic_rows(hand_runs)):
         assert row.verdict is PrintVerdict.DERIVED, row
 
 
@@ -44,5 +45,5 @@ def test_the_spec_of_the_runs_is_the_robot_of_the_thesis():
 
     approach = Approach("reference", math.radians(5), 0.3)
     peak = peak_force(thesis.EXACT_LOOP, float(thesis.SOFT), 0.02, approach)
-    row = next(row for row in runs.rows() if "reference at the switch" in row.name)
+    row = next(row for row in topic_rows(runs) if "reference at the switch" in row.name)
     assert float(row.value.split(", ")[0]) == pytest.approx(peak, rel=1e-4)

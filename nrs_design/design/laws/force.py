@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
@@ -21,6 +22,7 @@ from nrs_design.design.laws.law import (
 from nrs_design.design.measures import FORCE_MEASURES
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.spec import ForceControllerSpec
+from nrs_design.spec.controllers import IntegralControllerSpec
 
 
 @dataclass(frozen=True)
@@ -53,13 +55,18 @@ class ForceAnalysis(AbstractControllerAnalysis):
     forward: TransferFunction
 
 
-def choose(task: Task, given: ForceControllerSpec) -> Choice:
-    """Return the gain that the spec gives, or the one with the damping ratio that it wants."""
+def proportional_gain(task: Task, given: ForceControllerSpec | IntegralControllerSpec) -> Fraction:
+    """Return the Kp that the spec gives, or the one with the damping ratio that it wants."""
     if given.proportional_gain is not None:
-        return ProportionalForce(to_float32(given.proportional_gain.exact)), None
-    stiffness = task.plant.environment(given.environment).nominal.stiffness
+        return to_float32(given.proportional_gain.exact)
+    stiffness = task.stiffness(given)
     gain = design_force_gain(task.motion, stiffness, float(given.damping_ratio or 0))
-    return ProportionalForce(to_float32(round_significant(gain, task.digits))), None
+    return to_float32(round_significant(gain, task.digits))
+
+
+def choose(task: Task, given: ForceControllerSpec) -> Choice:
+    """Return the law with that gain."""
+    return ProportionalForce(proportional_gain(task, given)), None
 
 
 def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> ForceAnalysis:
@@ -76,7 +83,7 @@ def analyze(task: Task, given: ForceControllerSpec, controller: Controller) -> F
         If the nominal loop is unstable.
     """
     goals = goals_of(task.spec, given, FORCE_MEASURES)
-    stiffness = task.plant.environment(given.environment).nominal.stiffness
+    stiffness = task.stiffness(given)
     gain = float(controller.law.gains["Kp"])
     limits = task.spec.limits
     approach = Approach(given.offset, limits.velocity.si, limits.torque.si)

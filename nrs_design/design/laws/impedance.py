@@ -240,7 +240,7 @@ def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) ->
     if not isinstance(task.axis, ContinuousAxis):
         return None
     motor = task.plant.actuator_ranges
-    ranges = {} if motor is None else {"Km": motor.gain, "tau": motor.time_constant}
+    ranges = {"Km": motor.gain, "tau": motor.time_constant}
     ranges |= _gain_ranges(given, controller)
     moving = {name: r for name, r in ranges.items() if r.low != r.high}
     return passive_band(task.axis, controller.law, moving)
@@ -259,7 +259,7 @@ def _sampled_bands(
     if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
         return ()
     ranged = any(r.low != r.high for r in _gain_ranges(given, controller).values())
-    if ranged or task.plant.actuator_ranges is not None or task.spec.coupling is not None:
+    if ranged or not task.plant.actuator_ranges.fixed or task.spec.coupling is not None:
         return ()
     law = controller.law.discretize(sampling.period.exact, sampling.admittance)
     assert law is not None, "an admittance has a program"

@@ -81,6 +81,11 @@ class Task:
         names = dict.fromkeys((*contact_names(given.contacts), given.environment))
         return tuple(map(self.plant.environment, names))
 
+    def stiffness(self, given: ControllerSpec) -> float:
+        """Return that of nominal contact with what a controller is designed for, in N m/rad."""
+        assert given.environment is not None  # Of a controller with contact.
+        return self.plant.environment(given.environment).nominal.stiffness
+
     @property
     def digits(self) -> int:
         """How many digits a designed gain has."""

@@ -75,7 +75,7 @@ def analyze(task: Task, given: ParallelControllerSpec, controller: Controller) -
         (),
         Kp,
         Ki,
-        task.plant.environment(given.environment).nominal.stiffness,
+        task.stiffness(given),
         decided,
         unstable_stiffness(task.loop, Kp, Ki) if decided else None,
     )

@@ -12,9 +12,9 @@ from nrs_design.controllers.controller_design import Controller
 from nrs_design.controllers.float32 import round_significant, to_float32
 from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.design.force_limit import Approach, peak_force
-from nrs_design.design.force_loop import design_force_gain, force_loop_response
+from nrs_design.design.force_loop import force_loop_response
 from nrs_design.design.goals import ForceRequirement
-from nrs_design.design.laws.force import ForceAnalysis
+from nrs_design.design.laws.force import ForceAnalysis, proportional_gain
 from nrs_design.design.laws.law import Choice, LawDesign, Task, goals_of, naming
 from nrs_design.design.measures import MARGINS
 from nrs_design.design.transfer import TransferFunction
@@ -81,12 +81,7 @@ def integral_gain(
 
 def choose(task: Task, given: IntegralControllerSpec) -> Choice:
     """Return the gains that the spec gives, or those with its damping ratio and settling time."""
-    stiffness = task.plant.environment(given.environment).nominal.stiffness
-    if given.proportional_gain is not None:
-        Kp = to_float32(given.proportional_gain.exact)
-    else:
-        gain = design_force_gain(task.motion, stiffness, float(given.damping_ratio or 0))
-        Kp = to_float32(round_significant(gain, task.digits))
+    Kp = proportional_gain(task, given)
     if given.settling_time is None:
         assert given.integral_gain is not None
         return IntegralForce(Kp, to_float32(given.integral_gain.exact)), None
@@ -96,7 +91,7 @@ def choose(task: Task, given: IntegralControllerSpec) -> Choice:
             remedy="ask for another damping ratio, or give proportional_gain",
             at=("damping_ratio",),
         )
-    gain = integral_gain(task.motion, stiffness, float(Kp), given.settling_time.si)
+    gain = integral_gain(task.motion, task.stiffness(given), float(Kp), given.settling_time.si)
     return IntegralForce(Kp, to_float32(round_significant(gain, task.digits))), None
 
 
@@ -117,7 +112,7 @@ def analyze(task: Task, given: IntegralControllerSpec, controller: Controller) -
     motion = with_integral(task.motion, Ki / Kp)
     goals = goals_of(task.spec, given, MARGINS)
     requirement = ForceRequirement(task.axis, task.corners(given), goals, controller.law, motion)
-    stiffness = task.plant.environment(given.environment).nominal.stiffness
+    stiffness = task.stiffness(given)
     limits = task.spec.limits
     # The position command waits, and the integral is what it was: the command does not step.
     approach = Approach("reference", limits.velocity.si, limits.torque.si, Ki)

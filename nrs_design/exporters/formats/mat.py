@@ -22,7 +22,6 @@ from nrs_design.exporters.record import ExportRecord, Gain
 from nrs_design.output import MAT
 from nrs_design.pipeline.design import run_linear_parts
 from nrs_design.proof.bounds import lower_float, upper_float
-from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
@@ -120,7 +119,8 @@ def _safe_rate(rate: Fraction, system: SwitchedSystem) -> float:
 
 
 def _modes(modes: Iterable[Mode]) -> Any:
-    return _structs([{"name": mode.name, "A": _matrix(mode.A)} for mode in modes], ("name", "A"))
+    rows = [{"name": mode.name, "A": np.array(mode.A.floats())} for mode in modes]
+    return _structs(rows, ("name", "A"))
 
 
 def _gains(record: ExportRecord) -> list[dict[str, Any]]:
@@ -131,10 +131,6 @@ def _gains(record: ExportRecord) -> list[dict[str, Any]]:
 def _gain(controller: str, gain: Gain) -> dict[str, Any]:
     # Every single-precision number is a double, too.
     return {"controller": controller, "name": gain.name, "unit": gain.unit, "value": gain.float32}
-
-
-def _matrix(A: RationalMatrix) -> Any:
-    return np.array([[float(entry) for entry in row] for row in A.fractions()])
 
 
 def _structs(rows: list[dict[str, Any]], fields: tuple[str, ...]) -> Any:

@@ -6,15 +6,13 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.scan import tells_friction
 from nrs_design.identification.actuator.time_fit import TimeFit
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.held import Held
-
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array, beyond, column_sizes
 
 # A cause is named where it alone explains so much of the power of the errors.
 _EXPLAINS = 0.3
@@ -103,16 +101,15 @@ def _explained(
     records: Sequence[ActuatorRecord], found: TimeFit, signature: Callable[[ActuatorRecord], Array]
 ) -> tuple[float, float]:
     """Return which part of the errors a signal explains, beside a better fit, and its factor."""
-    parts = [found.motor.linearize(record) for record in records]
     rows = []
     for record in records:
         free, _ = np.linalg.qr(found.motor.free(record))
         signal = signature(record)
-        rows.append(signal - free @ (free.T @ signal))
+        rows.append(beyond(free, signal))
     x = np.concatenate(rows)
-    J = np.concatenate([part for part, _ in parts])
-    basis, _ = np.linalg.qr(J / np.maximum(np.linalg.norm(J, axis=0), 1e-300))
-    x = x - basis @ (basis.T @ x)
+    J = np.concatenate([found.motor.derivatives(record) for record in records])
+    basis, _ = np.linalg.qr(J / column_sizes(J))
+    x = beyond(basis, x)
     power = float(x @ x)
     if power == 0.0:
         return 0.0, 0.0

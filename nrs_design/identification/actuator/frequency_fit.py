@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.friction import friction_shape
@@ -14,10 +13,8 @@ from nrs_design.identification.actuator.model import ActuatorFit, actuator_fit
 from nrs_design.identification.actuator.phasors import Phasors, held_amplitude
 from nrs_design.identification.datasets import FrequencyResponse
 from nrs_design.identification.held import Held
+from nrs_design.identification.numeric import Array, Complex
 from nrs_design.identification.statistics import Uncertainty, uncertainty
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 FEWEST = 3
 _MANY_STEPS = 60

@@ -5,11 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.held import Held
-
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array
 
 
 def friction_shape(held: Held, gain: float, tau: float, friction: float) -> Array:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.doubts import find_doubts
@@ -17,15 +16,13 @@ from nrs_design.identification.actuator.scan import scan_motor
 from nrs_design.identification.actuator.time_fit import TimeFit, fit_in_time
 from nrs_design.identification.datasets import ActuatorRecord, FrequencyResponse, Source
 from nrs_design.identification.datasets.checks import doubt_step
+from nrs_design.identification.numeric import Array, Complex
 from nrs_design.identification.statistics import WHITE, Estimate, span
 from nrs_design.identification.tissue.ranges import check_spread, spread_ranges
 from nrs_design.models.actuator import MotorConstants
 from nrs_design.progress import Progress, silent
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.provenance import MOTOR_COVERS, Coverage
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # A fit that misses more than this part of the output, in errors that are not white, has failed.
 _MISSED = 0.01
@@ -38,8 +35,6 @@ class ActuatorIdentification:
     """Fits of one actuator."""
 
     sources: tuple[Source, ...]  # The files
-    records: tuple[ActuatorRecord, ...]  # None for a ready response
-    phasors: tuple[Phasors, ...]  # One for each record, where all are sinusoids
     fits: tuple[ActuatorFit, ...]  # Every method that the data allow
     chosen: ActuatorFit  # One of them
     reason: str  # Why that one
@@ -49,11 +44,12 @@ class ActuatorIdentification:
     # Shape (m,). Velocity over command without friction, in rad/s per unit of the command; empty
     # where records are no sinusoids.
     response: Complex
-    doubts: tuple[str, ...] = ()  # What the model misses, and what that looks like
+    doubts: tuple[str, ...]  # What the model misses, and what that looks like
+    ranges: tuple[Estimate, ...]  # Of gain and time constant, for a spec
+    records: tuple[ActuatorRecord, ...] = ()  # None for a ready response
     unit: str = "rpm"  # Of the command
     step: float | None = None  # Usual time between samples in s; None for a ready response
     coverage: Coverage = "confidence"  # What the ranges hold
-    ranges: tuple[Estimate, ...] = ()  # Of gain and time constant, for a spec
 
     @property
     def covers(self) -> str:
@@ -165,8 +161,6 @@ def _from_response(data: FrequencyResponse, motor: MotorConstants) -> ActuatorId
     fit = fit_response(data)
     return ActuatorIdentification(
         sources=(data.source,),
-        records=(),
-        phasors=(),
         fits=(fit,),
         chosen=fit,
         reason="A ready response allows nothing else; friction cannot be told from it.",
@@ -196,7 +190,6 @@ def _from_records(
     return ActuatorIdentification(
         sources=tuple({record.source.sha256: record.source for record in records}.values()),
         records=tuple(records),
-        phasors=phasors,
         fits=tuple(fits),
         chosen=chosen,
         reason=reason,

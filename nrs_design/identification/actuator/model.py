@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.actuator.time_fit import TimeFit
+from nrs_design.identification.numeric import Array, Complex
 from nrs_design.identification.statistics import (
     Estimate,
     Uncertainty,
@@ -22,10 +22,6 @@ from nrs_design.models.actuator import (
     armature_resistance,
     speed_torque_gradient,
 )
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-
 
 # A log does not say when within a sample a command began.
 FROM_THE_ROW = (

@@ -6,13 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.held import Held, Lags
-
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array, beyond
 
 # Of a logarithm; and of the dead time, in samples and in these.
 _DIFFERENCE = 1e-5
@@ -86,10 +84,6 @@ class MotorModel:
         start = np.linalg.lstsq(free, record.output - forced, rcond=None)[0]
         return np.asarray(forced + free @ start, float)
 
-    def linearize(self, record: ActuatorRecord) -> tuple[Array, Array]:
-        """Return derivatives and errors of a record without what its initial state explains."""
-        return self.derivatives(record), self.errors(record)
-
     def errors(self, record: ActuatorRecord) -> Array:
         """Return measured less fitted output, shape (n,)."""
         return self._beyond_start(record, record.output - self.forced(record, *self.hold(record)))
@@ -115,4 +109,4 @@ class MotorModel:
     def _beyond_start(self, record: ActuatorRecord, values: Array) -> Array:
         """Return what no initial state explains."""
         free, _ = np.linalg.qr(self.free(record))
-        return np.asarray(values - free @ (free.T @ values), float)
+        return beyond(free, values)

@@ -6,13 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import ActuatorRecord
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
+from nrs_design.identification.numeric import Array
 
 # The response is taken as periodic after this part of a record.
 _TRANSIENT = 0.25
@@ -83,7 +80,7 @@ def held_amplitude(record: ActuatorRecord, values: Array, frequency: float) -> c
 
 def _hold(record: ActuatorRecord, frequency: float) -> complex:
     """Return the effect of holding a value between samples: it acts half a step later."""
-    half = frequency * float(np.median(np.diff(record.time))) / 2
+    half = frequency * record.step / 2
     return complex(np.sinc(half / np.pi) * np.exp(-1j * half))
 
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets import ActuatorRecord
 from nrs_design.identification.held import Held, Lags
-
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import TINY, Array, beyond
 
 _TIME_CONSTANTS = 14
 # In samples.
@@ -100,7 +98,7 @@ def _solve(
     power = float(rest @ rest)
     inverse = np.linalg.pinv(X.T @ X)
     spread = np.sqrt(np.diag(inverse) * power / max(len(y) - 2, 1))
-    return power, np.asarray(solution, float), np.maximum(spread, np.finfo(float).tiny)
+    return power, np.asarray(solution, float), np.maximum(spread, TINY)
 
 
 def _regressors(record: ActuatorRecord, tau: float, delay: float) -> tuple[Array, Array]:
@@ -110,6 +108,5 @@ def _regressors(record: ActuatorRecord, tau: float, delay: float) -> tuple[Array
     output = lags.angle if record.is_angle else lags.velocity
     columns = [output(held, inputs)[held.samples] for inputs in (held.command, against)]
     free, _ = np.linalg.qr(lags.free(record.time, angle=record.is_angle))
-    both = np.column_stack([*columns, record.output])
-    both -= free @ (free.T @ both)
+    both = beyond(free, np.column_stack([*columns, record.output]))
     return both[:, :2], both[:, 2]

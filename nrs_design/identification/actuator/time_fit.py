@@ -6,16 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator.motor import MotorModel
 from nrs_design.identification.datasets import ActuatorRecord
+from nrs_design.identification.numeric import Array, bic, limited_step
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import Uncertainty, uncertainty
-from nrs_design.identification.steps import limited_step
-
-Array = NDArray[np.float64]
 
 _STEPS = 60
 _CONVERGED = 1e-6
@@ -48,9 +45,7 @@ class TimeFit:
     @property
     def bic(self) -> float:
         """Bayesian information criterion, up to a constant of the records."""
-        n = len(self.errors)
-        power = max(float(self.errors @ self.errors), np.finfo(float).tiny)
-        return n * float(np.log(power / n)) + len(self.motor.parameters) * float(np.log(n))
+        return bic(self.errors, len(self.motor.parameters))
 
 
 def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit:
@@ -72,11 +67,11 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
     DataError
         If the iteration does not settle.
     """
-    motor = start
-    parts = [motor.linearize(record) for record in records]
-    usual = min(record.step for record in records)
+    motor, usual = start, min(record.step for record in records)
+    errors = [motor.errors(record) for record in records]
     for _ in range(_STEPS):
-        J, error = (np.concatenate(series) for series in zip(*parts, strict=True))
+        slopes = [motor.derivatives(record) for record in records]
+        J, error = np.concatenate(slopes), np.concatenate(errors)
         scale = np.ones(J.shape[1])
         scale[-1] = usual
         step = scale * np.linalg.lstsq(J * scale, error, rcond=None)[0]
@@ -88,8 +83,7 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
         better = _improved(records, motor, step, float(error @ error))
         if better is None:
             break
-        motor, parts = better
-        left = sum(float(part @ part) for _, part in parts)
+        motor, errors, left = better
         if left > (1 - _NO_BETTER / len(error)) * float(error @ error):
             break
     else:
@@ -97,38 +91,29 @@ def fit_in_time(records: Sequence[ActuatorRecord], start: MotorModel) -> TimeFit
             "the fit in the time domain does not settle",
             remedy="check the records, or give a ready frequency response",
         )
-    J, error = (np.concatenate(series) for series in zip(*parts, strict=True))
-    return TimeFit(motor, _uncertainty(records, parts, J, error), error)
+    slopes = [motor.derivatives(record) for record in records]
+    return TimeFit(motor, _uncertainty(records, slopes, errors), np.concatenate(errors))
 
 
 def _improved(
     records: Sequence[ActuatorRecord], motor: MotorModel, step: Array, power: float
-) -> tuple[MotorModel, list[tuple[Array, Array]]] | None:
-    """Return a motor along a step that fits better, or None."""
+) -> tuple[MotorModel, list[Array], float] | None:
+    """Return a motor along a step that fits better, its errors and their power; or None."""
     for halving in range(_HALVINGS):
         tried = motor.with_parameters(motor.parameters + step / 2**halving)
         errors = [tried.errors(record) for record in records]
         found = sum(float(error @ error) for error in errors)
         if np.isfinite(found) and found < power:
-            slopes = [tried.derivatives(record) for record in records]
-            return tried, list(zip(slopes, errors, strict=True))
+            return tried, errors, found
     return None
 
 
 def _uncertainty(
-    records: Sequence[ActuatorRecord],
-    parts: Sequence[tuple[Array, Array]],
-    J: Array,
-    error: Array,
+    records: Sequence[ActuatorRecord], slopes: Sequence[Array], errors: Sequence[Array]
 ) -> Uncertainty:
-    starts = None
+    J, starts = np.concatenate(slopes), None
     if len(records) >= MANY_RECORDS:
         starts = np.cumsum([0, *(len(record.time) for record in records[:-1])]).tolist()
-    scatter = sum(
-        (
-            rounding_scatter(r.output, part, 1.0)
-            for r, (part, _) in zip(records, parts, strict=True)
-        ),
-        start=np.zeros((J.shape[1], J.shape[1])),
-    )
-    return uncertainty(J, error, starts, scatter)
+    parts = zip(records, slopes, strict=True)
+    scatter = np.sum([rounding_scatter(r.output, slope, 1.0) for r, slope in parts], axis=0)
+    return uncertainty(J, np.concatenate(errors), starts, scatter)

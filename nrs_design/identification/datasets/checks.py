@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Flags, parted, runs
 from nrs_design.identification.statistics import span
-from nrs_design.identification.tables.table import Array, MeasurementTable
+from nrs_design.identification.tables.table import MeasurementTable
 from nrs_design.proof.text import counted
 from nrs_design.spec.plausible import doubt_size
 from nrs_design.spec.quantity import SMALLEST
@@ -31,7 +30,7 @@ def doubt_step(step: float) -> Iterator[str]:
         yield f"the steps of time are {step:.3g} s: {asked} (--map names another)"
 
 
-def gaps_in(time: Array) -> NDArray[np.bool_]:
+def gaps_in(time: Array) -> Flags:
     """Tell between which rows others are missing.
 
     Parameters
@@ -49,8 +48,7 @@ def gaps_in(time: Array) -> NDArray[np.bool_]:
 
 def stretches_in(time: Array) -> tuple[slice, ...]:
     """Return the rows between gaps, all of them, in their order; one slice where there is none."""
-    edges = [0, *(np.flatnonzero(gaps_in(time)) + 1).tolist(), len(time)]
-    return tuple(slice(a, b) for a, b in pairwise(edges))
+    return tuple(slice(a, b) for a, b in parted(gaps_in(time)))
 
 
 def long_stretches(time: Array) -> tuple[slice, ...]:
@@ -157,7 +155,7 @@ def check_saturation(table: MeasurementTable, name: str, values: Array, moving: 
     """
     span = float(np.ptp(moving))
     for extreme in {float(values.max()), float(values.min())} - {0.0}:
-        for first, last in _runs(values == extreme):
+        for first, last in runs(values == extreme):
             if last - first >= _FLAT_ROWS and np.ptp(moving[first:last]) > _FLAT_MOTION * span:
                 table.fail(
                     f"the {name} stays at its extreme reading {extreme:.6g} for "
@@ -188,10 +186,3 @@ def check_varies(table: MeasurementTable, name: str, values: Array) -> None:
     if change <= max(SMALLEST, _ROUNDED * np.finfo(float).eps * float(np.abs(values).max())):
         by = f" by more than {change:.1g}, which is rounding" if change else ""
         table.fail(f"the {name} never changes{by}", 0, "record a motion, from before it begins")
-
-
-def _runs(flags: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> list[tuple[int, int]]:
-    """Return first row and end of every stretch of true flags."""
-    padded = np.concatenate([[False], flags, [False]])
-    edges = np.flatnonzero(padded[1:] != padded[:-1])
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -19,8 +19,8 @@ from nrs_design.identification.datasets.checks import (
     pauses_text,
     stretches_in,
 )
+from nrs_design.identification.numeric import Array, Complex, usual_step
 from nrs_design.identification.tables.table import (
-    Array,
     MeasurementTable,
     Progress,
     Source,
@@ -90,7 +90,7 @@ class ActuatorRecord:
     @cached_property
     def step(self) -> float:
         """Usual time between samples in s."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +100,7 @@ class FrequencyResponse:
     source: Source  # The file
     frequency: Array  # Shape (m,). In rad/s.
     # Shape (m,). In rad/s for each unit of the command.
-    response: np.ndarray[tuple[int], np.dtype[np.complex128]]
+    response: Complex
     unit: str = "rpm"  # Of the command, which no column says: that of the motor of the thesis
 
 
@@ -173,7 +173,7 @@ class SignalRecord:
     @cached_property
     def step(self) -> float:
         """Usual time between samples in s."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
     @cached_property
     def stretches(self) -> tuple[slice, ...]:
@@ -259,20 +259,15 @@ def read_poses(
         roll, pitch = columns["roll"], columns["pitch"]
         down = [np.sin(pitch), -np.cos(pitch) * np.sin(roll), -np.cos(pitch) * np.cos(roll)]
         return PoseRecord(table.source, np.column_stack(down), force, torque)
-    w, x, y, z = (columns[f"q{axis}"] for axis in "wxyz")
-    size = np.sqrt(w**2 + x**2 + y**2 + z**2)
+    from scipy.spatial.transform import Rotation
+
+    quaternions = np.column_stack([columns[f"q{axis}"] for axis in "xyzw"])
+    size = np.linalg.norm(quaternions, axis=1)
     bad = np.flatnonzero(np.abs(size - 1) > _ROTATION)
     if len(bad):
         remedy = "write qw, qx, qy, qz of length 1"
         table.fail(f"the quaternion has the length {size[bad[0]]:.4g}", int(bad[0]), remedy)
-    turns = np.array(
-        [
-            [w**2 + x**2 - y**2 - z**2, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), w**2 - x**2 + y**2 - z**2, 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), w**2 - x**2 - y**2 + z**2],
-        ]
-    ).transpose(2, 0, 1)
-    turns = turns / size[:, None, None] ** 2
+    turns = np.asarray(Rotation.from_quat(quaternions).as_matrix(), float)
     return PoseRecord(table.source, -turns[:, 2, :], force, torque, turns)
 
 

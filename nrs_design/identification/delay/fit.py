@@ -5,14 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import SignalRecord
 from nrs_design.identification.delay.models import AbstractFollower, HeldCopy
+from nrs_design.identification.numeric import (
+    Array,
+    Rows,
+    beyond,
+    bic,
+    column_sizes,
+    limited_step,
+)
 from nrs_design.identification.statistics import Uncertainty, uncertainty
-from nrs_design.identification.steps import limited_step
-
-Array = NDArray[np.float64]
 
 # So far from where columns are most alike, in samples, a whole number of them is sought.
 _AROUND = 8
@@ -35,7 +39,7 @@ class DelayFit:
     sensitivity: Array
     errors: Array
     # Shape (m,). Samples that were fitted: those that the command before the record cannot reach.
-    rows: NDArray[np.int64]
+    rows: Rows
     fitted: Array  # Shape (n,). Output of the model.
     # Shape (p,). Gain, offset and initial state: factors of the columns of the model.
     solution: Array
@@ -52,14 +56,11 @@ class DelayFit:
     @property
     def bic(self) -> float:
         """Bayesian information criterion, up to a constant of the record."""
-        n = len(self.errors)
-        power = max(float(self.errors @ self.errors), np.finfo(float).tiny)
-        count = 1 + len(self.follower.shape)
-        return n * float(np.log(power / n)) + count * float(np.log(n))
+        return bic(self.errors, 1 + len(self.follower.shape))
 
 
 def fit_delay(
-    record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
+    record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows
 ) -> DelayFit:
     """Refine delay and shape of a model by Gauss-Newton steps.
 
@@ -103,7 +104,7 @@ def fit_delay(
     )  # fmt: skip
 
 
-def fit_held(record: SignalRecord, delay: float, rows: NDArray[np.int64]) -> DelayFit:
+def fit_held(record: SignalRecord, delay: float, rows: Rows) -> DelayFit:
     """Find the whole number of samples by which a copy is late.
 
     Parameters
@@ -119,7 +120,7 @@ def fit_held(record: SignalRecord, delay: float, rows: NDArray[np.int64]) -> Del
         return follower.columns(record, late * record.step)
 
     def missed(late: int) -> float:
-        error = _errors(record, follower, np.array([float(late)]), rows)
+        error = _errors_at(record, follower, late * record.step, rows)
         return float(error @ error)
 
     best = min(range(near - _AROUND, near + _AROUND + 1), key=lambda k: (missed(k), abs(k - near)))
@@ -133,28 +134,24 @@ def fit_held(record: SignalRecord, delay: float, rows: NDArray[np.int64]) -> Del
 
 def solve(columns: Array, seen: Array) -> Array:
     """Return the factors of the columns, shape (p,), that fit best, whatever their units."""
-    sizes = _sizes(columns)
+    sizes = column_sizes(columns)
     found = np.linalg.lstsq(columns / sizes, seen, rcond=None)[0]
     return np.asarray(found / sizes, float)
 
 
-def _sizes(columns: Array) -> Array:
-    return np.asarray(np.maximum(np.linalg.norm(columns, axis=0), 1e-300))
+def _errors_at(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> Array:
+    """Return measured less fitted output, with the best gain, offset and start."""
+    columns = follower.columns(record, delay)[rows]
+    basis, _ = np.linalg.qr(columns / column_sizes(columns))
+    return beyond(basis, record.seen[rows])
 
 
-def _errors(
-    record: SignalRecord, follower: AbstractFollower, x: Array, rows: NDArray[np.int64]
-) -> Array:
+def _errors(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:
     shaped = replace(follower, shape=tuple(x[1:].tolist()))
-    columns = shaped.columns(record, float(x[0]) * record.step)[rows]
-    basis, _ = np.linalg.qr(columns / _sizes(columns))
-    seen = record.seen[rows]
-    return np.asarray(seen - basis @ (basis.T @ seen), float)
+    return _errors_at(record, shaped, float(x[0]) * record.step, rows)
 
 
-def _sensitivities(
-    record: SignalRecord, follower: AbstractFollower, x: Array, rows: NDArray[np.int64]
-) -> Array:
+def _sensitivities(record: SignalRecord, follower: AbstractFollower, x: Array, rows: Rows) -> Array:
     """Return derivatives of the fitted output by the parameters."""
     columns = [
         (_errors(record, follower, x - h, rows) - _errors(record, follower, x + h, rows))

@@ -9,7 +9,6 @@ from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import SignalRecord, Source
@@ -28,6 +27,7 @@ from nrs_design.identification.delay.models import (
     SecondOrder,
     SmoothCopy,
 )
+from nrs_design.identification.numeric import Array, Rows
 from nrs_design.identification.statistics import (
     WHITE,
     Estimate,
@@ -36,8 +36,6 @@ from nrs_design.identification.statistics import (
     student_quantile,
 )
 from nrs_design.spec.plausible import doubt_size
-
-Array = NDArray[np.float64]
 
 # Largest delay that is looked for, as a part of the record.
 _LONGEST = 0.1
@@ -83,8 +81,7 @@ class DelayIdentification:
     record: SignalRecord  # The data
     fits: tuple[DelayFit, ...]  # One for each model
     chosen: DelayFit  # The simplest of those whose BIC none clearly beats
-    delay: Estimate  # In s, with a 95 % interval
-    samples: Estimate  # The same in samples of the record
+    samples: Estimate  # The delay in samples of the record, with a 95 % interval
     # Lag in s at which both columns are most alike, lag of the dynamics included, and their
     # correlation there.
     peak: tuple[float, float]
@@ -100,6 +97,11 @@ class DelayIdentification:
     # command of one frequency, they hold all from zero to those of a copy.
     held: tuple[float, float]
     doubts: tuple[str, ...]  # What speaks against it
+
+    @property
+    def delay(self) -> Estimate:
+        """In s, with a 95 % interval."""
+        return self.samples.scaled(self.record.step)
 
     @property
     def whole_samples(self) -> tuple[int, int]:
@@ -203,7 +205,7 @@ def identify_delay(record: SignalRecord) -> DelayIdentification:
         held += [part for _, part in _parts(record, copy, copy.delay / step)]
     ends = max(min(e.low for e in held), 0.0), max(*(e.high for e in held), 0.0)
     return DelayIdentification(
-        record, fits, chosen, samples.scaled(step), samples, peak, parts, smooth, ends,
+        record, fits, chosen, samples, peak, parts, smooth, ends,
         (
             *_rivals(record, fits, chosen, half, one_frequency=one_frequency),
             *_doubts(record, chosen, value, half, peak[0], parts, _untold(record, samples)),
@@ -260,7 +262,7 @@ def is_smooth(record: SignalRecord) -> bool:
     return missed <= _SMOOTH**2 * moved
 
 
-def _reached(record: SignalRecord, lag: float) -> NDArray[np.int64]:
+def _reached(record: SignalRecord, lag: float) -> Rows:
     """Return the rows that no command from before the record, or a pause of it, can reach."""
     skipped = max(lag, 0.0) + _AFTER * record.step
     kept = []
@@ -301,7 +303,7 @@ def _unknown(fit: DelayFit) -> float:
 
 
 def _held_interval(
-    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], near: int, confidence: float
+    record: SignalRecord, fit: DelayFit, rows: Rows, near: int, confidence: float
 ) -> Estimate:
     """Return the best whole number of samples, and all delays that the rows do not reject.
 
@@ -358,14 +360,14 @@ def _peak(record: SignalRecord, *, difference: bool) -> tuple[float, float]:
     return float(lags[best]) * float(even[1] - even[0]), float(alike[best])
 
 
-def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
+def _correlations(u: Array, y: Array, lags: Rows) -> Array:
     """Return the correlation of ``u[i]`` with ``y[i + lag]`` where both are there."""
     size = 1 << (2 * len(u) - 1).bit_length()
     cross = np.fft.irfft(np.conj(np.fft.rfft(u, size)) * np.fft.rfft(y, size), size)[lags]
     counts = len(u) - np.abs(lags)
     first = np.maximum(lags, 0)
 
-    def sums(values: Array, begin: NDArray[np.int64]) -> Array:
+    def sums(values: Array, begin: Rows) -> Array:
         total = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(total[begin + counts] - total[begin])
 
@@ -377,7 +379,7 @@ def _correlations(u: Array, y: Array, lags: NDArray[np.int64]) -> Array:
 
 
 def _starts(
-    record: SignalRecord, lag: float, rows: NDArray[np.int64]
+    record: SignalRecord, lag: float, rows: Rows
 ) -> Iterator[tuple[AbstractFollower, float]]:
     """Yield each model but a copy with the best of some delays and time constants."""
     step = record.step
@@ -403,9 +405,7 @@ def _beginning(record: SignalRecord) -> SignalRecord:
     return SignalRecord(record.source, time, sent, seen, record.names)
 
 
-def _missed(
-    record: SignalRecord, follower: AbstractFollower, delay: float, rows: NDArray[np.int64]
-) -> float:
+def _missed(record: SignalRecord, follower: AbstractFollower, delay: float, rows: Rows) -> float:
     columns = follower.columns(record, delay)[rows]
     solution = solve(columns, record.seen[rows])
     return float(np.sum((record.seen[rows] - columns @ solution) ** 2))
@@ -434,7 +434,7 @@ def _parts(record: SignalRecord, fit: DelayFit, value: float) -> Iterator[tuple[
 
 
 def _own_delay(
-    record: SignalRecord, fit: DelayFit, rows: NDArray[np.int64], value: float
+    record: SignalRecord, fit: DelayFit, rows: Rows, value: float
 ) -> tuple[float, float]:
     """Return the delay in samples that fits some rows best, and how much they tell about it."""
     own, power = value, 0.0

@@ -8,12 +8,10 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import SignalRecord
 from nrs_design.identification.held import Held, Lags
-
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Self
 
 
 class BoundStatus(StrEnum):
@@ -35,6 +36,19 @@ class Check:
     name: str  # What is judged
     status: BoundStatus  # The outcome
     measured: str  # What the log shows; for what is not judged, why
-    allowed: str  # The bound
-    basis: str  # Where the bound comes from
+    allowed: str = ""  # The bound
+    basis: str = ""  # Where the bound comes from
     first: Violation | None = None  # The first time it was left
+
+    @classmethod
+    def open(cls, name: str, why: str, allowed: str = "", basis: str = "") -> Self:
+        """Return a check that is not judged.
+
+        Parameters
+        ----------
+        name, allowed, basis : str
+            Of the bound.
+        why : str
+            What is missing.
+        """
+        return cls(name, BoundStatus.NOT_JUDGED, why, allowed, basis)

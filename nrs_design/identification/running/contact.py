@@ -12,16 +12,14 @@ from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Flags, runs
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.log import RunLog
 from nrs_design.identification.running.stiffness import Window, cut_windows, stiffness_of
 from nrs_design.identification.statistics import span
 from nrs_design.proof.text import counted
-
-Array = NDArray[np.float64]
 
 ESTIMATE = (
     "a window shows how much the torque changes with the angle, and the range bounds their ratio"
@@ -91,11 +89,10 @@ def estimate_contact(
     return ContactEstimate(checks, told, loose + kept)
 
 
-def _rests_at_zero(force: Array) -> NDArray[np.bool_]:
+def _rests_at_zero(force: Array) -> Flags:
     """Tell in which rows a sensor reads exactly zero: free motion, and no stiffness of zero."""
-    zero: NDArray[np.bool_] = np.asarray(force == 0.0)
-    edges = np.flatnonzero(np.diff(zero, prepend=False, append=False))
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    zero: Flags = np.asarray(force == 0.0)
+    for first, last in runs(zero):
         zero[first:last] = last - first >= _ZEROS
     return zero
 
@@ -104,7 +101,7 @@ def _rows(windows: list[Window]) -> int:
     return sum(w.last - w.first for w in windows)
 
 
-def _felt(log: RunLog, bounds: RunBounds) -> NDArray[np.bool_]:
+def _felt(log: RunLog, bounds: RunBounds) -> Flags:
     """Tell in which rows the controller in force may touch something."""
     if log.modes is None:
         return np.ones(len(log.time), dtype=bool)
@@ -112,9 +109,7 @@ def _felt(log: RunLog, bounds: RunBounds) -> NDArray[np.bool_]:
     return np.asarray(felt[log.modes], dtype=np.bool_)
 
 
-def _spans(
-    log: RunLog, zero: NDArray[np.bool_], felt: NDArray[np.bool_], length: float
-) -> Iterator[tuple[int, int]]:
+def _spans(log: RunLog, zero: Flags, felt: Flags, length: float) -> Iterator[tuple[int, int]]:
     """Yield windows in one mode in which a torque acts and something may be touched."""
     modes = np.zeros(len(zero), dtype=np.int64) if log.modes is None else log.modes
     for first, last in cut_windows(log.time, 2 * modes + zero, length):
@@ -170,7 +165,7 @@ def _stiffness(log: RunLog, bounds: RunBounds, touching: list[Window]) -> Check:
     allowed = " or ".join(span(*ends, "N m/rad", 5) for ends in ranges)
     if not touching:
         words = "no window in contact in which something moves"
-        return Check("stiffness", BoundStatus.NOT_JUDGED, words, allowed, basis)
+        return Check.open("stiffness", words, allowed, basis)
     values = [w.value for w in touching]
     count = counted(len(values), "window")
     words = f"slopes of {span(min(values), max(values), 'N m/rad')} in {count}"
@@ -190,7 +185,5 @@ def _contact(bounds: RunBounds, free: float, kept: float, losable: bool | None) 
 
 
 def _not_estimated(reason: str) -> ContactEstimate:
-    stiffness, contact = (
-        Check(name, BoundStatus.NOT_JUDGED, reason, "", "") for name in ("stiffness", "contact")
-    )
+    stiffness, contact = (Check.open(name, reason) for name in ("stiffness", "contact"))
     return ContactEstimate((stiffness, contact), (), 0.0)

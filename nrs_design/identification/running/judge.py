@@ -116,9 +116,7 @@ def judge_run(
         judge_saturation(log, bounds, bounds.saturates if command_limit is None else command_limit),
         judge_force(log, bounds),
         *(
-            Check(
-                name, BoundStatus.NOT_JUDGED, why, allowed, f"taken for granted by {bounds.source}"
-            )
+            Check.open(name, why, allowed, f"taken for granted by {bounds.source}")
             for name, why, allowed in bounds.unseen
         ),
     )

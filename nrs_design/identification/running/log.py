@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets.checks import FEWEST_ROWS, check_advance, gaps_in
+from nrs_design.identification.numeric import Array, Flags, Rows, usual_step
 from nrs_design.identification.tables.table import Progress, Source, read_table
-
-Array = NDArray[np.float64]
 
 _OPTIONAL = ("angle", "torque", "deflection", "force", "velocity", "command", "mode")
 
@@ -33,15 +31,15 @@ class RunLog:
     @property
     def step(self) -> float:
         """Usual time between rows in s."""
-        return float(np.median(np.diff(self.time)))
+        return usual_step(self.time)
 
     @property
-    def gaps(self) -> NDArray[np.bool_]:
+    def gaps(self) -> Flags:
         """Between which rows others are missing, shape (n - 1,)."""
         return gaps_in(self.time)
 
     @property
-    def modes(self) -> NDArray[np.int64] | None:
+    def modes(self) -> Rows | None:
         """Index of the label in force at every row, or None."""
         return self.columns["mode"].astype(np.int64) if "mode" in self.columns else None
 

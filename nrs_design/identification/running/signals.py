@@ -37,21 +37,19 @@ def judge_delay(log: RunLog, bounds: RunBounds) -> Check:
     seen = next((name for name in ("angle", "velocity") if name in log.columns), None)
     if "command" not in log.columns or seen is None:
         gone = "command" if "command" not in log.columns else "angle or velocity"
-        return Check("delay", BoundStatus.NOT_JUDGED, f"no column for {gone}", "", "")
+        return Check.open("delay", f"no column for {gone}")
     pair = log.columns["command"], log.columns[seen]
     try:
         found = identify_delay(SignalRecord(log.source, log.time, *pair, ("command", seen)))
     except DataError as error:
-        return Check("delay", BoundStatus.NOT_JUDGED, error.message, "", "")
+        return Check.open("delay", error.message)
     low, high = found.delay.low, found.delay.high
     if found.untold is not None:
-        return Check("delay", BoundStatus.NOT_JUDGED, found.untold, "", "")
+        return Check.open("delay", found.untold)
     outwards = f"[{lower(Fraction(low), 3)}, {upper(Fraction(high), 3)}]"
     words = f"{found.delay.value:.3g} {outwards} s"
     if found.doubts:
-        return Check(
-            "delay", BoundStatus.NOT_JUDGED, f"{words}, in doubt: {found.doubts[0]}", "", ""
-        )
+        return Check.open("delay", f"{words}, in doubt: {found.doubts[0]}", "", "")
     if bounds.delay is None:
         return Check("delay", BoundStatus.NOT_MODELLED, words, _time_of(bounds), _assumed(bounds))
     status = BoundStatus.UNDECIDED if high >= bounds.delay else BoundStatus.INSIDE
@@ -108,13 +106,13 @@ def judge_saturation(log: RunLog, bounds: RunBounds, limit: float | None) -> Che
         Of the driver, in units of the command.
     """
     if "command" not in log.columns:
-        return Check("saturation", BoundStatus.NOT_JUDGED, "no column for command", "", "")
+        return Check.open("saturation", "no column for command")
     size = np.abs(log.columns["command"])
     largest = f"largest command {size.max():.5g} {log.command_unit}"
     if limit is None:
         unknown = "where the driver saturates is not known"
         reason = f"{largest}; {unknown}: give --command-limit, or the spec `limits: command`"
-        return Check("saturation", BoundStatus.NOT_JUDGED, reason, "", "")
+        return Check.open("saturation", reason)
     allowed = f"below {limit:g} {log.command_unit}"
     met = np.flatnonzero(size >= limit)
     if not len(met):
@@ -141,9 +139,7 @@ def judge_force(log: RunLog, bounds: RunBounds) -> Check:
     if torque is None and "force" in log.columns and bounds.lever_arm is not None:
         torque = log.columns["force"] * bounds.lever_arm
     if torque is None:
-        return Check(
-            "force", BoundStatus.NOT_JUDGED, "no column for torque or force", allowed, basis
-        )
+        return Check.open("force", "no column for torque or force", allowed, basis)
     size = np.abs(torque)
     largest = f"largest torque {size.max():.4g} N m"
     # So far may noise reach in any row, at 95 % for all of them together.

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf
 
 import numpy as np
 
+from nrs_design.identification.numeric import parted
 from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check, Violation
 from nrs_design.identification.running.log import RunLog
@@ -47,16 +47,16 @@ def judge_stays(log: RunLog, bounds: RunBounds) -> Check:
     allowed, basis = _allowed(bounds), f"switching rules of {bounds.source}"
     if bounds.names_contacts:
         reason = "the rules name contacts, and a log does not say what is touched"
-        return Check(_NAME, BoundStatus.NOT_JUDGED, reason, "", basis)
+        return Check.open(_NAME, reason, "", basis)
     if log.modes is None:
         if not allowed:
             return Check(_NAME, BoundStatus.INSIDE, "any switching is allowed", "arbitrary", basis)
-        return Check(_NAME, BoundStatus.NOT_JUDGED, "no column for mode", allowed, basis)
+        return Check.open(_NAME, "no column for mode", allowed, basis)
     stays = list(_stays(log))
     unknown = [stay.mode for stay in stays if stay.mode not in bounds.stays]
     if unknown:
         reason = f"{unknown[0]!r} is no controller of the spec"
-        return Check(_NAME, BoundStatus.NOT_JUDGED, reason, allowed, basis)
+        return Check.open(_NAME, reason, allowed, basis)
     measured = counted(len(stays) - 1, "switch")
     if not allowed:
         return Check(_NAME, BoundStatus.INSIDE, measured, "arbitrary", basis)
@@ -90,8 +90,7 @@ def _stays(log: RunLog) -> Iterator[_Stay]:
     time = log.begin + log.time
     # No switch is before the first row, and none after the last.
     before, after = np.append(time[0], time), np.append(time, time[-1])
-    edges = [0, *(np.flatnonzero(np.diff(modes)) + 1).tolist(), len(modes)]
-    for first, last in itertools.pairwise(edges):
+    for first, last in parted(np.diff(modes) != 0):
         ended = last < len(time)
         begin, logged = float(time[first]), float(after[last] - before[first])
         yield _Stay(

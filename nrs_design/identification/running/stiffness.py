@@ -8,13 +8,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.checks import gaps_in
+from nrs_design.identification.numeric import Array, Rows, beyond, parted
 from nrs_design.identification.rounding import resolution
 from nrs_design.identification.statistics import joint_level, student_quantile
-
-Array = NDArray[np.float64]
 
 FEWEST_ROWS = 20
 # For how many times its estimate the noise of the deflection is taken.
@@ -35,9 +33,7 @@ class Window:
     high: float
 
 
-def cut_windows(
-    time: Array, states: NDArray[np.int64] | None, length: float
-) -> Iterator[tuple[int, int]]:
+def cut_windows(time: Array, states: Rows | None, length: float) -> Iterator[tuple[int, int]]:
     """Yield first row and end of windows that span neither a gap nor a change.
 
     Parameters
@@ -52,8 +48,7 @@ def cut_windows(
     breaks = gaps_in(time)
     if states is not None:
         breaks |= np.diff(states) != 0
-    edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(time)]
-    for begin, end in itertools.pairwise(edges):
+    for begin, end in parted(breaks):
         count = max(round(float(time[end - 1] - time[begin]) / length), 1)
         cuts = np.linspace(begin, end, count + 1).astype(int).tolist()
         for first, last in itertools.pairwise(cuts):
@@ -94,7 +89,7 @@ def _window(
     x, v, f = (column[first:last] for column in (deflection, velocity, force))
     others = np.column_stack([np.ones_like(x), v / max(float(np.abs(v).max()), 1e-300)])
     basis, _ = np.linalg.qr(others)
-    x, y = (c - basis @ (basis.T @ c) for c in (x, f))
+    x, y = beyond(basis, x), beyond(basis, f)
     power, cross = float(x @ x), float(x @ y)
     if power <= 1e-20 or cross == 0.0:
         return Window(first, last, 0.0, -math.inf, math.inf)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from nrs_design.errors import DataError
@@ -17,6 +18,9 @@ from nrs_design.identification.tables.names import (
     standard_name,
     stated_unit,
 )
+
+# Returns an error about a file.
+Fail = Callable[..., DataError]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +51,7 @@ def parse_mapping(entries: Sequence[str]) -> dict[str, str]:
         ours, equals, theirs = (part.strip() for part in entry.partition("="))
         if not (ours and equals and theirs):
             raise DataError(f"--map {entry!r} is not a pair", remedy="write --map force_N=Fz")
-        _split(ours, None, f"--map {entry!r}: ")
+        _split(ours, DataError, f"--map {entry!r}: ")
         if theirs in mapping or ours in mapping.values():
             raise DataError(f"--map {entry!r}: the column is mapped twice", remedy="keep one")
         mapping[theirs] = ours
@@ -90,10 +94,11 @@ def find_columns(
     DataError
         If a column is missing, is there twice, or has a wrong unit.
     """
-    _check_mapped(mapping, header, path, line)
+    fail = partial(DataError, path=path, line=line)
+    _check_mapped(mapping, header, fail)
     wanted = {quantity for layout in layouts for quantity in layout} | set(optional)
-    named = {_split(ours, path, "", line).quantity for ours in mapping.values()}
-    found, faults = _grouped(header, wanted, named, mapping, path, line)
+    named = {_split(ours, fail).quantity for ours in mapping.values()}
+    found, faults = _grouped(header, wanted, named, mapping, fail)
     for quantity, error in faults:
         # What was mapped, or would be judged, must not fall away in silence.
         if quantity in optional:
@@ -102,24 +107,20 @@ def find_columns(
         groups = _complete(found, layout, optional)
         if groups:
             return layout, groups
-    raise faults[0][1] if faults else _missing(found, header, layouts, path, line)
+    raise faults[0][1] if faults else _missing(found, header, layouts, fail)
 
 
-def _check_mapped(
-    mapping: Mapping[str, str], header: Sequence[str], path: Path, line: int | None
-) -> None:
+def _check_mapped(mapping: Mapping[str, str], header: Sequence[str], fail: Fail) -> None:
     for theirs in mapping:
         if theirs not in header:
             near = difflib.get_close_matches(theirs, header, n=1)
             hint = f"did you mean {near[0]!r}?" if near else f"it has {_listed(header)}"
-            raise DataError(
-                f"there is no column {theirs!r} to map", path=path, line=line, remedy=hint
-            )
+            raise fail(f"there is no column {theirs!r} to map", remedy=hint)
     for theirs, ours in mapping.items():
-        check_stated(theirs, stated_unit(theirs, _split(ours, path, "", line).quantity), ours, path)
+        check_stated(theirs, stated_unit(theirs, _split(ours, fail).quantity), ours, fail)
 
 
-def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
+def check_stated(theirs: str, unit: str | None, ours: str, fail: Fail) -> None:
     """Refuse a mapping whose unit contradicts the name of the column.
 
     Parameters
@@ -130,10 +131,10 @@ def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
         What it says, as we write it.
     ours : str
         The name that it is mapped to.
-    path : Path
-        For errors.
+    fail : callable
+        Returns an error about the file.
     """
-    name = _split(ours, path, "")
+    name = _split(ours, fail)
     if unit in (None, name.unit) or name.unit in ("", "1", "any"):
         return
     if unit in UNITS[name.quantity]:
@@ -141,9 +142,8 @@ def check_stated(theirs: str, unit: str | None, ours: str, path: Path) -> None:
         remedy = f"write --map '{right}={theirs}', or rename the column if its unit is wrong"
     else:
         remedy = f"map another column; if this is one in {name.unit}, correct its name"
-    raise DataError(
+    raise fail(
         f"--map '{ours}={theirs}': the column {theirs!r} says {unit}, and {ours} is in {name.unit}",
-        path=path,
         remedy=remedy,
     )
 
@@ -153,8 +153,7 @@ def _grouped(
     wanted: AbstractSet[str],
     named: AbstractSet[str],
     mapping: Mapping[str, str],
-    path: Path,
-    line: int | None,
+    fail: Fail,
 ) -> tuple[dict[str, dict[str, Column]], list[tuple[str, DataError]]]:
     """Sort the columns of the wanted quantities; also return those whose unit is not known.
 
@@ -176,14 +175,12 @@ def _grouped(
         if name.loose and (name.group, name.quantity) in full:
             continue
         if not name.known:
-            faults.append((name.quantity, _unknown_unit(name, text, "", path, line)))
+            faults.append((name.quantity, _unknown_unit(name, text, "", fail)))
             continue
         if name.quantity in found.setdefault(name.group, {}):
             first = found[name.group][name.quantity].name
-            raise DataError(
+            raise fail(
                 f"the {name.quantity} is there twice ({first!r} and {text!r})",
-                path=path,
-                line=line,
                 remedy="rename one of them, tell groups apart by a suffix such as _1, or choose "
                 f"with --map {standard_name(name.quantity)}=NAME",
             )
@@ -215,30 +212,24 @@ def _complete(
     return groups
 
 
-def _split(text: str, path: Path | None, prefix: str, line: int | None = None) -> Name:
+def _split(text: str, fail: Fail, prefix: str = "") -> Name:
     """Take a name of ours apart, and check its unit."""
     name = read_name(text)
     if name is None:
-        raise DataError(
+        raise fail(
             f"{prefix}{text!r} is no column of ours",
-            path=path,
-            line=line,
             remedy=f"these are {', '.join(map(standard_name, UNITS))}",
         )
     if not name.known:
-        raise _unknown_unit(name, text, prefix, path, line)
+        raise _unknown_unit(name, text, prefix, fail)
     return name
 
 
-def _unknown_unit(
-    name: Name, text: str, prefix: str, path: Path | None, line: int | None
-) -> DataError:
+def _unknown_unit(name: Name, text: str, prefix: str, fail: Fail) -> DataError:
     fault = f"has the unit {name.unit!r}" if name.unit else "has no unit"
     units = " or ".join(f"{name.quantity}_{key}" for key in UNITS[name.quantity])
-    return DataError(
+    return fail(
         f"{prefix}the column {text!r} {fault}",
-        path=path,
-        line=line,
         remedy=f"expected {units}; --map gives a column another name",
     )
 
@@ -247,8 +238,7 @@ def _missing(
     found: dict[str, dict[str, Column]],
     header: Sequence[str],
     layouts: Sequence[tuple[str, ...]],
-    path: Path,
-    line: int | None,
+    fail: Fail,
 ) -> DataError:
     present = {quantity for columns in found.values() for quantity in columns}
     nearest = min(layouts, key=lambda layout: len(set(layout) - present))
@@ -259,10 +249,8 @@ def _missing(
     others = [f"{quantity}_{key}" for key in UNITS.get(quantity, ())]
     named = " or ".join(name for name in others if name != example)
     units = f" ({named} for another unit)" if named else ""
-    return DataError(
+    return fail(
         f"the columns {', '.join(missing) or 'of one group'} are missing: it has {_listed(header)}",
-        path=path,
-        line=line,
         remedy=f"expected {expected}; name foreign columns with --map {example}=NAME{units}",
     )
 

@@ -6,6 +6,7 @@ import csv
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -250,7 +251,7 @@ def _check_mapped_units(
         if ours is not None:
             bare = _BRACKETS.match(unit)
             said = stated_unit(f"column [{bare[1] if bare else unit}]", ours.quantity)
-            check_stated(theirs, said, mapped[theirs], path)
+            check_stated(theirs, said, mapped[theirs], partial(DataError, path=path))
 
 
 def _has_decimal_comma(lines: Sequence[str], separator: str | None, path: Path, line: int) -> bool:

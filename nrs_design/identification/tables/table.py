@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.files import open_regular
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.tables.arrays import ARRAYS, check_kind, read_arrays, read_sheet
 from nrs_design.identification.tables.columns import Column, find_columns
 from nrs_design.identification.tables.header import BLOCK, SYNTHETIC, read_header
@@ -21,7 +22,6 @@ from nrs_design.identification.tables.names import UNITS, standard_name
 from nrs_design.identification.tables.text import MAX_ROWS, Parser, read_blocks
 from nrs_design.spec.quantity import LARGEST
 
-Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 SHEET = ".xlsx"

@@ -10,14 +10,12 @@ from pathlib import Path
 from typing import BinaryIO, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.tables.columns import Column
 from nrs_design.identification.tables.header import BLOCK, Header, is_decimal
 from nrs_design.proof.text import quoted
-
-Array = NDArray[np.float64]
 
 MAX_ROWS = 10_000_000
 MAX_LABELS = 1000

@@ -11,14 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.numeric import Array, Flags, Rows, runs
 from nrs_design.identification.statistics import independent
 from nrs_design.identification.tissue.cycles import find_cycles
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _GRID = 50
 _COARSE = 500
@@ -72,10 +69,8 @@ class DetectedContact:
     @cached_property
     def touches(self) -> tuple[Touch, ...]:
         """How often and when the probe meets the tissue."""
-        padded = np.concatenate([[False], self.beyond, [False]])
-        edges = np.flatnonzero(padded[1:] != padded[:-1]).reshape(-1, 2).tolist()
         found = []
-        for first, end in edges:
+        for first, end in runs(self.beyond):
             clear = np.flatnonzero(self.clear[first:end])
             if len(clear):
                 rows = first, first + int(clear[0]), first + int(clear[-1]) + 1, end
@@ -125,7 +120,7 @@ def _evidence(corners: Sequence[_Corner]) -> float:
     return sum(max(corner.gain, 0.0) for corner in corners if corner.flat)
 
 
-def _loading(u: Array, velocity: Array, cycle: slice) -> NDArray[np.intp]:
+def _loading(u: Array, velocity: Array, cycle: slice) -> Rows:
     """Pick samples on the way in: a tissue that relaxes lets go elsewhere than it was met."""
     rows = np.arange(len(u))[cycle]
     way_in = rows[velocity[cycle] > 0.02 * np.abs(velocity[cycle]).max()]

@@ -5,9 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array
 
 # A turn counts where the deflection comes back by this part of its range.
 _TURN = 0.3

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.checks import doubt_step
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.rounding import rounding_of_velocity
 from nrs_design.identification.statistics import Uncertainty, student_quantile
 from nrs_design.identification.tissue.residuals import doubt_residuals, doubt_signs
@@ -15,8 +15,6 @@ from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
 from nrs_design.spec.plausible import doubt_size
-
-Array = NDArray[np.float64]
 
 LARGEST_ERROR = 0.5
 # Distance from a bound, in the logarithm, that counts as reaching it.
@@ -88,7 +86,7 @@ def _units(trial: Trial) -> Iterator[str]:
         field, si = f"recorded_{name[rotational]}", unit[rotational]
         if asked := doubt_size(field, span, si, f"{span:.3g}"):
             yield f"the {what} spans {span:.3g} {si}: {asked} (--map names another)"
-    yield from doubt_step(float(np.median(trial.motion.steps)))
+    yield from doubt_step(trial.step)
 
 
 def _bounds(law: AbstractContactLaw, bounds: tuple[Array, Array]) -> Iterator[str]:
@@ -124,9 +122,11 @@ def _times(law: AbstractContactLaw, trial: Trial) -> Iterator[str]:
         yield (
             f"the record ({trial.duration:.3g} s) is shorter than the relaxation time ({tau:.3g} s)"
         )
-    step = float(np.median(trial.motion.steps))
-    if tau < step:
-        yield f"the relaxation time ({tau:.3g} s) is below the step of the record ({step:.3g} s)"
+    if tau < trial.step:
+        yield (
+            f"the relaxation time ({tau:.3g} s) is below the step of the record "
+            f"({trial.step:.3g} s)"
+        )
 
 
 def _motion(law: AbstractContactLaw, trial: Trial, found: Uncertainty) -> Iterator[str]:

@@ -8,9 +8,8 @@ Poetscher 2005, on inference after a choice of the model).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from nrs_design.identification.numeric import Array, Flags
 
 _FEWEST = 30
 # The air must be spread over this part of the record for a slope to be one of the record.
@@ -19,7 +18,7 @@ _SPREAD = 0.3
 _BETWEEN = 20
 
 
-def shows_drift(time: Array, air: NDArray[np.bool_]) -> bool:
+def shows_drift(time: Array, air: Flags) -> bool:
     """Tell whether there is air before and after a contact, far enough apart.
 
     Within one stretch of air, a tissue that is soft at first would pass for a drift.

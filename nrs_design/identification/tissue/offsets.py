@@ -13,13 +13,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import Estimate, Uncertainty, quotients, student_quantile
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractLinearLaw, Motion
-
-Array = NDArray[np.float64]
 
 TARE, CONTACT, DRIFT = "tare", "contact", "drift"
 # In words, and with the units of a linear motion and of a rotation.
@@ -41,14 +39,9 @@ class Offset:
     provided: str = ""  # What it rests on, empty for the record alone
 
 
-def is_linear(kind: type[AbstractContactLaw]) -> bool:
-    """Tell whether an offset of the deflection only adds a constant to the force of a law."""
-    return issubclass(kind, AbstractLinearLaw)
-
-
 def fits_zero(kind: type[AbstractContactLaw], trial: Trial) -> bool:
     """Tell whether the position of contact is a parameter that enters nonlinearly."""
-    return not is_linear(kind) and trial.preparation.zero is None
+    return not issubclass(kind, AbstractLinearLaw) and trial.preparation.zero is None
 
 
 def offset_names(kind: type[AbstractContactLaw], trial: Trial) -> tuple[str, ...]:
@@ -109,11 +102,12 @@ def estimate_offsets(
     at = {name: first + i for i, name in enumerate(names)}
     value = dict(zip(names, values.tolist(), strict=True))
     reader = _Reader(trial, known)
+    is_rest = isinstance(law, AbstractLinearLaw) and _static(law)[0] > 0
     offsets = [_zero(law, trial, at, value, shift, reader)]
     wanted = trial.preparation
     if wanted.tare is not None:
         offsets.append(Offset("tare", Estimate(wanted.tare, wanted.tare, wanted.tare), False))
-    elif trial.found is None and wanted.zero is None and is_linear(type(law)) and _static(law)[0]:
+    elif trial.found is None and wanted.zero is None and is_rest:
         offsets.append(Offset("tare", Estimate(0.0, 0.0, 0.0), False, "taken as zero"))
     else:
         offsets.append(Offset("tare", reader.signed(at[TARE], value[TARE]), True))
@@ -129,13 +123,8 @@ class _Reader:
     trial: Trial
     known: Uncertainty
 
-    def signed(self, at: int, value: float) -> Estimate:
-        gradient = np.zeros(len(self.known.covariance))
-        gradient[at] = 1.0
-        return self.combined(value, gradient)
-
-    def combined(self, value: float, gradient: Array, reference: float = 0.0) -> Estimate:
-        variance = float(gradient @ self.known.covariance @ gradient)
+    def signed(self, at: int, value: float, reference: float = 0.0) -> Estimate:
+        variance = float(self.known.covariance[at, at])
         half = student_quantile(self.known.degrees) * math.sqrt(max(variance, 0.0))
         middle = reference + self.trial.side * value
         return Estimate(middle, middle - half, middle + half)
@@ -177,13 +166,11 @@ def _zero(
     shift: float | None,
     reader: _Reader,
 ) -> Offset | None:
-    wanted, p = trial.preparation, len(law.values)
+    wanted = trial.preparation
     if wanted.zero is not None:
         return Offset("zero", Estimate(wanted.zero, wanted.zero, wanted.zero), False)
     if shift is not None:
-        gradient = np.zeros(len(reader.known.covariance))
-        gradient[p] = 1.0
-        return Offset("zero", reader.combined(shift, gradient, trial.reference), True)
+        return Offset("zero", reader.signed(len(law.values), shift, trial.reference), True)
     name = CONTACT if CONTACT in at else TARE
     if not _static(law)[0] or name not in at:
         # A law without rest does not tell.

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.numeric import TINY, Array
 from nrs_design.identification.rounding import rounding_scatter
 from nrs_design.identification.statistics import (
     CONFIDENCE,
@@ -29,8 +29,6 @@ from nrs_design.identification.tissue.problem import LeastSquaresProblem, Point
 from nrs_design.identification.tissue.starts import box
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
-
-Array = NDArray[np.float64]
 
 STARTS = 3
 # Samples that suffice to find the right valley.
@@ -106,7 +104,7 @@ class RecordFit:
 
     @property
     def _fidelity(self) -> float:
-        return 2 * self._samples * float(np.log(max(self.rmse, np.finfo(float).tiny)))
+        return 2 * self._samples * float(np.log(max(self.rmse, TINY)))
 
     @property
     def _count(self) -> int:

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets import TissueRecord
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import (
     CONFIDENCE,
     Estimate,
@@ -25,8 +25,6 @@ from nrs_design.identification.tissue.ranges import (
 from nrs_design.identification.tissue.trial import Trial, prepare
 from nrs_design.models.contact import AbstractContactLaw
 from nrs_design.spec.provenance import Coverage
-
-Array = NDArray[np.float64]
 
 # Fewer records than these, counted by weight, have no scatter.
 _FEWEST = 1.5

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Flags, beyond
 from nrs_design.identification.tissue.offsets import (
     fits_zero,
     measured_force,
@@ -23,10 +23,12 @@ from nrs_design.identification.tissue.offsets import (
 )
 from nrs_design.identification.tissue.starts import scan
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import LINEAR_LAWS, AbstractContactLaw, AbstractNonlinearLaw, Motion
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from nrs_design.models.contact import (
+    AbstractContactLaw,
+    AbstractLinearLaw,
+    AbstractNonlinearLaw,
+    Motion,
+)
 
 # Of a difference in the logarithm of a parameter.
 _STEP = 1e-6
@@ -63,7 +65,7 @@ class LeastSquaresProblem:
     @cached_property
     def begins(self) -> tuple[slice, ...]:
         """Stretches that do not begin at rest, for a law that remembers."""
-        remembers = any(law is self.kind and law.remembers for law in LINEAR_LAWS.values())
+        remembers = issubclass(self.kind, AbstractLinearLaw) and self.kind.remembers
         return self.trial.unrested if remembers else ()
 
     @cached_property
@@ -211,8 +213,7 @@ class Point:
         return self._less_constants(self._rest)
 
     def _less_constants(self, values: Array) -> Array:
-        basis = self._factors[0]
-        return np.asarray(values - basis @ (basis.T @ values))
+        return beyond(self._factors[0], values)
 
     @cached_property
     def cost(self) -> float:

@@ -9,16 +9,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import TINY, Array, beyond, column_sizes
 from nrs_design.identification.tissue.offsets import measured_force, offset_columns, offset_names
-from nrs_design.identification.tissue.starts import reduce_series
 from nrs_design.identification.tissue.trial import Trial
-from nrs_design.models.contact import Elastic
+from nrs_design.models.contact import Elastic, KelvinBoltzmann
 from nrs_design.models.contact.law import AbstractLinearLaw
 from nrs_design.models.contact.relaxation import Relaxation
-
-Array = NDArray[np.float64]
 
 MOST_TERMS = 3
 _GRID = 12
@@ -80,8 +77,21 @@ def fit_series(trial: Trial) -> Series:
         tuple(times.tolist()),
         best.rmse,
         tuple(fit.bic for fit in fits),
-        reduce_series(rest, arms, times),
+        _reduced(rest, arms, times),
     )
+
+
+def _reduced(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None:
+    """Return the one relaxation that stands for several; None if the arms vanish.
+
+    It keeps the stiffness at rest, the stiffness that a sudden motion meets, and the impulse that
+    the relaxation takes up, ``sum E_i tau_i``.
+    """
+    total = float(arms.sum())
+    if not total > 0 or not rest > 0:
+        return None
+    tau = float(arms @ times) / total
+    return KelvinBoltzmann.from_eta(rest, (rest + total) * tau, tau)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,8 +107,7 @@ class _Fit:
 def _fit(trial: Trial, terms: int) -> _Fit:
     from scipy.optimize import least_squares
 
-    step, duration = float(np.median(trial.motion.steps)), trial.duration
-    low, high = np.log(step), np.log(3 * duration)
+    low, high = np.log(trial.step), np.log(3 * trial.duration)
     ends = []
 
     def error_at(logs: Array) -> Array:
@@ -118,7 +127,7 @@ def _fit(trial: Trial, terms: int) -> _Fit:
     n = len(error)
     count = 1 + 2 * terms + len(offset_names(Elastic, trial)) + terms * len(trial.unrested) + 1
     rmse = float(np.sqrt(np.mean(error**2)))
-    bic = 2 * n * float(np.log(max(rmse, np.finfo(float).tiny))) + count * float(np.log(n))
+    bic = 2 * n * float(np.log(max(rmse, TINY))) + count * float(np.log(n))
     return _Fit(values, times, rmse, bic)
 
 
@@ -139,10 +148,8 @@ def _solve(trial: Trial, times: Array) -> tuple[Array, Array]:
     parts = [motion.deflection, *(Relaxation(motion, float(tau)).y for tau in times)]
     X = np.column_stack([np.where(trial.touching, part, 0.0)[used] for part in parts])
     basis = np.linalg.qr(_constants(trial, times))[0]
-    force = measured_force(trial)
-    force = force - basis @ (basis.T @ force)
-    X -= basis @ (basis.T @ X)
-    size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
+    force, X = beyond(basis, measured_force(trial)), beyond(basis, X)
+    size = column_sizes(X)
     values = nnls(X / size, force)[0]
     return np.asarray(values / size), np.asarray(force - (X / size) @ values)
 

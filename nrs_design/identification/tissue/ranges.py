@@ -14,9 +14,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
+from nrs_design.identification.numeric import Array
 from nrs_design.identification.statistics import (
     Estimate,
     joint_level,
@@ -24,8 +24,6 @@ from nrs_design.identification.statistics import (
     tolerance_factor,
 )
 from nrs_design.spec.provenance import Coverage
-
-Array = NDArray[np.float64]
 
 _FEWEST = 2
 # Weaker correlations leave an ellipse that all but fills its box.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, column_sizes
 from nrs_design.identification.statistics import (
     WHITE,
     fisher_tail,
@@ -15,8 +15,6 @@ from nrs_design.identification.statistics import (
     uncertainty,
 )
 from nrs_design.identification.tissue.trial import Trial
-
-Array = NDArray[np.float64]
 
 # Parts of the range of the force: of the whole residual, and of what it follows.
 LARGEST_RESIDUAL = 0.1
@@ -198,7 +196,7 @@ def _gain(residuals: Array, sensitivities: Array, columns: Array) -> float:
     """Return by how much BIC falls with more columns, shape (n, q), beside a linearized fit."""
     n = len(residuals)
     X = np.column_stack([sensitivities, columns])
-    size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
+    size = column_sizes(X)
     found, _, rank, _ = np.linalg.lstsq(X / size, residuals, rcond=1e-9)
     left = residuals - (X / size) @ found
     more = int(rank) - np.linalg.matrix_rank(sensitivities / size[: sensitivities.shape[1]])

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.identification.datasets.checks import gaps_in
+from nrs_design.identification.numeric import Array
 from nrs_design.models.contact import Motion
-
-Array = NDArray[np.float64]
 
 # The force falls by this part of its range ...
 _FALL = 0.15

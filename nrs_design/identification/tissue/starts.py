@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, beyond, column_sizes
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import (
     AbstractContactLaw,
-    AbstractLinearLaw,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
@@ -24,8 +23,6 @@ from nrs_design.models.contact import (
 from nrs_design.models.contact.hunt_crossley import LARGEST_EXPONENT, LEAST_EXPONENT
 from nrs_design.models.contact.law import DAMPING, STIFFNESS
 from nrs_design.models.contact.relaxation import Relaxation
-
-Array = NDArray[np.float64]
 
 _SCAN = 9
 _EXPONENTS = 3
@@ -107,9 +104,8 @@ def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     exponent is kept between 1.1 and 1.3 as in thesis 2.5.
     """
     k = trial.span / float(np.ptp(trial.deflection))
-    step = float(np.median(trial.motion.steps))
     stiffness = (k / _STIFFNESS_BOX, k * _STIFFNESS_BOX)
-    damping = (k * step * _SHORTEST, k * trial.duration * _LONGEST)
+    damping = (k * trial.step * _SHORTEST, k * trial.duration * _LONGEST)
     reach = float(np.max(np.abs(trial.deflection)))
     power = reach ** (LEAST_EXPONENT - 1), reach**LARGEST_EXPONENT
     bounds = {
@@ -123,40 +119,18 @@ def box(kind: type[AbstractContactLaw], trial: Trial) -> tuple[Array, Array]:
     return low, high
 
 
-def reduce_series(rest: float, arms: Array, times: Array) -> AbstractLinearLaw | None:
-    """Return the one relaxation that stands for several; None if the arms vanish.
-
-    It keeps the stiffness at rest, the stiffness that a sudden motion meets, and the impulse that
-    the relaxation takes up, ``sum E_i tau_i``.
-
-    Parameters
-    ----------
-    rest : float
-        Stiffness at rest.
-    arms, times : ndarray, shape (m,)
-        Stiffness and relaxation time of each arm.
-    """
-    total = float(arms.sum())
-    if not total > 0 or not rest > 0:
-        return None
-    tau = float(arms @ times) / total
-    return KelvinBoltzmann.from_eta(rest, (rest + total) * tau, tau)
-
-
 def _time_constants(trial: Trial) -> list[float]:
-    step = float(np.median(trial.motion.steps))
-    return [float(tau) for tau in np.geomspace(2 * step, 5 * trial.duration, _SCAN)]
+    return list(map(float, np.geomspace(2 * trial.step, 5 * trial.duration, _SCAN)))
 
 
 def _linear(force: Array, X: Array, basis: Array) -> tuple[float, ...]:
     """Fit positive coefficients: least squares, what comes out too small is lifted."""
-    force = force - basis @ (basis.T @ force)
-    X = X - basis @ (basis.T @ X)
-    size = np.maximum(np.linalg.norm(X, axis=0), np.finfo(float).tiny)
+    force, X = beyond(basis, force), beyond(basis, X)
+    size = column_sizes(X)
     scaled = np.linalg.lstsq(X / size, force, rcond=None)[0]
     floor = _FLOOR * float(np.linalg.norm(force))
     if (scaled < floor).any() and len(size) > 1:
         # Without the offending terms, as a nonnegative fit would have it.
         alone = (X / size).T @ force
         scaled = np.where(scaled < floor, 0.0, np.maximum(alone, floor))
-    return tuple(float(c) for c in np.maximum(scaled, floor) / size)
+    return tuple((np.maximum(scaled, floor) / size).tolist())

@@ -10,12 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Flags
 from nrs_design.identification.tissue.contact import Touch
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def surface(

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.statistics import Estimate, Uncertainty, joint_level
@@ -15,8 +14,6 @@ from nrs_design.identification.tissue.pool import ModelFit
 from nrs_design.identification.tissue.ranges import hull, spread_ranges
 from nrs_design.identification.tissue.trial import Trial
 from nrs_design.models.contact import AbstractContactLaw, AbstractNonlinearLaw, KelvinVoigt
-
-Array = NDArray[np.float64]
 
 _DIGITS = 4
 

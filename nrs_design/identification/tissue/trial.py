@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nrs_design.errors import DataError
 from nrs_design.identification.datasets import TissueRecord
 from nrs_design.identification.datasets.checks import long_stretches, pauses_text, stretches_in
+from nrs_design.identification.numeric import Array, Flags, Rows, parted
 from nrs_design.identification.statistics import span
 from nrs_design.identification.tissue.contact import DetectedContact, find_contact, inner
 from nrs_design.identification.tissue.cycles import find_cycles
@@ -21,9 +20,6 @@ from nrs_design.identification.tissue.rupture import find_rupture
 from nrs_design.identification.tissue.surface import surface
 from nrs_design.models.contact import Motion
 from nrs_design.proof.text import counted
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 FEWEST = 50
 # So near to the position of contact, as a part of the travel, a sample may be in air or not.
@@ -84,7 +80,7 @@ class Trial:
     drift: bool  # Whether the tare is fitted as moving
     cuts: tuple[Cut, ...]  # What is not used, and why
     cycles: tuple[slice, ...]  # Loading cycles, among all samples
-    stretch: NDArray[np.int64]  # Shape (n,). Counts up at every pause of the record.
+    stretch: Rows  # Shape (n,). Counts up at every pause of the record.
 
     @property
     def unrested(self) -> tuple[slice, ...]:
@@ -94,13 +90,14 @@ class Trial:
         before ``start``, or during a pause of the record, no sample tells.
         """
         parts = np.where(self.touching, self.stretch, -1)
-        edges = [0, *(np.flatnonzero(np.diff(parts)) + 1).tolist(), len(parts)]
         loaded = float(self.motion.deflection[0]) > _LOADED * float(self.motion.deflection.max())
         whole = self.found is None and self.stretch[-1] == self.stretch[0]
         if whole and not loaded and not self.preparation.start:
             return ()
         return tuple(
-            slice(a, b) for a, b in pairwise(edges) if self.touching[a] and self.used[a:b].any()
+            slice(a, b)
+            for a, b in parted(np.diff(parts) != 0)
+            if self.touching[a] and self.used[a:b].any()
         )
 
     @property
@@ -117,6 +114,11 @@ class Trial:
     def duration(self) -> float:
         """From first to last sample, in s."""
         return float(self.motion.time[-1] - self.motion.time[0])
+
+    @property
+    def step(self) -> float:
+        """Usual time between samples in s."""
+        return float(np.median(self.motion.steps))
 
     @property
     def span(self) -> float:
@@ -154,15 +156,8 @@ class Trial:
             return self
         pick = slice(None, None, every)
         motion = Motion(self.motion.time[pick], self.motion.deflection[pick])
-        return replace(
-            self,
-            motion=motion,
-            position=self.position[pick],
-            force=self.force[pick],
-            used=self.used[pick],
-            touching=self.touching[pick],
-            stretch=self.stretch[pick],
-        )
+        names = ("position", "force", "used", "touching", "stretch")
+        return replace(self, motion=motion, **{name: getattr(self, name)[pick] for name in names})
 
 
 def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Trial:
@@ -184,8 +179,8 @@ def prepare(record: TissueRecord, preparation: Preparation | None = None) -> Tri
     kept, cuts = _window(record, wanted)
     rupture = find_rupture(kept.motion, kept.force)
     if rupture is not None:
-        rows = slice(rupture.peak, len(kept.force))
-        cuts.append(_cut(kept.motion.time, _flags(len(kept.force), rows), rupture.reason))
+        torn = np.arange(len(kept.force)) >= rupture.peak
+        cuts += _cut(kept.motion.time, torn, rupture.reason)
         kept = _rows(kept, slice(0, rupture.peak))
     found = find_contact(kept) if wanted.contact == "auto" else None
     return _assemble(record, kept, wanted, found, cuts)
@@ -209,12 +204,12 @@ def _assemble(
         edge = _edge(position, width, wanted, found)
         edge |= touching & ~inner(touching)
         free = found.beyond & ~touching & ~edge
-        cuts += _runs(time, edge, "at the edge of contact")
-        cuts += _runs(time, free, "no contact yet: the tissue has not come back from a touch")
+        cuts += _cut(time, edge, "at the edge of contact")
+        cuts += _cut(time, free, "no contact yet: the tissue has not come back from a touch")
         used = ~edge & ~free
     cycles = find_cycles(deflection)
     stretch, beside = _pauses(time)
-    cuts += _runs(time, beside, "beside a pause of the record, or between two of them")
+    cuts += _cut(time, beside, "beside a pause of the record, or between two of them")
     used = used & ~beside & ~_skipped(time, cycles, wanted, cuts)
     if used.sum() < FEWEST or np.ptp(x[used]) == 0:
         raise DataError(
@@ -232,7 +227,7 @@ def _assemble(
     )  # fmt: skip
 
 
-def _pauses(time: Array) -> tuple[NDArray[np.int64], Flags]:
+def _pauses(time: Array) -> tuple[Rows, Flags]:
     """Return numbers of the stretches between pauses, and the samples that are not used for them.
 
     These are the last one before a pause and the first one after it, whose velocity is none, and
@@ -265,22 +260,20 @@ def _window(record: TissueRecord, wanted: Preparation) -> tuple[TissueRecord, li
     time = record.motion.time
     start = -np.inf if wanted.start is None else wanted.start
     end = np.inf if wanted.end is None else wanted.end
-    rows = np.flatnonzero((time >= start) & (time <= end))
-    if len(rows) < FEWEST:
+    inside = (time >= start) & (time <= end)
+    if inside.sum() < FEWEST:
         raise DataError(
-            f"{len(rows)} samples lie between --from and --to, at least {FEWEST} are needed",
+            f"{inside.sum()} samples lie between --from and --to, at least {FEWEST} are needed",
             path=record.source.path,
             remedy=f"the record lasts from 0 s to {record.duration:.6g} s",
         )
-    kept = _rows(record, slice(int(rows[0]), int(rows[-1]) + 1))
-    outside = np.ones(len(time), bool)
-    outside[rows] = False
+    kept = _rows(record, inside)
     if wanted.negate:
         kept = replace(kept, force=-kept.force)
-    return kept, _runs(time, outside, "outside --from and --to")
+    return kept, _cut(time, ~inside, "outside --from and --to")
 
 
-def _rows(record: TissueRecord, rows: slice) -> TissueRecord:
+def _rows(record: TissueRecord, rows: slice | Flags) -> TissueRecord:
     motion = Motion(record.motion.time[rows], record.motion.deflection[rows])
     return replace(record, motion=motion, force=record.force[rows])
 
@@ -308,21 +301,11 @@ def _skipped(time: Array, cycles: tuple[slice, ...], wanted: Preparation, cuts: 
             remedy="leave at least one: give a smaller --skip-cycles",
         )
     skipped[: cycles[wanted.skip_cycles].start] = True
-    cuts += _runs(time, skipped, "first loading cycles, set apart")
+    cuts += _cut(time, skipped, "first loading cycles, set apart")
     return skipped
 
 
-def _flags(count: int, rows: slice) -> Flags:
-    flags = np.zeros(count, bool)
-    flags[rows] = True
-    return flags
-
-
-def _cut(time: Array, flags: Flags, reason: str) -> Cut:
-    inside = np.flatnonzero(flags)
-    return Cut(float(time[inside[0]]), float(time[inside[-1]]), reason, len(inside))
-
-
-def _runs(time: Array, flags: Flags, reason: str) -> list[Cut]:
+def _cut(time: Array, flags: Flags, reason: str) -> list[Cut]:
     """Sum up all samples with one reason: they may be many short stretches."""
-    return [_cut(time, flags, reason)] if flags.any() else []
+    inside = time[flags]
+    return [Cut(float(inside[0]), float(inside[-1]), reason, len(inside))] if len(inside) else []

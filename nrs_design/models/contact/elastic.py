@@ -25,13 +25,9 @@ class Elastic(AbstractLinearLaw):
 
     k: Number  # Stiffness in N/m (N m/rad)
 
-    def simulate(self, motion: Motion) -> Array:
-        """Return the reaction at the samples, in N (N m)."""
-        return float(self.k) * motion.deflection
-
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivative by log k, shape (n, 1)."""
-        return self.simulate(motion)[:, None]
+        return float(self.k) * motion.deflection[:, None]
 
     @property
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -40,16 +40,8 @@ class Hand(AbstractLinearLaw):
     b: Number  # Damping in N s/m (N m s/rad); may be zero
     m: Number  # Mass in kg (kg m^2); may be zero
 
-    def simulate(self, motion: Motion) -> Array:
-        """Return the reaction at the samples, in N (N m)."""
-        parts = self._parts(motion)
-        return parts[:, 0] + parts[:, 1] + parts[:, 2]
-
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k, log b and log m, shape (n, 3)."""
-        return self._parts(motion)
-
-    def _parts(self, motion: Motion) -> Array:
         import numpy as np
 
         acceleration = np.gradient(motion.velocity, motion.time)

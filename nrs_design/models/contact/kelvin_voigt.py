@@ -36,10 +36,6 @@ class KelvinVoigt(AbstractLinearLaw):
     k: Number  # Stiffness in N/m (N m/rad)
     b: Number  # Damping in N s/m (N m s/rad); may be zero
 
-    def simulate(self, motion: Motion) -> Array:
-        """Return the reaction at the samples, in N (N m)."""
-        return float(self.k) * motion.deflection + float(self.b) * motion.velocity
-
     def sensitivities(self, motion: Motion) -> Array:
         """Return its derivatives by log k and log b, shape (n, 2)."""
         import numpy as np

@@ -157,6 +157,11 @@ class AbstractLinearLaw(AbstractContactLaw):
     # Whether a mass moves with the contact, so that the force takes the acceleration.
     has_mass: ClassVar[bool] = False
 
+    def simulate(self, motion: Motion) -> Array:
+        """Return the reaction, by default of a law that is linear in its parameters."""
+        found: Array = self.sensitivities(motion).sum(axis=1)
+        return found
+
     @property
     @abstractmethod
     def impedance(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

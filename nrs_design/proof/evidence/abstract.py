@@ -230,7 +230,7 @@ class AbstractEvidence(ABC):
             flying = frozenset(system.flights.flying)
             free = [mode.A for mode in system.modes if mode.name in flying]
         else:
-            free = [] if system.contact is None else [mode.A for mode in system.contact.free]
+            free = [mode.A for mode in system.free]
         return any(A not in free for A in self.used_matrices(system))
 
     def used_matrices(self, system: SwitchedSystem) -> list[RationalMatrix]:

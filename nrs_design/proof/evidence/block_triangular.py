@@ -28,8 +28,6 @@ class BlockTriangular(AbstractEvidence):
     """
 
     kind: ClassVar[str] = "block-triangular"
-    # Where blocks are coupled, a solution may decay like that rate times a polynomial in time.
-    attains_rate: ClassVar[bool] = False
 
     blocks: Blocks  # Indices of the states of each block
     # Index of a block, and evidence for its family of diagonal blocks.
@@ -61,7 +59,10 @@ class BlockTriangular(AbstractEvidence):
         return any(part.names_unstable_mode for _, part in self.parts)
 
     def proved_rate(self, system: SwitchedSystem) -> Fraction | None:
-        """Return the slowest of the parts' rates: solutions decay at any slower one."""
+        """Return the slowest of the parts' rates: solutions decay at any slower one.
+
+        It is not attained: a solution may decay like that rate times a polynomial in time.
+        """
         rates = [part.proved_rate(diagonal_block(system, self.blocks[k])) for k, part in self.parts]
         known = [rate for rate in rates if rate is not None]
         if len(known) < len(rates):

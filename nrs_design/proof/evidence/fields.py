@@ -148,16 +148,12 @@ def read_integers(value: Any) -> Matrix:
 
 def read_integer(value: object) -> int:
     """Read an integer; a truth value is not one."""
-    if type(value) is not int:
-        raise TypeError(f"expected an integer, not {quoted(str(value))}")
-    return value
+    return _of_type(value, int, "an integer")
 
 
 def read_text(value: object) -> str:
     """Read a text."""
-    if not isinstance(value, str):
-        raise TypeError(f"expected a text, not {quoted(str(value))}")
-    return value
+    return _of_type(value, str, "a text")
 
 
 def read_ratio(value: object) -> Fraction:
@@ -174,24 +170,22 @@ def read_signed(hint: object, value: object) -> Fraction:
     return -read_ratio(text[1:]) if text.startswith("-") else read_ratio(text)
 
 
-def read_truth(value: object) -> bool:
-    """Read a truth value."""
-    if not isinstance(value, bool):
-        raise TypeError(f"expected true or false, not {quoted(str(value))}")
-    return value
-
-
 def read_list(value: object) -> list[Any]:
     """Read a list."""
-    if not isinstance(value, list):
-        raise TypeError(f"expected a list, not {quoted(str(value))}")
+    return _of_type(value, list, "a list")
+
+
+def _of_type(value: object, kind: type[T], words: str) -> T:
+    """Return a value that JSON has as this type; a text may be a word of an enumeration."""
+    if not isinstance(value, kind) or (kind is int and type(value) is not int):
+        raise TypeError(f"expected {words}, not {quoted(str(value))}")
     return value
 
 
 _PLAIN: Mapping[Any, Callable[[object], Any]] = {
     str: read_text,
     int: read_integer,
-    bool: read_truth,
+    bool: lambda value: _of_type(value, bool, "true or false"),
     Fraction: read_ratio,
     Matrix: read_integers,
     RationalMatrix: _read_matrix,

@@ -12,7 +12,7 @@ from nrs_design.proof.channels import Channel, Output
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Bound, Shows, find_odd_form
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.exact import IntegerMatrix
-from nrs_design.proof.matrix import RationalMatrix, leading
+from nrs_design.proof.matrix import RationalMatrix, bordered, leading
 from nrs_design.proof.mode import Time
 from nrs_design.proof.steps import (
     CONTACT,
@@ -20,8 +20,6 @@ from nrs_design.proof.steps import (
     FREE,
     ROUNDING,
     Acting,
-    find_odd_multipliers,
-    find_odd_roundings,
     grain_of,
     multiplier_names,
     steps_of,
@@ -96,23 +94,27 @@ class InvariantEllipsoid(AbstractEvidence):
             return unknown
         if (odd := find_odd_form(self.Q, self.denominator_log2, system.order)) is not None:
             return odd
-        if (odd := find_odd_multipliers(self.multipliers, system)) is not None:
+        if (odd := self._find_odd_multiplier(system)) is not None:
             return odd
-        if (odd := find_odd_roundings(self.roundings, system)) is not None:
-            return odd
-        if (unlike := self._find_unlike_axes(system)) is not None:
-            return unlike
         if len(self.shares) != len(self.channels):
             return "there is not one share for each disturbance"
         if min(self.shares) <= 0 or (system.time is Time.DISCRETE and sum(self.shares) >= 1):
             return "the shares are not those of a set that is not left"
         return None if self.level > 0 else "the level is not positive"
 
-    def _find_unlike_axes(self, system: SwitchedSystem) -> str | None:
-        if len(self.taus) != len(system.couplings):
-            return "there is not one multiplier for each coupling"
-        if any(tau < 0 for tau in self.taus):
-            return "the multiplier of a coupling is negative"
+    def _find_odd_multiplier(self, system: SwitchedSystem) -> str | None:
+        # Without multipliers for them, it is about exact arithmetic.
+        rounded = len(system.roundings) if self.roundings else 0
+        crossings = len(multiplier_names(system))
+        for numbers, count, each, one in (
+            (self.multipliers, crossings, "condition that needs it", "a multiplier"),
+            (self.roundings, rounded, "rounding", "the multiplier of a rounding"),
+            (self.taus, len(system.couplings), "coupling", "the multiplier of a coupling"),
+        ):
+            if len(numbers) != count:
+                return f"there is not one multiplier for each {each}"
+            if any(number < 0 for number in numbers):
+                return f"{one} is negative"
         if system.couplings and system.axes is None:
             return "the system does not say how many axes are disturbed"
         return None
@@ -130,25 +132,22 @@ class InvariantEllipsoid(AbstractEvidence):
 
     def forms(self, system: SwitchedSystem) -> Forms:
         """Yield Q, the condition of every motion, and that of every row of the output."""
-        output = next(item for item in system.outputs if item.name == self.output)
         yield "Q is not symmetric and positive definite", self.Q
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
         motions = self._motions(system)
         yield from ((f"the ellipsoid can be left {where}", form) for where, form in motions)
-        for q in output.rows:
-            row = q.fractions()[0]
-            rows = [[*q_row, entry] for q_row, entry in zip(Q, row, strict=True)]
-            form = [*rows, [*row, self.level**2 / (system.axes or 1)]]
-            failure = f"{self.output} can be beyond the level"
-            yield failure, RationalMatrix.from_rows(form).numerators
+        failure, corner = f"{self.output} can be beyond the level", self.level**2
+        for q in self.bound(system).output.rows:
+            form = bordered(Q, q.fractions()[0], corner / (system.axes or 1))
+            yield failure, form.numerators
 
     def _motions(self, system: SwitchedSystem) -> Forms:
         """Yield the condition of every step, with where it is."""
-        named, share = self.acting(system), sum(self.shares, Fraction(0))
-        weights = tuple(a / c.bound**2 for a, c in zip(self.shares, named, strict=True))
-        channels = tuple(system.channels.index(channel) for channel in named)
+        bound = self.bound(system)
+        weights = tuple(a / c.bound**2 for a, c in zip(self.shares, bound.channels, strict=True))
+        channels = tuple(system.channels.index(channel) for channel in bound.channels)
         acting = Acting(channels, weights, bool(self.roundings), bool(self.taus))
-        keeps = share if system.time is Time.CONTINUOUS else 1 - share
+        keeps = bound.share if system.time is Time.CONTINUOUS else 1 - bound.share
         known = dict(zip(multiplier_names(system), self.multipliers, strict=True))
         known |= {f"{ROUNDING} {k}": m for k, m in enumerate(self.roundings, 1)}
         known |= {f"{COUPLING} {k}": m for k, m in enumerate(self.taus, 1)}
@@ -165,18 +164,15 @@ class InvariantEllipsoid(AbstractEvidence):
     def bound(self, system: SwitchedSystem) -> Bound:
         """Return the level with what it holds for."""
         output = next(item for item in system.outputs if item.name == self.output)
-        return Bound(output, self.level, self.acting(system), sum(self.shares, Fraction(0)))
-
-    def acting(self, system: SwitchedSystem) -> tuple[Channel, ...]:
-        """Return the disturbances that it is about, in its own order."""
         by_name = {channel.name: channel for channel in system.channels}
-        return tuple(by_name[name] for name in self.channels)
+        named = tuple(by_name[name] for name in self.channels)
+        return Bound(output, self.level, named, sum(self.shares, Fraction(0)))
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State how far the output goes, from rest and in the long run."""
-        output = next(item for item in system.outputs if item.name == self.output)
+        bound = self.bound(system)
+        output, named = bound.output, bound.channels
         lost = "" if system.contact is None else ", contact lost and made again at any time"
-        named = self.acting(system)
         sizes = [f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in named]
         steps = " at a step" if system.time is Time.DISCRETE else ""
         among = ""

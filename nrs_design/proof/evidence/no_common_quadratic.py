@@ -9,7 +9,14 @@ from typing import ClassVar
 
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.fields import Matrix
-from nrs_design.proof.exact import IntegerMatrix, add, common_denominator
+from nrs_design.proof.exact import (
+    IntegerMatrix,
+    add,
+    common_denominator,
+    multiply,
+    scaled,
+    transpose,
+)
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
@@ -62,9 +69,8 @@ class NoCommonQuadratic(AbstractEvidence):
         common = self._common(system)
         assert common is not None
         for name, L in self.factors:
-            term = _term(modes[name], L, system.time)
             weight = common // modes[name].A.denominator ** 2
-            total = add(total, term, weight)
+            total = add(total, _term(modes[name], L, system.time), weight)
         yield "the sum over the modes is not positive definite", total
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
@@ -79,14 +85,8 @@ class NoCommonQuadratic(AbstractEvidence):
 def _term(mode: Mode, L: Matrix, time: Time) -> list[list[int]]:
     """Return ``denominator^2`` times ``A X + X A'`` (or ``A X A' - X``) with ``X = L L'``."""
     N, q = mode.A.numerators, mode.A.denominator
-    columns = list(zip(*L, strict=True))
-    NL = [[sum(map(mul, row, column)) for column in columns] for row in N]
+    X = [[sum(map(mul, a, b)) for b in L] for a in L]
+    NX = multiply(N, X)
     if time is Time.CONTINUOUS:
-        half = _outer(NL, L)
-        return [[q * entry for entry in row] for row in add(half, list(zip(*half, strict=True)))]
-    image, X = _outer(NL, NL), _outer(L, L)
-    return add(image, X, -q * q)
-
-
-def _outer(left: IntegerMatrix, right: IntegerMatrix) -> list[list[int]]:
-    return [[sum(map(mul, a, b)) for b in right] for a in left]
+        return scaled(add(NX, transpose(NX)), q)
+    return add(multiply(NX, transpose(N)), X, -q * q)

@@ -11,7 +11,7 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows, find_odd_form
 from nrs_design.proof.evidence.fields import MAX_INTEGER_BITS, Matrix, rate_words
 from nrs_design.proof.exact import IntegerMatrix, lyapunov_decrease
-from nrs_design.proof.matrix import RationalMatrix, leading, multiply
+from nrs_design.proof.matrix import RationalMatrix, bordered, leading, multiply
 from nrs_design.proof.mode import Time
 from nrs_design.proof.saturation import Saturation
 from nrs_design.proof.system import SwitchedSystem
@@ -89,8 +89,7 @@ class SaturatedEllipsoid(AbstractEvidence):
         yield from self._decreases(system, system.saturation)
         Q = RationalMatrix(self.Q, 2**self.denominator_log2).fractions()
         for signal, h in zip(system.saturation.signals, self._held(), strict=True):
-            rows = [[*q, entry] for q, entry in zip(Q, h, strict=True)]
-            form = RationalMatrix.from_rows([*rows, [*h, signal.limit**2]])
+            form = bordered(Q, h, signal.limit**2)
             yield f"the row of {signal.name} is beyond its limit", form.numerators
         start = system.saturation.start
         for state in start.states:
@@ -100,17 +99,15 @@ class SaturatedEllipsoid(AbstractEvidence):
             yield f"the ellipsoid does not hold the stated {start.name}", left.numerators
 
     def _decreases(self, system: SwitchedSystem, saturation: Saturation) -> Forms:
-        held, count = self._held(), len(system.modes)
-        for k, mode in enumerate(system.modes):
+        held = self._held()
+        for k, mode in enumerate(system.every_mode):
+            where, Q = f"in mode {mode.name}", self.Q
+            is_free = k >= len(system.modes)
+            if is_free:
+                where, Q = f"in free motion, mode {mode.name}", tuple(leading(Q))
             for B in saturation.between(mode.A, k, held):
-                form = lyapunov_decrease(B.numerators, B.denominator, self.Q, self.rate)
-                yield f"V does not decrease at the claimed rate in mode {mode.name}", form
-        free = () if system.contact is None else system.contact.free
-        for k, mode in enumerate(free, count):
-            for B in saturation.between(mode.A, k, held):
-                own = leading(B.numerators)
-                form = lyapunov_decrease(own, B.denominator, leading(self.Q), self.rate)
-                where = f"in free motion, mode {mode.name}"
+                N = leading(B.numerators) if is_free else B.numerators
+                form = lyapunov_decrease(N, B.denominator, Q, self.rate)
                 yield f"V does not decrease at the claimed rate {where}", form
 
     def _held(self) -> list[list[Fraction]]:

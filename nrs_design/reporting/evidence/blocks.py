@@ -71,10 +71,7 @@ class BlocksPage(AbstractPage):
 
     page_of: Callable[[SwitchedSystem, AbstractEvidence], AbstractPage]  # of what a block shows
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "blocks of its own"
+    name = "blocks of its own"
 
     def meaning(self) -> tuple[str, ...]:
         """Say what follows for the family from its blocks."""
@@ -174,12 +171,9 @@ def _draw_blocks(system: SwitchedSystem, blocks: Sequence[Sequence[int]]) -> Fig
     shown = range(0, n, 1 + n // 40)
     axes.set_xticks(shown, [ticks[i] for i in shown], rotation=0 if n <= 4 else 60)
     axes.set_yticks(shown, [ticks[i] for i in shown])
-    axes.set_xlim(-0.7, n - 0.3)
-    axes.set_ylim(n - 0.3, -0.7)
-    axes.set_aspect("equal")
+    axes.set(xlim=(-0.7, n - 0.3), ylim=(n - 0.3, -0.7), aspect="equal")
     axes.grid(visible=False)
-    axes.set_xlabel("State that drives")
-    axes.set_ylabel("State driven")
+    axes.set(xlabel="State that drives", ylabel="State driven")
     legend(figure, axes, 3)
     return figure
 

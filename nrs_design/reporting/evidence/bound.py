@@ -33,10 +33,7 @@ _RUN = (
 class BoundPage(AbstractPage):
     """The level, and a run that tries to reach it."""
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "bound on an output under a disturbance"
+    name = "bound on an output under a disturbance"
 
     def meaning(self) -> tuple[str, ...]:
         """State the invariant set, and how it was decided."""

@@ -42,10 +42,7 @@ _LABEL = "root of V over its first value [1]"
 class ForcePage(AbstractPage):
     """Q, and a run that is pushed into contact."""
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "contact that settles under a constant force"
+    name = "contact that settles under a constant force"
 
     def meaning(self) -> tuple[str, ...]:
         """Say what V is, what follows, and how it was decided."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from enum import Enum, auto
+from enum import Enum
 
 import numpy as np
 
@@ -89,29 +89,13 @@ _ON_THE_BORDER = (
 
 
 class _Shape(Enum):
-    """What grows."""
+    """What grows: its name, and why one such motion is enough."""
 
-    MODE = auto()
-    AVERAGE = auto()
-    PERIOD = auto()
-    CONTACT = auto()
-    VALUE = auto()
-
-
-_NAMES: Mapping[_Shape, str] = {
-    _Shape.MODE: "a mode that is not stable",
-    _Shape.AVERAGE: "an average that is not stable",
-    _Shape.PERIOD: "a period that grows",
-    _Shape.CONTACT: "a motion that grows while contact is lost and made",
-    _Shape.VALUE: "a value of the parameter that is not stable",
-}
-_MEANINGS: Mapping[_Shape, str] = {
-    _Shape.MODE: _IN_A_MODE,
-    _Shape.AVERAGE: _ON_AVERAGE,
-    _Shape.PERIOD: _PERIODIC,
-    _Shape.CONTACT: _BY_ITSELF,
-    _Shape.VALUE: _AT_A_VALUE,
-}
+    MODE = "a mode that is not stable", _IN_A_MODE
+    AVERAGE = "an average that is not stable", _ON_AVERAGE
+    PERIOD = "a period that grows", _PERIODIC
+    CONTACT = "a motion that grows while contact is lost and made", _BY_ITSELF
+    VALUE = "a value of the parameter that is not stable", _AT_A_VALUE
 
 
 class GrowthPage(AbstractPage):
@@ -120,13 +104,14 @@ class GrowthPage(AbstractPage):
     @property
     def name(self) -> str:
         """What it shows."""
-        return _NAMES[self._shape]
+        return self._shape.value[0]
 
     def meaning(self) -> tuple[str, ...]:
         """Say why one motion is enough."""
         region = "unit disk" if self.is_discrete else "left half plane"
-        text = _MEANINGS[self._shape]
-        said = text.format(signals=words.allowed_signals(self.system), region=region)
+        said = self._shape.value[1].format(
+            signals=words.allowed_signals(self.system), region=region
+        )
         return (said, *self._part.meaning()) if self._shape is _Shape.VALUE else (said,)
 
     def between_corners(self) -> tuple[str, ...]:

@@ -130,8 +130,7 @@ def _draw_quadratic(Q: Array, states: Sequence[str]) -> Figure:
         labels = [wrapped_label(name, 14) for name in states]
         axes.set_xticks(range(n), labels, rotation=0 if n <= 4 else 60)
         axes.set_yticks(range(n), labels)
-    axes.set_xlabel("State j")
-    axes.set_ylabel("State i")
+    axes.set(xlabel="State j", ylabel="State i")
     figure.colorbar(image, ax=axes, label="Scaled entry of Q [1]")
     return figure
 

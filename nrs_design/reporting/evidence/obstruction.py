@@ -23,10 +23,7 @@ _ARGUMENT = (
 class ObstructionPage(AbstractPage):
     """The argument, and the modes that contradict each other."""
 
-    @property
-    def name(self) -> str:
-        """What it shows."""
-        return "no common quadratic function exists"
+    name = "no common quadratic function exists"
 
     def meaning(self) -> tuple[str, ...]:
         """Say that it decides nothing about stability."""

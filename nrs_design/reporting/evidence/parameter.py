@@ -44,10 +44,7 @@ _CURVES = (
 class ParameterPage(AbstractPage):
     """Q at both ends of the parameter, and the rate of every mode over it."""
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "quadratic function of a constant parameter"
+    name = "quadratic function of a constant parameter"
 
     def meaning(self) -> tuple[str, ...]:
         """Say that the parameter must be constant, and that switching is free."""
@@ -171,9 +168,11 @@ def _draw_parameter_rates(
         axes.plot(values, rates[:, index], label=name, **curve(index, len(names), len(values)))
     label = f"claimed for all: {rate_words(claimed, Time.CONTINUOUS)}"
     axes.axhline(float(claimed), color=INK, linestyle="--", linewidth=1.3, label=label)
-    axes.set_xlabel("Place in the parameter's range, 0 low end, 1 high end [1]")
-    axes.set_ylabel("Decay rate in the norm of Q [1/s]")
-    axes.set_xlim(0, 1)
-    axes.set_ylim(0, 1.15 * float(rates.max()))
+    axes.set(
+        xlabel="Place in the parameter's range, 0 low end, 1 high end [1]",
+        ylabel="Decay rate in the norm of Q [1/s]",
+        xlim=(0, 1),
+        ylim=(0, 1.15 * float(rates.max())),
+    )
     legend(figure, axes)
     return figure

@@ -131,7 +131,6 @@ def _draw_mode_rates(
     axes.set_xlim(low - room, high + room)
     quantity = f"Decay rate in {norm} [1/s]" if continuous else "Contraction per step [1]"
     axes.locator_params(axis="x", nbins=4)
-    axes.set_xlabel(quantity)
-    axes.set_ylabel("Mode")
+    axes.set(xlabel=quantity, ylabel="Mode")
     legend(figure, axes)
     return figure

@@ -43,10 +43,7 @@ _SHARE, _STEPS = 0.1, 1500
 class SaturationPage(AbstractPage):
     """The limits, the start, Q, and a run."""
 
-    @property
-    def name(self) -> str:
-        """What it is."""
-        return "decay from an ellipsoid although signals saturate"
+    name = "decay from an ellipsoid although signals saturate"
 
     def meaning(self) -> tuple[str, ...]:
         """State the region of decay, and how it was decided."""

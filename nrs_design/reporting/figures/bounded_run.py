@@ -91,5 +91,4 @@ def _draw_panel(axes: Axes, time: Array, panel: BoundedSignal) -> None:
             label = "certified bound" if sign > 0 else None
             axes.plot(time, sign * panel.bound, color=VERMILLION, linestyle="--", label=label)
         top = max(top, min(float(panel.bound.max()), _HIGHEST * top))
-    axes.set_ylim(-1.08 * top, 1.08 * top)
-    axes.set_ylabel(panel.label)
+    axes.set(ylim=(-1.08 * top, 1.08 * top), ylabel=panel.label)

@@ -116,8 +116,7 @@ def draw_panels(columns: Sequence[PanelColumn]) -> Figure:
                 axes.set_ylabel(panel.label)
             if panel.other is not None and place == len(columns) - 1:
                 _second_scale(axes, *panel.other)
-        grid[-1, place].set_xlabel("Time [s]")
-        grid[-1, place].set_xlim(column.span)
+        grid[-1, place].set(xlabel="Time [s]", xlim=column.span)
         if column.title:
             grid[0, place].set_title(column.title, fontsize=9.5, pad=18 if column.stays else 6)
     figure.align_ylabels(grid[:, 0])

@@ -215,8 +215,7 @@ def _finish_plane(
 ) -> None:
     axes.plot(*response.state[0], "o", color=INK, label="start")
     axes.plot(0, 0, "+", color=MUTED, markersize=11, label="rest")
-    axes.set_xlabel(_axis_label(system.states, 0))
-    axes.set_ylabel(_axis_label(system.states, 1))
+    axes.set(xlabel=_axis_label(system.states, 0), ylabel=_axis_label(system.states, 1))
     legend(figure, axes, 3)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -144,17 +143,12 @@ def _scale(axes: Axes, name: str, span: Span) -> None:
     if span.bend is None:
         return
     decades = math.log10(max(-span.low, span.high) / span.bend)
-    set_scale = axes.set_xscale if name == "x" else axes.set_yscale
+    set_scale, set_ticks = (getattr(axes, f"set_{name}{what}") for what in ("scale", "ticks"))
     set_scale("symlog", linthresh=span.bend, linscale=_LINEAR_SHARE * decades)
     ticks = span.ticks()
-    set_ticks = axes.set_xticks if name == "x" else axes.set_yticks
-    set_ticks(ticks, _labels(ticks))
+    set_ticks(ticks, [in_full(tick, abs(tick) or 1.0) for tick in ticks])
     set_ticks([], minor=True)
     line = axes.axvline if name == "x" else axes.axhline
     for end in (-span.bend, span.bend):
         if span.low < end < span.high:
             line(end, color=GRID, linewidth=1.6, linestyle=":", zorder=0.5)
-
-
-def _labels(ticks: Sequence[float]) -> list[str]:
-    return [in_full(tick, abs(tick) or 1.0) for tick in ticks]

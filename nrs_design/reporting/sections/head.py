@@ -30,6 +30,9 @@ if TYPE_CHECKING:
     from nrs_design.pipeline import Result
     from nrs_design.search.certification import Certification
 
+# Labels and values.
+_Facts = list[tuple[str, str]]
+
 NO_CLAIM = (
     "Neither a proof nor a refutation was found. This is no statement about stability: the modes "
     "may be stable or unstable under switching."
@@ -62,9 +65,8 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     """Return switching, hashes, versions and rates for the head of the report."""
     certification = result.certification
     system = certification.system
-    count = f"{plural(len(system.modes), 'mode')} of {plural(system.order, 'state')}"
-    if not system.is_uniform:
-        count = f"{plural(len(system.modes), 'mode')} of at most {plural(system.order, 'state')}"
+    most = "" if system.is_uniform else "at most "
+    count = f"{plural(len(system.modes), 'mode')} of {most}{plural(system.order, 'state')}"
     rows = [
         ("Spec", linked(result.loaded, result.loaded.spec.name, "name")),
         ("Switching", linked(result.loaded, switching_words(result), "switching")),
@@ -93,7 +95,7 @@ def facts(result: Result) -> tuple[tuple[str, str], ...]:
     return tuple(rows)
 
 
-def _aside(certification: Certification) -> list[tuple[str, str]]:
+def _aside(certification: Certification) -> _Facts:
     """Return what is refuted although the verdict is inconclusive."""
     where = certification.refuted_in
     return [] if where is None else [("Refuted", Derived(where, MEANT))]
@@ -130,7 +132,7 @@ def saturated(certification: Certification) -> tuple[Fraction, str] | None:
     return None
 
 
-def _saturated(certification: Certification) -> list[tuple[str, str]]:
+def _saturated(certification: Certification) -> _Facts:
     found = saturated(certification)
     if found is None:
         return []
@@ -139,31 +141,29 @@ def _saturated(certification: Certification) -> list[tuple[str, str]]:
     return [("Proved where signals saturate", Derived(text, SATURATION))]
 
 
-def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> list[tuple[str, str]]:
+def _rate(system: SwitchedSystem, evidence: AbstractEvidence | None) -> _Facts:
     rate = proved_rate(system, evidence)
     if evidence is None or rate is None:
         return []
     constant = "" if evidence.attains_rate else ", not attained"
     if not evidence.bounds_at_once:
         constant += ", up to a constant factor"
+    label, text = "Proved contraction rho", at_most(rate, "per step")
     if system.time is Time.CONTINUOUS:
-        text = at_least(rate, "1/s").removeprefix("= ")
-        return [("Proved decay rate alpha", Derived(f"{text}{constant}", EVIDENCE))]
-    text = at_most(rate, "per step").removeprefix("= ")
-    return [("Proved contraction rho", Derived(f"{text}{constant}", EVIDENCE))]
+        label, text = "Proved decay rate alpha", at_least(rate, "1/s")
+    return [(label, Derived(f"{text.removeprefix('= ')}{constant}", EVIDENCE))]
 
 
-def _limit(certification: Certification) -> list[tuple[str, str]]:
+def _limit(certification: Certification) -> _Facts:
     """Return the bound on the rate that no proof can exceed."""
     limit, evidence = certification.rate_limit, certification.evidence
     if limit is None or evidence is None or evidence.shows is not Shows.STABILITY:
         return []
-    attained = ", which one solution attains (floating point)"
+    label, text = "No proof can go below", f"{lower(Fraction(limit))} per step"
     if certification.system.time is Time.CONTINUOUS:
-        text = f"{upper(Fraction(limit))} 1/s{attained}"
-        return [("No proof can exceed", Derived(text, MODES))]
-    text = f"{lower(Fraction(limit))} per step{attained}"
-    return [("No proof can go below", Derived(text, MODES))]
+        label, text = "No proof can exceed", f"{upper(Fraction(limit))} 1/s"
+    attained = ", which one solution attains (floating point)"
+    return [(label, Derived(f"{text}{attained}", MODES))]
 
 
 def _provenance(result: Result) -> Iterator[tuple[str, str]]:

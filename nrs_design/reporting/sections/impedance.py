@@ -114,26 +114,23 @@ _IMPEDANCE_ROWS: tuple[tuple[str, Callable[[ImpedanceAnalysis], str]], ...] = (
     ("Sampled, not passive near [Hz]", lambda item: _broken(item.sampled)),
 )
 
-# Where a spec says what a row of the table shows, or what it follows from.
-_SAID: dict[str, Callable[[ImpedanceAnalysis], tuple[str, ...]]] = {
-    "Desired impedance [N·m·s/rad]": lambda item: ("controllers", item.name, _wanted(item)),
-    "Nominal stiffness [N·m/rad]": lambda item: (*_home(item), "stiffness"),
-    "Nominal damping [N·m·s/rad]": lambda item: (*_home(item), "damping"),
-    "Mt at the optimum [kg·m²]": lambda item: ("controllers", item.name, "Mt"),
-    "Bt at the optimum [N·m·s/rad]": lambda item: ("controllers", item.name, "Bt"),
-    "Mt as shipped [kg·m²]": lambda item: ("controllers", item.name, "Mt"),
-    "Bt as shipped [N·m·s/rad]": lambda item: ("controllers", item.name, "Bt"),
-    "Kt as given [N·m/rad]": lambda item: ("controllers", item.name, "Kt"),
-}
+# By the beginning of the label of a row: the key of the spec that it follows from, of the
+# environment or of the controller. What follows from several lines leads to the controller.
+_OF_ENVIRONMENT = {"Nominal stiffness": "stiffness", "Nominal damping": "damping"}
+_OF_CONTROLLER = ("Mt", "Bt", "Kt")
 
 
-def _wanted(item: ImpedanceAnalysis) -> str:
-    given = item.given.desired_impedance is not None
-    return "desired_impedance" if given else "desired_impedance_ratio"
-
-
-def _home(item: ImpedanceAnalysis) -> tuple[str, str]:
-    return "environments", item.given.environment
+def _place(label: str, item: ImpedanceAnalysis) -> tuple[str, ...]:
+    """Return where a spec says what a row of the table shows, or what it follows from."""
+    name, _, _ = label.partition(" [")
+    if name in _OF_ENVIRONMENT:
+        return ("environments", item.given.environment, _OF_ENVIRONMENT[name])
+    if name == "Desired impedance":
+        given = item.given.desired_impedance is not None
+        key = "desired_impedance" if given else "desired_impedance_ratio"
+        return ("controllers", item.name, key)
+    gain = label.split()[0]
+    return ("controllers", item.name, *([gain] if gain in _OF_CONTROLLER else []))
 
 
 def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) -> Section:
@@ -149,7 +146,7 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     drawn = tuple(item for item in items if item.requirement.axis is not None)[:CURVES]
     rest = "" if len(drawn) == len(items) else f" The first {CURVES} controllers are drawn."
     rows = [
-        (label, [_linked(designed, label, item, value(item)) for item in items])
+        (label, [linked(designed.loaded, value(item), *_place(label, item)) for item in items])
         for label, value in _IMPEDANCE_ROWS
     ]
     rows = [(label, values) for label, values in rows if any(values)]
@@ -229,12 +226,6 @@ def _given(item: ImpedanceAnalysis, key: str, default: str = "") -> str:
     """Write a parameter of the nominal contact, if its law has it."""
     value = item.problem.loop.contact.given().get(key)
     return number(float(value), 5) if value is not None else default
-
-
-def _linked(designed: Designed, label: str, item: ImpedanceAnalysis, text: str) -> str:
-    # What follows from several lines leads to the controller, which names the others.
-    at = _SAID[label](item) if label in _SAID else ("controllers", item.name)
-    return linked(designed.loaded, text, *at)
 
 
 def by_controller(
@@ -358,6 +349,4 @@ def _finish(axes: Axes, items: Sequence[ImpedanceAnalysis], ylabel: str) -> None
     bandwidth = items[0].problem.bandwidth
     label = f"bandwidth {bandwidth / (2 * math.pi):.3g} Hz"
     axes.axvline(bandwidth, color=MUTED, linewidth=1.4, linestyle=":", label=label)
-    axes.set_xlabel("Frequency [rad/s]")
-    axes.set_ylabel(ylabel)
-    axes.set_xlim(bandwidth / 100, None)
+    axes.set(xlabel="Frequency [rad/s]", ylabel=ylabel, xlim=(bandwidth / 100, None))

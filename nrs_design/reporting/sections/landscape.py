@@ -171,8 +171,7 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
         Around its gains.
     """
     figure, axes = new_axes(4.2)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     labels = _draw_levels(axes, found)
     _draw_border(axes, found)
     _draw_bounds(axes, item, found)
@@ -185,10 +184,12 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
         # No mass at all is drawn at the left edge.
         place = max(Mt, float(found.Mt[0]))
         axes.plot(place, Bt, shape, markersize=size, color=tint, mec=INK, ls="none", label=label)
-    axes.set_xlabel("Virtual mass Mt [kg·m²]")
-    axes.set_ylabel("Virtual damping Bt [N·m·s/rad]")
-    axes.set_xlim(found.Mt[0], found.Mt[-1])
-    axes.set_ylim(found.Bt[0], found.Bt[-1])
+    axes.set(
+        xlabel="Virtual mass Mt [kg·m²]",
+        ylabel="Virtual damping Bt [N·m·s/rad]",
+        xlim=(found.Mt[0], found.Mt[-1]),
+        ylim=(found.Bt[0], found.Bt[-1]),
+    )
     legend(figure, axes, 2)
     settle(figure)
     _keep_apart(labels)
@@ -256,10 +257,12 @@ def _draw_delay_borne(items: Sequence[ImpedanceAnalysis], sampled: float | None)
     if sampled:
         label = "oldest force sample of the spec"
         axes.axhline(1e3 * sampled, color=MUTED, linestyle="--", label=label)
-    axes.set_xscale("log")
-    axes.set_ylim(0, _TALLEST / 4 * max(*shown, 1e-3) + 1e3 * (sampled or 0))
-    axes.set_xlim(stiffness[0], stiffness[-1])
-    axes.set_xlabel("Stiffness of the contact [N·m/rad]")
-    axes.set_ylabel("Dead time that destabilizes [ms]")
+    axes.set(
+        xscale="log",
+        ylim=(0, _TALLEST / 4 * max(*shown, 1e-3) + 1e3 * (sampled or 0)),
+        xlim=(stiffness[0], stiffness[-1]),
+        xlabel="Stiffness of the contact [N·m/rad]",
+        ylabel="Dead time that destabilizes [ms]",
+    )
     legend(figure, axes)
     return figure

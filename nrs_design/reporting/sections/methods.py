@@ -12,8 +12,6 @@ from nrs_design.reporting.style import color, legend, new_figure, styled
 from nrs_design.search.gradient_settings import Order
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 

@@ -99,8 +99,7 @@ def _draw_parallel(motion: TransferFunction, laws: Sequence[ParallelAnalysis]) -
         axes.plot(*at, "o", color=INK, label=f"{law.name} at {law.stiffness:.4g} N·m/rad")
     axes.set_ylim(0.0, 1.1 * tallest)
     axes.set_xlim(left=0.0)
-    axes.set_xlabel("k Kp [1]")
-    axes.set_ylabel("k Ki [1/s]")
+    axes.set(xlabel="k Kp [1]", ylabel="k Ki [1/s]")
     legend(figure, axes, 2)
     return figure
 

@@ -125,13 +125,11 @@ def _draw_stability_map(found: StabilityMap) -> Figure:
         frame = Rectangle(corner, 1, 1, fill=False, edgecolor=INK, linewidth=2.0, zorder=3)
         frame.set_label("declared upper ends")
         axes.add_patch(frame)
-    axes.set_xlim(-0.5, len(found.factors) - 0.5)
-    axes.set_ylim(-0.5, len(found.delays) - 0.5)
+    axes.set(xlim=(-0.5, len(found.factors) - 0.5), ylim=(-0.5, len(found.delays) - 0.5))
     axes.set_xticks(range(len(found.factors)), list(map(str, found.factors)))
     axes.set_yticks(range(len(found.delays)), [str(delay) for delay in found.delays])
     axes.grid(visible=False)
-    axes.set_xlabel("Largest stiffness, over the declared one [1]")
-    axes.set_ylabel("Oldest force sample")
+    axes.set(xlabel="Largest stiffness, over the declared one [1]", ylabel="Oldest force sample")
     legend(figure, axes, 2)
     return figure
 

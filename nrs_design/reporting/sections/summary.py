@@ -47,17 +47,14 @@ def summary_of(result: Result) -> tuple[str, str]:
         dict.fromkeys(item.kind.name for item in register_of(result.certification.granted))
     )
     granted = f"This takes for granted, each as {ASSUMPTIONS} below says it: {names}."
-    if evidence is None and (where := result.certification.refuted_in) is not None:
-        return (
-            f"Refuted {where}, where the environment would have to pull; with contact that may be "
-            "lost, neither proved nor refuted.",
-            f"What was searched for would have taken for granted: {names}.",
-        )
     if evidence is None:
-        return (
-            "Neither proved nor refuted: this report makes no statement about stability.",
-            f"What was searched for would have taken for granted: {names}.",
-        )
+        said = "Neither proved nor refuted: this report makes no statement about stability."
+        if (where := result.certification.refuted_in) is not None:
+            said = (
+                f"Refuted {where}, where the environment would have to pull; with contact that may "
+                "be lost, neither proved nor refuted."
+            )
+        return said, f"What was searched for would have taken for granted: {names}."
     if evidence.shows is Shows.STABILITY:
         return _proved(result, evidence), granted
     kept = _grown(system, evidence)
@@ -182,29 +179,26 @@ def lights_of(result: Result, analysis: DesignAnalysis | None) -> tuple[Light, .
 def _margins(spec: InteractionDesignSpec, analysis: DesignAnalysis | None) -> Light:
     if analysis is None:
         return Light("Margins", State.BAD, "none: a nominal loop is unstable")
-    count = len((*doubt_spec(spec), *analysis.warnings))
-    if count:
-        return Light("Margins", State.DOUBTFUL, f"{plural(count, 'warning')} (worst corner)", GOALS)
-    text = "no warning in any corner (floating point, no part of the proof)"
-    return Light("Margins", State.GOOD, text, GOALS)
+    state, text = State.GOOD, "no warning in any corner (floating point, no part of the proof)"
+    if count := len((*doubt_spec(spec), *analysis.warnings)):
+        state, text = State.DOUBTFUL, f"{plural(count, 'warning')} (worst corner)"
+    return Light("Margins", state, text, GOALS)
 
 
 def _data(spec: InteractionDesignSpec) -> Light:
-    name = "Data"
     items = [item for item in spec.identified.values() if item.provenance or item.doubts]
-    if not items:
-        text = "no value names the records that it was identified from"
-        return Light(name, State.UNKNOWN, text, ASSUMPTIONS)
     doubted = [item for item in items if item.doubts]
-    if any(item.accept_doubt is None for item in doubted):
-        text = f"{plural(sum(len(i.doubts) for i in doubted), 'doubt')}, not accepted"
-        return Light(name, State.BAD, text, ASSUMPTIONS)
-    if doubted:
-        text = f"{plural(sum(len(i.doubts) for i in doubted), 'doubt')}, accepted with a reason"
-        return Light(name, State.DOUBTFUL, text, ASSUMPTIONS)
-    if any(source.data == "synthetic" for item in items for source in item.provenance):
-        return Light(name, State.DOUBTFUL, "SYNTHETIC records, not measured", ASSUMPTIONS)
-    return Light(name, State.GOOD, "the spec names measured records, no doubts", ASSUMPTIONS)
+    doubts = plural(sum(len(item.doubts) for item in doubted), "doubt")
+    state, text = State.GOOD, "the spec names measured records, no doubts"
+    if not items:
+        state, text = State.UNKNOWN, "no value names the records that it was identified from"
+    elif any(item.accept_doubt is None for item in doubted):
+        state, text = State.BAD, f"{doubts}, not accepted"
+    elif doubted:
+        state, text = State.DOUBTFUL, f"{doubts}, accepted with a reason"
+    elif any(source.data == "synthetic" for item in items for source in item.provenance):
+        state, text = State.DOUBTFUL, "SYNTHETIC records, not measured"
+    return Light("Data", state, text, ASSUMPTIONS)
 
 
 def _open(result: Result) -> Light:

@@ -12,6 +12,7 @@ from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note
 from nrs_design.cli.tables import print_table
 from nrs_design.robot.cli.options import Figures, write_figures
+from nrs_design.robot.cli.printing import lists
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Correction, SeparateCorrection, Sine, TiltTable
@@ -84,10 +85,9 @@ def _document(
                 "phi": sine.phi,
                 "psi": sine.psi,
                 "d": list(sine.d),
-                "mean_ratio": found.mean_ratio.tolist(),
-                "least_squares": found.least_squares.tolist(),
-                "mean_ratio_error": found.mean_ratio_error.tolist(),
-                "least_squares_error": found.least_squares_error.tolist(),
+                **lists(
+                    found, "mean_ratio", "least_squares", "mean_ratio_error", "least_squares_error"
+                ),
             }
             for sine, found in rows
         ],
@@ -101,9 +101,7 @@ def _document(
             )
         ],
         "apart": {
-            "gravity": apart.gravity.tolist(),
-            "inertia_rows": apart.inertia_rows.tolist(),
-            "inertia_entries": apart.inertia_entries.tolist(),
+            **lists(apart, "gravity", "inertia_rows", "inertia_entries"),
             "gravity_error": apart.gravity_error,
             "inertia_error": {
                 "single": apart.single_error,

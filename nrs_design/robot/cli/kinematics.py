@@ -9,7 +9,7 @@ import typer
 from nrs_design.cli.command import Answer, command, spec_facts
 from nrs_design.cli.options import SpecFile
 from nrs_design.robot.cli.options import Figures, Pose, read_pose, three_numbers, write_figures
-from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, print_quantities
+from nrs_design.robot.cli.printing import JOINTS, LEGS, ONE, POSE, Tables, lists, print_quantities
 
 if TYPE_CHECKING:
     from nrs_design.robot.models import Robot
@@ -100,10 +100,7 @@ def _workspace(robot: Robot) -> dict[str, Any]:
     peaks = joint_peaks(robot, workspace_grid(robot))
     return {
         "reachable_share": survey.reachable,
-        "joint_low": survey.joint_low.tolist(),
-        "joint_high": survey.joint_high.tolist(),
-        "reach_margin": survey.reach_margin.tolist(),
-        "coupler_margin": survey.coupler_margin.tolist(),
+        **lists(survey, "joint_low", "joint_high", "reach_margin", "coupler_margin"),
         "largest_joint_velocity": peaks.velocity.tolist(),
         "largest_joint_acceleration": peaks.acceleration.tolist(),
         "units": {"angles": "rad", "lengths": "m", "velocity": "rad/s", "acceleration": "rad/s^2"},

@@ -48,3 +48,8 @@ def _rows(label: RowLabel, value: Any) -> Iterator[tuple[str, Sequence[float]]]:
             yield from _rows(f"{label}: {key}", inner)
     else:
         yield label, value if isinstance(value, list) else [value]
+
+
+def lists(found: object, *names: str) -> dict[str, Any]:
+    """Return the arrays of a result by name, as JSON has them."""
+    return {name: getattr(found, name).tolist() for name in names}

@@ -22,13 +22,8 @@ robot = typer.Typer(
     epilog="The page of a robot: nrs-design report SPEC.",
 )
 # A new capability of the robot adds its command here.
-robot.command("check")(check)
-robot.command("kinematics")(kinematics)
-robot.command("dynamics")(dynamics)
-robot.command("correction")(correction)
-robot.command("balance")(balance)
-robot.command("bounds")(bounds)
-robot.command("track")(track)
-robot.command("export")(export)
+COMMANDS = (check, kinematics, dynamics, correction, balance, bounds, track, export)
+for one in COMMANDS:
+    robot.command(one.__name__)(one)
 
 __all__ = ["robot"]

@@ -15,8 +15,7 @@ from nrs_design.controllers.float32 import float32_not_above, to_float32
 from nrs_design.controllers.operations import Coefficient, StepLaw, Value
 from nrs_design.controllers.parts import BEYOND
 from nrs_design.controllers.trace import Trace
-from nrs_design.robot.controllers.computed_torque import ComputedTorque
-from nrs_design.robot.controllers.independent_joint import IndependentJoint
+from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint
 from nrs_design.robot.controllers.traced_dynamics import dynamics, is_flat
 from nrs_design.robot.controllers.traced_robot import LARGEST_ANGLES, TracedRobot
 from nrs_design.robot.controllers.traced_trigonometry import LARGEST_ANGLE, sine_and_cosine

@@ -8,7 +8,7 @@ from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.design.root_locus import PdDesign, design_pd
 from nrs_design.errors import DesignError
-from nrs_design.robot.controllers import ComputedTorque, IndependentJoint, LoadModel
+from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint, LoadModel
 from nrs_design.robot.models import Robot, correction_coefficients
 from nrs_design.robot.models.correction import DEPTH_SINES
 from nrs_design.robot.models.drive import build_drive

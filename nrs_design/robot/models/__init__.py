@@ -12,8 +12,10 @@ from nrs_design.robot.models.correction import (
     DEPTH_SINES,
     TABLE_3_5,
     Correction,
+    SeparateCorrection,
     Sine,
     TiltTable,
+    correct_separately,
     correction_coefficients,
     thesis_tilts,
     tilt_table,
@@ -53,7 +55,6 @@ from nrs_design.robot.models.kinematics import (
 )
 from nrs_design.robot.models.mjcf import LEAST, robot_model
 from nrs_design.robot.models.robot import Leg, Robot, TaskLimits, Workspace, build_robot
-from nrs_design.robot.models.separate_correction import SeparateCorrection, correct_separately
 from nrs_design.robot.models.shares import TorqueShares, torque_shares
 from nrs_design.robot.models.simplified import (
     SimplifiedDynamics,

@@ -10,18 +10,15 @@ every position.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from nrs_design.errors import DesignError
-from nrs_design.robot.models.body import point_mass
+from nrs_design.robot.models.body import MASSLESS, point_mass
 from nrs_design.robot.models.dynamics import gravity_torque
-from nrs_design.robot.models.geometry import Posture, posture
-from nrs_design.robot.models.motion import joint_driven
 from nrs_design.robot.models.robot import Leg, Robot
-from nrs_design.robot.models.vectors import Array, Scalar, dot
+from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.models.workspace import reachable_poses, workspace_grid
 from nrs_design.spec import BalancedLegSpec, RobotSpec
 
@@ -123,48 +120,36 @@ def _weighted(leg: Leg, balance: LegBalance) -> Leg:
 def spring_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:
     """Return the joint torques that it takes to hold the springs, without any weight.
 
+    A spring acts as a weight does that has its first moment on the crank, and falls upwards.
+
     Parameters
     ----------
     robot : Robot
         The robot.
     balance : Balance
-        Its springs, fixed to the base where the vertical passed at the tilt they are made for.
+        Its springs, upright where the base has the tilt that they are made for.
     pose : array_like
         (phi, psi, d), shape (..., 3), in rad and m.
 
     Returns
     -------
     ndarray
-        Shape (..., 3), in N m; negative to what the springs contribute.
+        Shape (..., 3), in N m.
 
     Raises
     ------
     PoseError
         If a leg cannot reach one of the poses.
     """
-    closed = posture(robot, pose)
-    units = np.eye(3).reshape(3, *(1 for _ in np.shape(closed.d)), 3)
-    motion = joint_driven(closed, units, np.zeros(3))
-    up = (-sin(balance.tilt), 0.0, cos(balance.tilt))
-    torque: Scalar = 0.0
-    for index, spring in enumerate((balance.left, balance.right)):
-        lift = _lift_of_crank(
-            closed, index, motion.legs[index].alpha_1, motion.legs[index].beta_1, up
-        )
-        pull = spring.stiffness * spring.spring_on_crank * spring.spring_on_base
-        torque = torque - pull * lift
-    return np.moveaxis(np.asarray(torque, dtype=np.float64), 0, -1)
+    bare = replace(robot.without_links(), platform=MASSLESS, gravity=-1.0, base_tilt=balance.tilt)
+    left, right, middle = bare.legs
+    legs = (_sprung(left, balance.left), _sprung(right, balance.right), middle)
+    return gravity_torque(replace(bare, legs=legs), pose)
 
 
-def _lift_of_crank(
-    closed: Posture, index: int, alpha_1: Scalar, beta_1: Scalar, up: tuple[float, float, float]
-) -> Scalar:
-    """Rate of the crank's direction along a fixed direction of the base."""
-    leg = closed.legs[index]
-    along = dot(up, leg.leg.axis)
-    across = (dot(up, closed.W) - leg.cos_gamma * along) / leg.sin_gamma
-    turned = alpha_1 * leg.sin_beta * dot(up, leg.normal)
-    return turned + beta_1 * (leg.cos_beta * across - leg.sin_beta * along)
+def _sprung(leg: Leg, spring: LegBalance) -> Leg:
+    pull = spring.stiffness * spring.spring_on_crank * spring.spring_on_base
+    return replace(leg, crank=replace(MASSLESS, first=(pull, 0.0, 0.0)))
 
 
 def residual_torque(robot: Robot, balance: Balance, pose: ArrayLike) -> Array:

@@ -9,10 +9,10 @@ from math import inf, pi
 import numpy as np
 from numpy.typing import ArrayLike
 
-from nrs_design.robot.models.dynamics import inverse_dynamics
+from nrs_design.robot.models.dynamics import gravity_torque, inverse_dynamics, mass_matrix
 from nrs_design.robot.models.kinematics import joint_motion
 from nrs_design.robot.models.robot import Robot
-from nrs_design.robot.models.simplified import simplified_torque
+from nrs_design.robot.models.simplified import simplified_dynamics, simplified_torque
 from nrs_design.robot.models.vectors import Array
 
 SAMPLES = 720
@@ -50,71 +50,45 @@ class Correction:
     # Root mean square of ``T* - K T`` with either, in N m, shape (3,).
     mean_ratio_error: Array
     least_squares_error: Array
-    # Standard deviation of the ratio, shape (3,); large where the mean ratio means little.
-    spread: Array
 
 
-def correct(full: ArrayLike, simplified: ArrayLike) -> Correction:
+def correct(*torques: tuple[Array, Array]) -> Correction:
     """Return the coefficients that take simplified torques to full ones.
 
     Parameters
     ----------
-    full, simplified : array_like
-        Torques along a trajectory, shape (n, 3), in N m.
+    *torques : tuple of ndarray
+        Full and simplified torques along each of several motions, shapes (n, 3), in N m.
 
     Returns
     -------
     Correction
-        For each joint.
+        Means of the coefficients of each motion, and the errors over all of them.
     """
-    T, t = np.asarray(full, dtype=np.float64), np.asarray(simplified, dtype=np.float64)
-    ratios = T / t
-    mean_ratio, least_squares = ratios.mean(axis=0), (T * t).sum(axis=0) / (t * t).sum(axis=0)
-    return Correction(
-        mean_ratio,
-        least_squares,
-        _root_mean_square(T - mean_ratio * t),
-        _root_mean_square(T - least_squares * t),
-        ratios.std(axis=0),
-    )
+    mean_ratio = np.mean([(T / t).mean(axis=0) for T, t in torques], axis=0)
+    least_squares = np.mean([(T * t).sum(axis=0) / (t * t).sum(axis=0) for T, t in torques], axis=0)
+    T, t = (np.concatenate(parts) for parts in zip(*torques, strict=True))
+    errors = (_root_mean_square(T - K * t) for K in (mean_ratio, least_squares))
+    return Correction(mean_ratio, least_squares, *errors)
 
 
 def correction_coefficients(robot: Robot, sines: Sine | Sequence[Sine]) -> Correction:
     """Return the coefficients over one or several trajectories.
 
-    Over several, the coefficients are the means of those of each, as in the thesis; the errors
-    are those that these means leave over all of them.
-
     Parameters
     ----------
     robot : Robot
-        The robot, on its base.
+        On its base.
     sines : Sine or sequence of Sine
-        The trajectories.
-
-    Returns
-    -------
-    Correction
-        For each joint.
+        Motions; of several, the means of their coefficients.
 
     Raises
     ------
     PoseError
-        If a trajectory leaves what the legs can reach.
+        If a leg cannot reach a trajectory.
     """
-    chosen = (sines,) if isinstance(sines, Sine) else tuple(sines)
-    torques = [_torques(robot, sine) for sine in chosen]
-    each = [correct(full, simplified) for full, simplified in torques]
-    mean_ratio = np.mean([item.mean_ratio for item in each], axis=0)
-    least_squares = np.mean([item.least_squares for item in each], axis=0)
-    T, t = (np.concatenate(parts) for parts in zip(*torques, strict=True))
-    return Correction(
-        mean_ratio,
-        least_squares,
-        _root_mean_square(T - mean_ratio * t),
-        _root_mean_square(T - least_squares * t),
-        (T / t).std(axis=0),
-    )
+    chosen = (sines,) if isinstance(sines, Sine) else sines
+    return correct(*(_torques(robot, sine) for sine in chosen))
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,3 +183,55 @@ def _torques(robot: Robot, sine: Sine) -> tuple[Array, Array]:
 
 def _root_mean_square(error: Array) -> Array:
     return np.asarray(np.sqrt(np.mean(error**2, axis=0)), dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class SeparateCorrection:
+    """Coefficients by least squares over poses, and the error that each leaves."""
+
+    # ``G = K Gs``, shape (3,): what a single correction has for gravity and inertia alike.
+    gravity: Array
+    inertia_rows: Array  # ``M = K Ms`` with one number for each joint, shape (3,)
+    inertia_entries: Array  # One number for each entry of Ms, shape (3, 3)
+    gravity_error: float  # Root mean square of ``G - K Gs`` over that of G
+    # single_error, rows_error, entries_error: the same for M, with the coefficients of gravity, by
+    # rows and by entries.
+    single_error: float
+    rows_error: float
+    entries_error: float
+
+
+def correct_separately(robot: Robot, poses: ArrayLike) -> SeparateCorrection:
+    """Fit the simplified mass matrix and the simplified weight to the full ones, each on its own.
+
+    Parameters
+    ----------
+    robot : Robot
+        The robot, on its base.
+    poses : array_like
+        phi, psi in rad and d in m, shape (..., 3).
+
+    Returns
+    -------
+    SeparateCorrection
+        Over all poses alike.
+    """
+    simplified = simplified_dynamics(robot, poses)
+    M, Ms = (A.reshape(-1, 3, 3) for A in (mass_matrix(robot, poses), simplified.Ms))
+    G, Gs = (v.reshape(-1, 3) for v in (gravity_torque(robot, poses), simplified.Gs))
+    gravity = (G * Gs).sum(axis=0) / (Gs**2).sum(axis=0)
+    rows = (M * Ms).sum(axis=(0, 2)) / (Ms**2).sum(axis=(0, 2))
+    entries = (M * Ms).sum(axis=0) / (Ms**2).sum(axis=0)
+    return SeparateCorrection(
+        gravity,
+        rows,
+        entries,
+        _error(G, gravity * Gs),
+        _error(M, gravity[:, None] * Ms),
+        _error(M, rows[:, None] * Ms),
+        _error(M, entries * Ms),
+    )
+
+
+def _error(full: Array, corrected: Array) -> float:
+    return float(np.linalg.norm(full - corrected) / np.linalg.norm(full))

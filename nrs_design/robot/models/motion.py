@@ -30,7 +30,6 @@ class RobotMotion:
     """Rates of the whole robot: direction W of the endoscope, depth d, and the legs."""
 
     W_1: Vector
-    W_2: Vector
     d_1: Scalar
     d_2: Scalar
     legs: tuple[LegMotion, LegMotion, LegMotion]
@@ -117,7 +116,7 @@ def _motion(
         _leg_motion(leg, W_1, W_2, d_1, d_2, turn)
         for leg, turn in zip(closed.legs, (*turns, None), strict=True)
     )
-    return RobotMotion(W_1, W_2, d_1, d_2, (left, right, middle))
+    return RobotMotion(W_1, d_1, d_2, (left, right, middle))
 
 
 def _leg_motion(

@@ -145,14 +145,10 @@ def _deepest(robot: Robot, phi: float, psi: float) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class JointPeaks:
-    """Largest joint velocities in rad/s and accelerations in rad/s^2, and the poses they need."""
+    """Largest joint velocities in rad/s and accelerations in rad/s^2, shape (3,)."""
 
-    # velocity, acceleration: one number for each joint, shape (3,).
     velocity: Array
     acceleration: Array
-    # velocity_pose, acceleration_pose: where they occur, one row for each joint, shape (3, 3).
-    velocity_pose: Array
-    acceleration_pose: Array
 
 
 def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
@@ -183,8 +179,5 @@ def joint_peaks(robot: Robot, pose: ArrayLike) -> JointPeaks:
         # The bias is quadratic: opposite velocities have the same.
         for signs in product((1.0,), (1.0, -1.0), (1.0, -1.0))
     ]
-    velocity, acceleration = gain @ v, gain @ a + np.max(corners, axis=0)
-    fastest, hardest = np.argmax(velocity, axis=0), np.argmax(acceleration, axis=0)
-    return JointPeaks(
-        velocity.max(axis=0), acceleration.max(axis=0), poses[fastest], poses[hardest]
-    )
+    acceleration = gain @ a + np.max(corners, axis=0)
+    return JointPeaks((gain @ v).max(axis=0), acceleration.max(axis=0))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from nrs_design.errors import NrsDesignError, SpecError
-from nrs_design.ros2.quantities import LAG
+from nrs_design.ros2.quantities import LAG, Range
 from nrs_design.spec.quantity import QuantityKind, parse_quantity
 
 Lag = Annotated[
@@ -19,12 +19,12 @@ Lag = Annotated[
 ]
 
 
-def read_lag(text: str) -> tuple[Fraction, Fraction]:
+def read_lag(text: str) -> Range:
     """Return the ends of a range of time constants in s."""
     return range_of("--lag", text, LAG) or (Fraction(0), Fraction(0))
 
 
-def range_of(option: str, text: str | None, kind: QuantityKind) -> tuple[Fraction, Fraction] | None:
+def range_of(option: str, text: str | None, kind: QuantityKind) -> Range | None:
     """Read one quantity, or two with ``..`` between them; None where there is no text.
 
     Parameters

@@ -33,7 +33,3 @@ def test_the_force_turns_the_command_back():
 def test_gains_that_the_spec_allows(given, gain, fault):
     found = ProportionalForce(gain).find_fault(given)
     assert found == (fault and f"gain Kp is {fault}")
-
-
-def test_contact_is_said_to_be_kept():
-    assert "Contact is not lost" in ProportionalForce.contact_text(alone=True)

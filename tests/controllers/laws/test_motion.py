@@ -1,7 +1,5 @@
 from fractions import Fraction
 
-import pytest
-
 from nrs_design.controllers.laws import ProportionalDerivative
 
 
@@ -9,11 +7,6 @@ def test_zero_of_the_thesis():
     # Thesis 4.3: Kp = Kd z = 2060 * 56.9706 = 117359.43.
     law = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
     assert law.zero == Fraction("56.9706")
-
-
-def test_without_damping_there_is_no_zero():
-    with pytest.raises(ZeroDivisionError):
-        _ = ProportionalDerivative(Fraction(1), Fraction(0)).zero
 
 
 def test_the_backward_difference_of_the_thesis_robot():

@@ -81,7 +81,3 @@ def test_beside_it_no_offset_is_taken():
     force = "{type: force, environment: soft, proportional_gain: 0.02 rad/(N*m), offset: measured}"
     with pytest.raises(SpecError, match="the offset of 'other' beside a mixture"):
         parse_spec(text_of({"force": PI, "other": force}, more="idle_states: {decay: 20 1/s}"))
-
-
-def test_contact_is_said_to_be_kept():
-    assert "moves on until it meets something" in IntegralForce.contact_text(alone=True)

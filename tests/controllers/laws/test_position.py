@@ -15,8 +15,3 @@ def test_there_is_no_gain_to_be_wrong():
     assert PositionControl.of({"Kp": Fraction(1)}) == PositionControl()
     assert PositionControl().gains == {}
     assert PositionControl().find_fault(GIVEN) is None
-
-
-def test_free_motion_is_this_mode():
-    assert PositionControl.contact_text(alone=True) is None
-    assert PositionControl.contact_text(alone=False) is None

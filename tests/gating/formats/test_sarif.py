@@ -9,108 +9,61 @@ from nrs_design.gating.obligations import Status
 from nrs_design.gating.rules import RULES
 from tests.gating.formats.support import HOSTILE, obligation, outcome_of
 
+
 # The parts of SARIF 2.1.0 (OASIS) that are written, with what that standard requires of them.
-TEXT = {
-    "type": "object",
-    "required": ["text"],
-    "properties": {"text": {"type": "string", "minLength": 1}},
-    "additionalProperties": False,
-}
+def closed(*required, **properties):
+    """Return the schema of an object with these properties only."""
+    return {
+        "type": "object",
+        "required": [*required],
+        "properties": properties,
+        "additionalProperties": False,
+    }
+
+
+def listed(items, **more):
+    return {"type": "array", "items": items, **more}
+
+
+STRING, PLACE = {"type": "string"}, {"type": "integer", "minimum": 1}
+TEXT = closed("text", text={"type": "string", "minLength": 1})
 LEVEL = {"enum": ["none", "note", "warning", "error"]}
-RULE = {
-    "type": "object",
-    "required": ["id"],
-    "properties": {
-        "id": {"type": "string"},
-        "shortDescription": TEXT,
-        "fullDescription": TEXT,
-        "help": TEXT,
-        "defaultConfiguration": {
-            "type": "object",
-            "properties": {"level": LEVEL},
-            "additionalProperties": False,
-        },
-    },
-    "additionalProperties": False,
-}
-LOCATION = {
-    "type": "object",
-    "properties": {
-        "physicalLocation": {
-            "type": "object",
-            "required": ["artifactLocation"],
-            "properties": {
-                "artifactLocation": {
-                    "type": "object",
-                    "properties": {
-                        "uri": {"type": "string", "pattern": "^[A-Za-z0-9._~/%-]+$"},
-                        "uriBaseId": {"const": "%SRCROOT%"},
-                    },
-                    "additionalProperties": False,
-                },
-                "region": {
-                    "type": "object",
-                    "required": ["startLine"],
-                    "properties": {
-                        "startLine": {"type": "integer", "minimum": 1},
-                        "startColumn": {"type": "integer", "minimum": 1},
-                    },
-                    "additionalProperties": False,
-                },
-            },
-            "additionalProperties": False,
-        }
-    },
-    "additionalProperties": False,
-}
-RESULT = {
-    "type": "object",
-    "required": ["message", "ruleId", "ruleIndex"],
-    "properties": {
-        "ruleId": {"type": "string"},
-        "ruleIndex": {"type": "integer", "minimum": 0},
-        "level": LEVEL,
-        "message": TEXT,
-        "locations": {"type": "array", "items": LOCATION, "minItems": 1},
-        "partialFingerprints": {"type": "object", "additionalProperties": {"type": "string"}},
-    },
-    "additionalProperties": False,
-}
-DRIVER = {
-    "type": "object",
-    "required": ["name"],
-    "properties": {
-        "name": {"type": "string"},
-        "semanticVersion": {"type": "string"},
-        "rules": {"type": "array", "items": RULE, "uniqueItems": True},
-    },
-    "additionalProperties": False,
-}
-RUN = {
-    "type": "object",
-    "required": ["tool", "results"],
-    "properties": {
-        "tool": {
-            "type": "object",
-            "required": ["driver"],
-            "properties": {"driver": DRIVER},
-            "additionalProperties": False,
-        },
-        "columnKind": {"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
-        "results": {"type": "array", "items": RESULT},
-    },
-    "additionalProperties": False,
-}
-SARIF = {
-    "type": "object",
-    "required": ["version", "runs"],
-    "properties": {
-        "$schema": {"type": "string", "format": "uri"},
-        "version": {"const": "2.1.0"},
-        "runs": {"type": "array", "items": RUN, "minItems": 1},
-    },
-    "additionalProperties": False,
-}
+RULE = closed(
+    "id",
+    id=STRING,
+    shortDescription=TEXT,
+    fullDescription=TEXT,
+    help=TEXT,
+    defaultConfiguration=closed(level=LEVEL),
+)
+LOCATION = closed(
+    physicalLocation=closed(
+        "artifactLocation",
+        artifactLocation=closed(
+            uri={"type": "string", "pattern": "^[A-Za-z0-9._~/%-]+$"},
+            uriBaseId={"const": "%SRCROOT%"},
+        ),
+        region=closed("startLine", startLine=PLACE, startColumn=PLACE),
+    )
+)
+RESULT = closed(
+    *("message", "ruleId", "ruleIndex"),
+    ruleId=STRING,
+    ruleIndex={"type": "integer", "minimum": 0},
+    level=LEVEL,
+    message=TEXT,
+    locations=listed(LOCATION, minItems=1),
+    partialFingerprints={"type": "object", "additionalProperties": STRING},
+)
+DRIVER = closed("name", name=STRING, semanticVersion=STRING, rules=listed(RULE, uniqueItems=True))
+RUN = closed(
+    *("tool", "results"),
+    tool=closed("driver", driver=DRIVER),
+    columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
+    results=listed(RESULT),
+)
+SARIF = closed("version", "runs", version={"const": "2.1.0"}, runs=listed(RUN, minItems=1))
+SARIF["properties"]["$schema"] = {"type": "string", "format": "uri"}
 
 
 def sarif_of(outcome):

@@ -7,10 +7,8 @@ import pytest
 
 from nrs_design.errors import DataError
 from nrs_design.identification.actuator import identify_actuator
-from nrs_design.identification.actuator.friction import friction_shape
 from nrs_design.identification.actuator.phasors import phasors_of
 from nrs_design.identification.datasets import FrequencyResponse, read_actuator
-from nrs_design.identification.held import Held
 from tests.identification import motors
 from tests.identification.support import MOTOR, sinusoids, source
 
@@ -31,13 +29,14 @@ def response(scatter=0.0, seed=0):
 
 def test_parameters_of_the_thesis(found):
     for fit in found.fits:
-        assert fit.gain.covers(4.8417e-4)
-        assert fit.time_constant.covers(0.0351)
-        assert fit.friction.covers(276.575)
         assert fit.dead_time is None or fit.dead_time.low == 0.0
-        assert fit.gain.value == pytest.approx(4.8417e-4, rel=5e-3)
-        assert fit.time_constant.value == pytest.approx(0.0351, rel=5e-3)
-        assert fit.friction.value == pytest.approx(276.575, rel=0.03)
+        for estimate, value, rel in (
+            (fit.gain, 4.8417e-4, 5e-3),
+            (fit.time_constant, 0.0351, 5e-3),
+            (fit.friction, 276.575, 0.03),
+        ):
+            assert estimate.covers(value)
+            assert estimate.value == pytest.approx(value, rel=rel)
 
 
 def test_derived_with_the_corrected_formulas(found):
@@ -50,14 +49,6 @@ def test_derived_with_the_corrected_formulas(found):
 def test_friction_is_off_the_response(found):
     model = found.chosen.response(found.frequency)
     assert found.response == pytest.approx(model, rel=0.02)
-
-
-def test_the_angles_are_explained(found):
-    fit = found.chosen
-    for record in found.records:
-        assert (
-            np.std(record.output - fit.motor.simulate(record)) < 4e-4
-        )  # noise 3e-4 and rounding 1.1e-4
 
 
 def test_ready_response():
@@ -85,26 +76,6 @@ def test_phasor_of_a_pure_sinusoid():
     assert np.angle(phasors.command) == pytest.approx(-w * 1e-3, rel=1e-4)
 
 
-def test_a_motor_that_cannot_move_sticks():
-    (record,) = sinusoids(0, (3.0,))
-    weak = replace(record, command=100 * np.sin(20 * record.time))
-    shape = friction_shape(Held.of(weak.time, weak.command, 0.0), 4.8e-4, 0.035, 276.0)
-    assert shape == pytest.approx(weak.command[:-1] / 276.0)
-
-
-def test_friction_opposes_fast_motion():
-    (record,) = sinusoids(0, (3.0,))
-    shape = friction_shape(Held.of(record.time, record.command, 0.0), 4.8e-4, 0.035, 276.0)
-    assert np.mean(np.abs(shape) > 0.999) > 0.9
-    assert np.abs(shape).max() <= 1
-
-
-def test_three_records_are_enough():
-    found = identify_actuator(sinusoids(1, (2.0, 4.0, 9.0)), MOTOR)
-    assert len(found.fits) == 2
-    assert found.chosen.time_constant.covers(0.0351)
-
-
 def test_a_failed_start_is_no_end():
     """Two frequencies are too few for the complex response, and enough in time."""
     found = identify_actuator(sinusoids(1, (2.0, 9.0)), MOTOR)
@@ -113,21 +84,24 @@ def test_a_failed_start_is_no_end():
     assert fit.friction.covers(276.575)
 
 
-def test_bad_input():
-    records = sinusoids(0, (2.0, 4.0, 9.0))
-    with pytest.raises(DataError, match="0 records"):
-        identify_actuator([], MOTOR)
-    with pytest.raises(DataError, match="3 records and 1"):
-        identify_actuator([*records, response()], MOTOR)
-    with pytest.raises(DataError, match="there twice"):
-        identify_actuator([*records, records[0]], MOTOR)
-    with pytest.raises(DataError, match="moves against the command"):
-        identify_actuator([replace(r, output=-r.output) for r in records], MOTOR)
-    output = np.random.default_rng(1).normal(size=len(records[0].time))
-    with pytest.raises(DataError, match="does not follow"):
-        identify_actuator([replace(records[0], output=output)], MOTOR)
-    with pytest.raises(DataError, match="in V and rpm"):
-        identify_actuator([records[0], replace(records[1], unit="V")], MOTOR)
+RECORDS = sinusoids(0, (2.0, 4.0, 9.0))
+NOISE = np.random.default_rng(1).normal(size=len(RECORDS[0].time))
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ([], "0 records"),
+        ([*RECORDS, response()], "3 records and 1"),
+        ([*RECORDS, RECORDS[0]], "there twice"),
+        ([replace(r, output=-r.output) for r in RECORDS], "moves against the command"),
+        ([replace(RECORDS[0], output=NOISE)], "does not follow"),
+        ([RECORDS[0], replace(RECORDS[1], unit="V")], "in V and rpm"),
+    ],
+)
+def test_bad_input(data, message):
+    with pytest.raises(DataError, match=message):
+        identify_actuator(data, MOTOR)
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.identification.actuator import identify_actuator
 from tests.identification import motors
-from tests.identification.support import MOTOR
+from tests.identification.support import MOTOR, holds
 
 SEEDS = 200
 LEAST = {("closed loop", False): 0.91}
@@ -24,7 +24,7 @@ def test_any_command(kind, is_angle):
     for seed in range(SEEDS):
         fit = identify_actuator([motors.record(kind, seed, is_angle=is_angle)], MOTOR).chosen
         estimates = (fit.gain, fit.time_constant, fit.friction, fit.dead_time)
-        hits.append([e.covers(v) for e, v in zip(estimates, TRUTH, strict=True)])
+        hits.append(holds(estimates, TRUTH))
     rates = np.mean(hits, axis=0)
     assert (rates >= LEAST.get((kind, is_angle), 0.92)).all(), rates
     assert (rates <= 0.98).all(), rates

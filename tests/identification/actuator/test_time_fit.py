@@ -98,31 +98,6 @@ def test_other_units_of_the_command():
     assert (result.unit, result.figures) == ("V", None)
 
 
-def test_derivatives_of_the_dead_time():
-    record = motors.record("chirp", 1)
-    J, _ = TRUE.linearize(record)
-    h = 1e-5
-    ahead, behind = (replace(TRUE, delay=TRUE.delay + s).simulate(record) for s in (h, -h))
-    # Initial states are fitted anew in `simulate`, and taken out in `linearize`.
-    free, _ = np.linalg.qr(TRUE.free(record))
-    slope = (ahead - behind) / (2 * h)
-    slope -= free @ (free.T @ slope)
-    assert J[:, -1] == pytest.approx(slope, rel=1e-3, abs=1e-3 * np.abs(slope).max())
-
-
-def test_the_scan_is_near():
-    start = scan_motor([motors.record("PRBS", 5)])
-    assert start.gain == pytest.approx(motors.GAIN, rel=0.2)
-    assert start.delay == pytest.approx(motors.DELAY, abs=0.01)
-
-
-def test_the_true_motor_stays_where_it_is():
-    record = motors.record("chirp", 1, noise=1e-6)
-    fit = fit_in_time([record], TRUE)
-    assert fit.motor.delay == pytest.approx(motors.DELAY, abs=2e-6)
-    assert fit.motor.time_constant == pytest.approx(motors.TIME_CONSTANT, rel=1e-4)
-
-
 def test_a_start_with_too_little_friction():
     """A step that is cut for one parameter only leaves the valley, and the search ended there."""
     records = sinusoids(1, (2, 6, 14))

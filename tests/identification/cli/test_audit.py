@@ -83,25 +83,6 @@ def test_outside(tmp_path, proof):
     assert document["estimated_share_of_time"] == 1.0
 
 
-@pytest.mark.parametrize("stiffness", [48.0, 20.0])
-def test_no_stiffness_gives_an_exit_code(tmp_path, proof, stiffness):
-    spec, certificate = proof
-    log = write(tmp_path, stiffness=stiffness)
-    done = run("audit", log, spec, "--certificate", certificate, *LIMIT, cwd=tmp_path, code=3)
-    assert "left its bounds" not in done.stdout
-    assert "estimated, not judged: stiffness" in done.stdout
-
-
-def test_lost_contact_is_inside_a_proof_that_covers_it(tmp_path, proof):
-    spec, certificate = proof
-    document = document_of(
-        "audit", write(tmp_path, free=2.0), spec, "--certificate", certificate, *LIMIT, cwd=tmp_path
-    )
-    (contact,) = (c for c in document["checks"] if c["name"] == "contact")
-    assert (contact["status"], contact["basis"]) == ("inside", "covered by the proof")
-    assert document["verdict"] != "outside"
-
-
 def test_an_unproved_spec_is_said_loudly(tmp_path):
     done = run("audit", write(tmp_path), SOFT_TISSUE, cwd=tmp_path, code=3)
     assert "UNPROVED SPEC: no certificate is named" in done.stdout
@@ -132,22 +113,6 @@ def test_a_foreign_certificate_is_rejected(tmp_path, proof):
 
 
 @pytest.mark.parametrize(
-    ("ending", "stiffness", "code"),
-    [
-        ("html", 43.0, 3),
-        ("pdf", 60.0, 1),
-        pytest.param("pdf", 43.0, 3, marks=pytest.mark.slow),
-        pytest.param("html", 60.0, 1, marks=pytest.mark.slow),
-    ],
-)
-def test_report(tmp_path, ending, stiffness, code):
-    page = tmp_path / f"page.{ending}"
-    log = write(tmp_path, stiffness=stiffness)
-    run("audit", log, SOFT_TISSUE, "--report", page, "-q", cwd=tmp_path, code=code)
-    assert page.read_bytes()[:4] in (b"<!DO", b"%PDF")
-
-
-@pytest.mark.parametrize(
     ("limit", "said"),
     [
         ("3000 rpm", "below 3000 rpm"),
@@ -158,17 +123,3 @@ def test_report(tmp_path, ending, stiffness, code):
 def test_the_limit_of_the_driver_has_a_unit(tmp_path, limit, said):
     done = run("audit", write(tmp_path), SOFT_TISSUE, "--command-limit", limit, cwd=tmp_path)
     assert said in done.stdout + done.stderr
-
-
-def test_many_rules_do_not_widen_the_table(tmp_path):
-    text = SOFT_TISSUE.read_text(encoding="utf-8")
-    text = text.replace("switching: arbitrary", "switching: {dwell_time: 1.25 s}")
-    text = text.replace("{nominal: 747.1461 N/m, range: [720.56 N/m, 768.17 N/m]}", "747 N/m")
-    spec = tmp_path / "long.nrs.yaml"
-    spec.write_text(text.replace("insertion", "insertion-of-the-endoscope"), encoding="utf-8")
-    log = write(tmp_path)
-    log.write_text(log.read_text().replace("insertion", "insertion-of-the-endoscope"))
-    done = run("audit", log, spec, *LIMIT, cwd=tmp_path)
-    allowed = "insertion-of-the-endoscope at least 1.25 s, withdrawal at least 1.25 s"
-    assert f"dwell times, allowed: {allowed}\n" in done.stdout
-    assert max(map(len, done.stdout.partition("bound of ")[0].splitlines())) < 150

@@ -87,12 +87,6 @@ def test_groups_of_columns(tmp_path):
     assert two.output[-1] == pytest.approx(np.radians(one.output[-1]))
 
 
-def test_tissue_takes_one_group(tmp_path):
-    header = "time_s,deflection_m_1,force_N_1,deflection_m_2,force_N_2"
-    with pytest.raises(DataError, match="2 groups"):
-        read_tissue(write(tmp_path, header, TIME, *[DEFLECTION] * 4))
-
-
 @pytest.mark.parametrize(
     ("header", "scale", "unit", "is_angle"),
     [

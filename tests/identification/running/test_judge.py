@@ -39,19 +39,12 @@ def test_a_good_run(tmp_path):
     assert found.first is None
 
 
-def test_nothing_is_inside_an_unproved_spec(tmp_path):
-    text = "\n".join(line.rsplit(",", 2)[0] for line in runs.text(*runs.run()).split("\n"))
-    found = judge_run(log(tmp_path, text=text), SOFT, proved=False)
-    assert found.verdict == "inconclusive"
-    assert check(found, "stiffness").basis == "range of the spec, not proved"
-
-
 def test_the_first_violation_has_its_time(tmp_path):
-    data = runs.run(stiffness=lambda t: np.where(t > 6, 60.0, runs.STIFFNESS))
-    found = judged(log(tmp_path, data))
+    t, *rest = runs.run(stiffness=lambda t: np.where(t > 6, 60.0, runs.STIFFNESS))
+    found = judged(log(tmp_path, (t + 100.0, *rest)))
     assert found.verdict == "outside"
     assert found.first.name == "force"
-    assert 6.0 <= found.first.first.time < 6.6
+    assert 106.0 <= found.first.first.time < 106.6
 
 
 def varying(k_of_angle):
@@ -73,20 +66,7 @@ def test_a_stiffness_that_varies_inside_its_range_is_not_outside(tmp_path, risin
     slopes = [w.value for w in found.windows]
     assert not any(low <= k <= high for k in slopes)
     assert found.verdict == "inconclusive"
-    assert str(check(found, "stiffness").status) == "estimated"
-
-
-def test_a_wide_range_explains_a_slope_of_zero(tmp_path):
-    """A torque that stays the same, at a stiffness between 20 and 60 N m/rad: no free motion."""
-    bounds = replace(SOFT, stiffness={"insertion": Stiffness(((20.0, 100.0),), ())})
-    t, angle, _, command, _ = runs.run()
-    noise = 1e-4 * np.random.default_rng(0).normal(size=len(t))
-    data = (t, angle, 0.15 + noise, command, np.full(len(t), "insertion"))
-    found = judged(log(tmp_path, data), bounds)
-    assert (data[2] / angle).min() > 20.0
-    assert (data[2] / angle).max() < 100.0
-    assert found.verdict == "inconclusive"
-    assert str(check(found, "contact").status) == "estimated"
+    assert check(found, "stiffness").status == "estimated"
 
 
 @pytest.mark.parametrize("stiffness", [60.0, 5.0])
@@ -99,19 +79,37 @@ def test_a_strange_stiffness_is_shown_and_never_inside(tmp_path, stiffness):
     assert found.estimates.startswith("estimated, not judged: stiffness: a window shows how much")
 
 
-def test_lost_contact(tmp_path):
+@pytest.mark.parametrize(
+    ("bounds", "options", "status", "said"),
+    [
+        (SOFT, {"proved": True}, "estimated", ("kept all the time", "assumption of the proof")),
+        (
+            SOFT,
+            {"proved": True, "losable": True},
+            "inside",
+            ("lost and made again at any time", "covered by the proof"),
+        ),
+        (
+            SAMPLED,
+            {"proved": False},
+            "inside",
+            ("lost and made again at any time", "asked for by the spec, not proved"),
+        ),
+        (
+            SOFT,
+            {"proved": False},
+            "estimated",
+            ("not said", "`contact` of the spec, or a certificate, says whether it may be lost"),
+        ),
+    ],
+)
+def test_lost_contact(tmp_path, bounds, options, status, said):
     """Little torque: an estimate, as that of the stiffness is."""
-    kept = judged(log(tmp_path, runs.run(free=2.0)))
-    contact = check(kept, "contact")
-    assert (str(contact.status), contact.allowed) == ("estimated", "kept all the time")
+    found = judge_run(log(tmp_path, runs.run(free=2.0)), bounds, **options)
+    contact = check(found, "contact")
     assert contact.measured == "about 20 % of the time free, 80 % in contact"
-    assert kept.verdict == "inconclusive"
-    covered = check(judged(log(tmp_path, runs.run(free=2.0)), losable=True), "contact")
-    assert (str(covered.status), covered.basis) == ("inside", "covered by the proof")
-    asked = judge_run(log(tmp_path, runs.run(free=2.0)), SAMPLED, proved=False)
-    assert check(asked, "contact").basis == "asked for by the spec, not proved"
-    unsaid = check(judge_run(log(tmp_path), SOFT, proved=False), "contact")
-    assert (str(unsaid.status), unsaid.allowed) == ("estimated", "not said")
+    assert (contact.status, (contact.allowed, contact.basis)) == (status, said)
+    assert found.verdict == "inconclusive"
 
 
 def test_noise_in_free_motion_is_no_contact(tmp_path):
@@ -138,7 +136,6 @@ def test_a_torque_of_exactly_zero_is_free_motion(tmp_path):
 def test_the_share_of_time_that_tells_something_is_counted(tmp_path):
     """Windows in which nothing moves, gaps and short stays tell nothing."""
     t, angle, torque, command, mode = runs.run(noise=0.0)
-    assert judged(log(tmp_path, (t, angle, torque, command, mode))).share == 1.0
     still = np.where(t < 5.0, angle[0], angle)
     found = judged(log(tmp_path, (t, still, 43.0 * still, command, mode)))
     assert found.share == pytest.approx(0.5)
@@ -149,11 +146,6 @@ def test_the_share_of_time_that_tells_something_is_counted(tmp_path):
     short = np.where((t > 1.0) & (t < 1.02), "withdrawal", "insertion")
     found = judged(log(tmp_path, (t, angle, torque, command, short)))
     assert found.share == pytest.approx(1 - 9 / 5000)
-    position = replace(SOFT, stiffness={**SOFT.stiffness, "withdrawal": None})
-    found = judged(log(tmp_path, (t, angle, torque, command, mode)), position)
-    assert found.share == pytest.approx(0.5)
-    columns = {k: v for k, v in log(tmp_path).columns.items() if k != "torque"}
-    assert judged(replace(log(tmp_path), columns=columns)).share == 0.0
 
 
 def test_nothing_to_touch_leaves_nothing_open(tmp_path):
@@ -165,23 +157,11 @@ def test_nothing_to_touch_leaves_nothing_open(tmp_path):
     assert replace(found, checks=estimated).verdict == "inconclusive"
 
 
-def test_a_sampled_proof_is_not_called_continuous(tmp_path):
-    found = judged(log(tmp_path), SAMPLED)
-    assert "sampled every 0.002 s" in check(found, "jitter").allowed
-    assert "continuous" in check(judged(log(tmp_path)), "jitter").allowed
-
-
 def test_opposite_signs_are_named(tmp_path):
     t, angle, torque, command, mode = runs.run()
     found = judged(log(tmp_path, (t, angle, -torque, command, mode)))
     assert "opposite signs" in check(found, "stiffness").measured
     assert found.verdict == "inconclusive"
-
-
-def test_time_in_the_log_counts(tmp_path):
-    t, *rest = runs.run(stiffness=90.0)
-    first = judged(log(tmp_path, (t + 100.0, *rest))).first
-    assert first.first.time == pytest.approx(100.0, abs=0.5)
 
 
 def test_a_linear_log(tmp_path):
@@ -215,14 +195,8 @@ def test_saturation_and_force(tmp_path):
     assert saturated.first.time == pytest.approx(t[np.argmax(np.abs(np.round(command, 2)) >= 1990)])
     # A reading above the limit that noise explains is no violation.
     noisy = log(tmp_path, runs.run(stiffness=52.0, noise=0.02))
-    assert str(check(judged(noisy), "force").status) == "undecided"
+    assert check(judged(noisy), "force").status == "undecided"
     assert "give --command-limit" in check(judged(log(tmp_path)), "saturation").measured
-
-
-def test_jitter_is_measured(tmp_path):
-    t, *rest = runs.run()
-    t = t + np.where(np.arange(len(t)) % 7 == 0, 0.0009, 0.0)
-    assert "0.0011 to 0.0029" in check(judged(log(tmp_path, (t, *rest))), "jitter").measured
 
 
 def test_a_strange_mode(tmp_path):
@@ -230,7 +204,7 @@ def test_a_strange_mode(tmp_path):
     mode = np.where(mode == "insertion", "idle", mode)
     found = judged(log(tmp_path, (t, angle, torque, command, mode)))
     assert "'idle' is no controller" in check(found, "stiffness").measured
-    assert str(check(found, "dwell times").status) == "not judged"
+    assert check(found, "dwell times").status == "not judged"
 
 
 @pytest.mark.parametrize(
@@ -243,14 +217,14 @@ def test_a_strange_mode(tmp_path):
 def test_what_no_log_shows_is_not_judged_so_the_run_is_not_inside(tmp_path, spec, name, allowed):
     bounds = read_run_bounds(read_spec(ROBOT / f"{spec}.nrs.yaml"))
     unseen = check(judged(log(tmp_path), bounds, command_limit=3000), name)
-    assert (str(unseen.status), unseen.allowed) == ("not judged", allowed)
+    assert (unseen.status, unseen.allowed) == ("not judged", allowed)
     assert SOFT.unseen == ()
 
 
 def test_a_tissue_that_remembers(tmp_path):
     bounds = read_run_bounds(read_spec(ROBOT / "nose.nrs.yaml"))
-    text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
-    assert "remembers" in check(judged(log(tmp_path, text=text), bounds), "stiffness").measured
+    record = log(tmp_path, text=runs.without_modes(runs.run()))
+    assert "remembers" in check(judged(record, bounds), "stiffness").measured
 
 
 def test_windows_end_at_switches_and_gaps():
@@ -333,61 +307,40 @@ def test_one_swing_tells_no_delay_from_a_lag(tmp_path):
     """Its lag of phase is that of a longer delay, too, and that is no violation."""
     asked = replace(SOFT, delay=0.03)
     found = check(judged(log(tmp_path, following([1.3])), asked), "delay")
-    assert (str(found.status), found.first) == ("not judged", None)
+    assert (found.status, found.first) == ("not judged", None)
     assert "cannot be told apart" in found.measured
     several = check(judged(log(tmp_path, following([1.3, 3.7, 7.1])), asked), "delay")
-    assert str(several.status) == "inside"
+    assert several.status == "inside"
 
 
-@pytest.mark.parametrize("unit", ["V", "mA", "counts"])
-def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path, unit):
-    text = runs.text(*runs.run()).replace("command_rpm", f"command_{unit}")
+def test_a_command_of_another_kind_than_the_spec_has_is_refused(tmp_path):
+    text = runs.text(*runs.run()).replace("command_rpm", "command_V")
     with pytest.raises(DataError, match="the motor of the spec takes rpm") as caught:
         judged(log(tmp_path, text=text))
     assert "command_rpm" in caught.value.remedy
-    volts = replace(SOFT, command="V")
-    with pytest.raises(DataError, match="read in rpm, and the motor of the spec takes V"):
-        judged(log(tmp_path), volts)
-    if unit == "V":
-        assert judged(log(tmp_path, text=text), volts).checks
-
-
-def test_a_command_of_another_unit_of_its_kind_is_converted(tmp_path):
-    text = runs.text(*runs.run()).replace("command_rpm", "command_deg_s")
-    found = check(judged(log(tmp_path, text=text), command_limit=3000.0), "saturation")
-    assert "largest command 333.33 rpm" in found.measured
-
-
-def without_modes(data):
-    return "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*data).split("\n"))
+    assert judged(log(tmp_path, text=text), replace(SOFT, command="V")).checks
 
 
 def test_without_modes_the_ranges_of_all_controllers_are_shown(tmp_path):
     other = Stiffness(((10.0, 20.0),), ())
     bounds = replace(SOFT, stiffness={"insertion": SOFT.stiffness["insertion"], "other": other})
-    record = log(tmp_path, text=without_modes(runs.run()))
+    record = log(tmp_path, text=runs.without_modes(runs.run()))
     found = check(judged(record, bounds), "stiffness")
-    assert (str(found.status), found.allowed) == (
-        "estimated",
-        "41.504 to 44.247 N m/rad or 10 to 20 N m/rad",
-    )
+    assert found.allowed == "41.504 to 44.247 N m/rad or 10 to 20 N m/rad"
     free = replace(bounds, stiffness={**bounds.stiffness, "position": None})
     assert "no column for mode" in check(judged(record, free), "stiffness").measured
 
 
-def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path):
-    """2 ms in log and loop; a log in ms that is read in s has none of its periods."""
-    assert "no whole" not in check(judged(log(tmp_path), SAMPLED), "jitter").measured
-    slower = replace(SAMPLED, period=0.003)
-    assert "no whole number of periods" in check(judged(log(tmp_path), slower), "jitter").measured
-    near = replace(SAMPLED, period=0.0019)
-    assert "no whole number of periods" in check(judged(log(tmp_path), near), "jitter").measured
-    faster = replace(SAMPLED, period=0.001)
-    assert "no whole" not in check(judged(log(tmp_path), faster), "jitter").measured
+@pytest.mark.parametrize(("period", "said"), [(0.002, False), (0.0019, True), (0.001, False)])
+def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path, period, said):
+    """The log has steps of 2 ms."""
+    jitter = check(judged(log(tmp_path), replace(SAMPLED, period=period)), "jitter")
+    assert ("no whole number of periods" in jitter.measured) is said
+    assert f"sampled every {period:g} s" in jitter.allowed
 
 
 def test_the_spec_may_say_where_the_driver_saturates(tmp_path):
     known = replace(SOFT, saturates=1500.0)
-    assert str(check(judged(log(tmp_path), known), "saturation").status) == "outside"
+    assert check(judged(log(tmp_path), known), "saturation").status == "outside"
     found = check(judged(log(tmp_path), known, command_limit=3000.0), "saturation")
-    assert (str(found.status), found.allowed) == ("inside", "below 3000 rpm")
+    assert (found.status, found.allowed) == ("inside", "below 3000 rpm")

@@ -39,29 +39,31 @@ def with_switching(tmp_path, rules):
 )
 def test_dwell_times(tmp_path, rules, status, words):
     found = check(judged(log(tmp_path), with_switching(tmp_path, rules)), "dwell times")
-    assert str(found.status) == status
+    assert found.status == status
     if words is not None:
         assert any(word in found.first.words for word in words.split("|"))
 
 
-def test_what_the_rows_of_a_log_tell_of_stays(tmp_path):
+@pytest.mark.parametrize(
+    ("inserting", "status", "words"),
+    [
+        (lambda t: t < 0.5, "undecided", "insertion lasted 0.498 s at least: the log begins with"),
+        (lambda t: t < 9.5, "inside", "1 switch; a stay between two rows (up to 0.002 s) is not"),
+        (lambda t: (t < 5) | (t > 6), "outside", "2 switches"),
+    ],
+)
+def test_what_the_rows_of_a_log_tell_of_stays(tmp_path, inserting, status, words):
     """A first stay may have begun before the log; a last one has not ended within it."""
-    rules, record = with_switching(tmp_path, "{dwell_time: 2 s}"), log(tmp_path)
-    found = check(judged(record, rules), "dwell times")
-    assert found.measured == "3 switches; a stay between two rows (up to 0.002 s) is not seen"
-    seen = check(judged(record, replace(rules, period=0.002)), "dwell times")
-    assert (str(seen.status), seen.measured) == ("inside", "3 switches")
     t, *rest, _ = runs.run()
-    late = np.where(t < 0.5, "insertion", "withdrawal")
-    found = check(judged(log(tmp_path, (t, *rest, late)), rules), "dwell times")
-    assert str(found.status) == "undecided"
-    assert "insertion lasted 0.498 s at least: the log begins with it" in found.measured
-    last = np.where(t < 9.5, "insertion", "withdrawal")
-    found = check(judged(log(tmp_path, (t, *rest, last)), rules), "dwell times")
-    assert (str(found.status), found.measured.partition(";")[0]) == ("inside", "1 switch")
-    short = np.where((t < 5) | (t > 6), "insertion", "withdrawal")
-    found = check(judged(log(tmp_path, (t, *rest, short)), rules), "dwell times")
-    assert (str(found.status), found.first.time) == ("outside", 5.0)
+    record = log(tmp_path, (t, *rest, np.where(inserting(t), "insertion", "withdrawal")))
+    found = check(judged(record, with_switching(tmp_path, "{dwell_time: 2 s}")), "dwell times")
+    assert found.status == status
+    assert words in found.measured
+
+
+def test_a_log_with_a_row_for_every_sample_misses_no_stay(tmp_path):
+    rules = replace(with_switching(tmp_path, "{dwell_time: 2 s}"), period=0.002)
+    assert check(judged(log(tmp_path), rules), "dwell times").measured == "3 switches"
 
 
 @pytest.mark.parametrize(
@@ -80,21 +82,20 @@ def test_missing_rows_may_hide_switches(tmp_path, rules, cut, status):
     kept = (columns[0] < cut[0]) | (columns[0] > cut[1])
     record = log(tmp_path, tuple(column[kept] for column in columns))
     found = check(judged(record, with_switching(tmp_path, rules)), "dwell times")
-    assert str(found.status) == status
+    assert found.status == status
 
 
 def test_rules_that_name_contacts_are_not_taken_for_none(tmp_path):
     rules = "{transitions: [[insertion/soft, withdrawal/soft]]}"
     found = judged(log(tmp_path), with_switching(tmp_path, rules), command_limit=3000)
     stays = check(found, "dwell times")
-    assert str(stays.status) == "not judged"
+    assert stays.status == "not judged"
     assert "name contacts" in stays.measured
     assert found.verdict == "inconclusive"
 
 
 def test_rules_without_a_column(tmp_path):
-    text = "\n".join(line.rsplit(",", 1)[0] for line in runs.text(*runs.run()).split("\n"))
-    record = log(tmp_path, text=text)
-    assert str(check(judged(record), "dwell times").status) == "inside"
+    record = log(tmp_path, text=runs.without_modes(runs.run()))
+    assert check(judged(record), "dwell times").status == "inside"
     found = judged(record, with_switching(tmp_path, "{dwell_time: 2 s}"))
     assert check(found, "dwell times").measured == "no column for mode"

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from nrs_design.identification.tissue import fit_record, output_error
-from nrs_design.identification.tissue.output_error import rmse
 from nrs_design.identification.tissue.problem import LeastSquaresProblem
 from nrs_design.identification.tissue.trial import Preparation, prepare
 from nrs_design.models.contact import (
-    LAWS,
     Elastic,
     HuntCrossley,
     KelvinBoltzmann,
@@ -17,7 +15,7 @@ from nrs_design.models.contact import (
     Motion,
 )
 from tests.identification import synthetic
-from tests.identification.support import quick, record, slow
+from tests.identification.support import holds, quick, record, slow
 from tests.identification.unilateral import robot_record
 
 # Thesis 6.1, and tables 2.4 and 2.5 (a Maxwell law that relaxes within the record).
@@ -35,7 +33,7 @@ KNOWN = [
 @pytest.mark.parametrize(("law", "motion", "noise", "resolution"), KNOWN)
 def test_parameters_of_the_thesis_are_in_their_intervals(law, motion, noise, resolution):
     fit = fit_record(type(law), record(law, motion, noise, 11, resolution))
-    assert all(e.covers(v) for e, v in zip(fit.estimates, law.values, strict=True))
+    assert all(holds(fit.estimates, law.values))
     assert fit.law.values == pytest.approx(law.values, rel=0.12)
     # Rounding of the deflection adds to the noise: at most k q / sqrt(12).
     assert noise * 0.9 < fit.rmse < 1.15 * noise + resolution * law.values[0] / 3
@@ -51,24 +49,6 @@ def test_exact_without_noise(law):
     assert fit.law.values == pytest.approx(law.values, rel=1e-5)
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        KelvinBoltzmann,
-        *(pytest.param(k, marks=pytest.mark.slow) for k in LAWS.values() if k != KelvinBoltzmann),
-    ],
-)
-def test_no_better_parameters_nearby(kind):
-    data = record(synthetic.NOSE, slow(2), 0.01, 2)
-    fit = fit_record(kind, data)
-    for seed in range(20):
-        shift = 1 + 0.01 * np.random.default_rng(seed).normal(size=len(fit.law.values))
-        if kind is HuntCrossley:
-            shift[-1] = 1.0  # the exponent is at its bound
-        other = kind(*(np.array(fit.law.values) * shift))
-        assert rmse(other, data) >= fit.rmse * (1 - 1e-7)
-
-
 def test_criteria():
     fit = fit_record(KelvinVoigt, record(KelvinVoigt(0.5, 1.0), slow(), 0.01))
     n = len(fit.record.force)
@@ -82,11 +62,6 @@ def test_long_records_are_searched_thinned_and_fitted_whole(monkeypatch):
     monkeypatch.setattr(output_error, "COARSE", 300)
     thin = fit_record(type(synthetic.NOSE), data)
     assert thin.law.values == pytest.approx(whole.law.values, rel=1e-6)
-
-
-def test_several_starts_agree():
-    fit = fit_record(type(synthetic.CONCHA), record(synthetic.CONCHA, slow(), 0.01))
-    assert fit.starts == fit.agreeing == 3
 
 
 @pytest.mark.slow

@@ -37,10 +37,3 @@ def test_silicone(fits, mean):
 def test_one_record_stands_for_itself():
     model = fit_model(Elastic, specimens(synthetic.SOFT[:1]))
     assert model.estimates == model.fits[0].estimates == model.ranges
-
-
-def test_pooled_rmse_is_never_less():
-    model = fit_model(Elastic, specimens(synthetic.SOFT))
-    assert all(p >= f.rmse for p, f in zip(model.rmse, model.fits, strict=True))
-    assert model.bic == pytest.approx(sum(fit.bic for fit in model.fits))
-    assert model.aic == pytest.approx(sum(fit.aic for fit in model.fits))

@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 
-from nrs_design.errors import DataError
 from nrs_design.identification.statistics import Estimate, joint_level, tolerance_factor
-from nrs_design.identification.tissue import fit_model, identify_tissue
 from nrs_design.identification.tissue.ranges import box_remark, spread_ranges
-from nrs_design.models.contact import Elastic
-from tests.identification.support import quick, record
 
 POINT = Estimate(1.0, 1.0, 1.0)
 
@@ -53,26 +49,6 @@ def test_a_tolerance_range_holds_its_share(count):
         (found,) = spread_ranges("tolerance", samples(seed, count), [[POINT]] * count)
         held.append(ndtr(np.log(found.high)) - ndtr(np.log(found.low)) >= 0.95)
     assert np.mean(held) >= 0.95
-
-
-def specimens(count):
-    factors = np.exp(0.03 * np.random.default_rng(1).standard_normal(count))
-    return [record(Elastic(750 * f), quick(i), 0.1, i) for i, f in enumerate(factors)]
-
-
-@pytest.mark.slow
-def test_each_kind_of_range_is_wider_than_the_last():
-    data = specimens(5)
-    mean, next_, most = (
-        fit_model(Elastic, data, name).ranges[0]
-        for name in ("confidence", "prediction", "tolerance")
-    )
-    assert most.low < next_.low < mean.low < mean.high < next_.high < most.high
-
-
-def test_one_record_says_nothing_of_the_next():
-    with pytest.raises(DataError, match="needs several records"):
-        identify_tissue(specimens(1), coverage="tolerance")
 
 
 def test_a_box_is_called_a_box():

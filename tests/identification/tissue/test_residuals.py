@@ -44,12 +44,6 @@ def test_a_tare_that_wanders():
     assert "not white but wander with time" in said
 
 
-def test_noise_that_hides_the_force():
-    data = record(Elastic(40.0), quick(1), 0.1, 1)
-    said = "; ".join(fit_record(Elastic, data).doubts)
-    assert "% of the range of the force" in said
-
-
 @pytest.mark.slow
 def test_a_tissue_that_relaxes_is_not_taken_for_one_that_pulls():
     """At its largest deflection it has its least force."""

@@ -94,15 +94,6 @@ def test_parameters_have_names_and_kinds(law):
     assert LAWS[law.name] is type(law)
 
 
-@given(scale=st.floats(0.1, 10), seed=st.integers(0, 100))
-def test_linear_laws_are_linear(scale, seed):
-    motion = wobble(seed)
-    twice = Motion(motion.time, scale * motion.deflection)
-    for law in SAMPLES[:-1]:
-        expected = scale * law.simulate(motion)
-        assert law.simulate(twice) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
-
-
 LINEAR = [law for law in SAMPLES if law.name in LINEAR_LAWS]
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
 
 from nrs_design.models.contact.motion import Motion
 from nrs_design.models.contact.relaxation import Relaxation
@@ -22,23 +21,6 @@ def test_ramp_then_hold():
         time <= 0.5, 2.0 * TAU * (1 - np.exp(-time / TAU)), top * np.exp((0.5 - time) / TAU)
     )
     assert y == pytest.approx(wanted, abs=1e-15)
-
-
-def test_uneven_steps_against_an_integrator():
-    motion = wobble(1)
-    slopes = motion.increments / motion.steps
-
-    def derivative(t, y):
-        step = min(np.searchsorted(motion.time, t, side="right") - 1, len(slopes) - 1)
-        return slopes[step] - y / TAU
-
-    wanted = [0.0]
-    for start, end in zip(motion.time[:-1], motion.time[1:], strict=True):
-        run = solve_ivp(
-            derivative, (start, end * (1 - 1e-15)), [wanted[-1]], rtol=1e-10, atol=1e-12
-        )
-        wanted.append(run.y[0, -1])
-    assert Relaxation(motion, TAU).y == pytest.approx(np.array(wanted), abs=1e-8)
 
 
 @given(st.floats(-2.0, 2.0))

@@ -333,14 +333,6 @@ def test_resets_and_unequal_modes_must_be_asked_for():
     assert "equal size" in Claimed().find_fault(family([[-1]], [[-1, 0], [0, -1]]))
 
 
-def test_evidence_about_every_mode_holds_for_its_equals_too():
-    system, evidence = genuine("no-common-quadratic")
-    assert evidence.spread(system, twice(system)) is evidence
-    system, evidence = genuine("common-quadratic")
-    assert evidence.spread(system, twice(system)) == evidence
-    assert evidence.find_fault(twice(system)) is None
-
-
 @pytest.mark.parametrize(
     "example",
     ["common-quadratic", "common-polynomial", "mode-quadratic, discrete", "block-triangular"],
@@ -446,13 +438,6 @@ def test_a_rate_of_decay_is_positive_and_in_steps_below_one(rate, continuous, di
     assert (evidence.find_rate_misfit(Time.DISCRETE) is None) is discrete
 
 
-def test_functions_show_stability_at_the_rate_that_they_claim():
-    system, evidence = genuine("common-quadratic")
-    assert evidence.shows is Shows.STABILITY
-    assert evidence.attains_rate
-    assert evidence.proved_rate(system) == evidence.rate
-
-
 @pytest.mark.parametrize(
     ("M", "square"),
     [
@@ -471,3 +456,11 @@ def test_a_kind_that_does_not_exist_is_no_name_of_the_package():
     package = import_module("nrs_design.proof.evidence")
     with pytest.raises(AttributeError, match="has no attribute 'Hope'"):
         _ = package.Hope
+
+
+def test_evidence_about_every_mode_holds_for_its_equals_too():
+    system, evidence = genuine("no-common-quadratic")
+    assert evidence.spread(system, twice(system)) is evidence
+    system, evidence = genuine("common-quadratic")
+    assert evidence.spread(system, twice(system)) == evidence
+    assert evidence.find_fault(twice(system)) is None

@@ -17,17 +17,11 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.switching import Switching
 from nrs_design.search.certify import certify
 from tests.proof.graphs import common_polynomial, common_quadratic, mode_quadratic
-from tests.proof.systems import dayawansa_martin, family, genuine, resets_between
+from tests.proof.systems import family, genuine, resets_between
 from tests.support import ends_soon
 
 ONE = common_quadratic(((1,),), 0, Fraction(1, 2))
 CASCADE = family([[-1, 5], [0, -2]], [[-2, -7], [0, -1]])
-
-
-def test_a_cascade_by_hand():
-    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE)))
-    assert evidence.find_fault(CASCADE) is None
-    assert evidence.proved_rate(CASCADE) == Fraction(1, 2)
 
 
 def test_the_rate_is_that_of_the_slowest_block():
@@ -77,35 +71,8 @@ def test_one_unstable_block_suffices():
     assert certify(system).verdict is Verdict.REFUTED
 
 
-def test_parts_show_one_and_the_same():
-    parts = ((0, ONE), (1, staying("m0")))
-    assert BlockTriangular(((0,), (1,)), parts).find_fault(CASCADE) is not None
-    assert BlockTriangular(((0,), (1,)), ()).find_fault(CASCADE) is not None
-
-
-def test_a_decoupled_state_hides_no_obstruction():
-    system, _ = genuine("block-triangular")
-    found = certify(system)
-    assert found.verdict is Verdict.PROVED
-    assert found.common_quadratic is CommonQuadraticStatus.IMPOSSIBLE
-
-
 def test_quadratic_blocks_make_a_quadratic_whole():
     assert certify(CASCADE).common_quadratic is CommonQuadraticStatus.EXISTS
-
-
-def test_blocks_of_the_pair_of_dayawansa_and_martin_beyond_its_limit():
-    rows = [mode.A.fractions() for mode in dayawansa_martin(12).modes]
-    system = family(*([[-1, 3, 0], [0, *A[0]], [0, *A[1]]] for A in rows))
-    found = certify(system)
-    assert found.verdict is Verdict.REFUTED
-    assert found.evidence.kind == "block-triangular"
-
-
-def test_resets_may_drive_against_the_order():
-    evidence = BlockTriangular(((0,), (1,)), ((0, ONE), (1, ONE)))
-    resets = resets_between(("m0", "m1", [[1, 0], [9, 1]]))
-    assert evidence.find_fault(replace(CASCADE, switching=Switching(resets=resets))) is not None
 
 
 def test_resets_are_not_covered_whatever_the_parts_cover():

@@ -5,47 +5,19 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.certificates.certificate import CommonQuadraticStatus
 from nrs_design.proof.contact import Contact
 from nrs_design.proof.evidence import NoCommonQuadratic
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.switching import Switching
-from nrs_design.search.certification import Limits
-from nrs_design.search.certify import certify
 from tests.proof.systems import (
     ando_shih,
     dayawansa_martin,
-    degenerate_dual,
     family,
     genuine,
-    oscillator,
 )
 
 IDENTITY = ((1, 0), (0, 1))
-
-
-def status(system):
-    return certify(system, limits=Limits(max_degree=2, optimize_rate=False)).common_quadratic
-
-
-@pytest.mark.parametrize(
-    ("system", "expected"),
-    [
-        # 3 + 2 sqrt(2) = 5.82842...
-        (dayawansa_martin("5.828"), "exists"),
-        (dayawansa_martin("5.829"), "impossible"),
-        # Circle criterion: 1 + 2 sqrt(2) = 3.82842...
-        (oscillator("3.828"), "exists"),
-        (oscillator("3.829"), "impossible"),
-        # 1/sqrt(2) = 0.70710...
-        (ando_shih("0.707"), "exists"),
-        (ando_shih("0.708"), "impossible"),
-        (degenerate_dual(), "impossible"),
-    ],
-)
-def test_both_sides_of_published_thresholds(system, expected):
-    assert status(system) is CommonQuadraticStatus(expected)
 
 
 @pytest.mark.parametrize("example", ["no-common-quadratic", "no-common-quadratic, discrete"])

@@ -73,18 +73,6 @@ def test_models_are_no_programs(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_json(tmp_path):
-    document = document_of("robot", "export", SPEC, cwd=tmp_path)
-    assert document["schema"] == "nrs-design/robot-export/1"
-    assert document["files"] == ["reports/neuroboscope.mjcf.xml"]
-
-
-def test_what_is_no_robot(tmp_path):
-    spec = str(ROOT / "specs/neuroboscope/soft-tissue.nrs.yaml")
-    assert "describes no robot" in run("robot", "export", spec, cwd=tmp_path, code=2).stderr
-    assert not list(tmp_path.iterdir())
-
-
 def test_the_model_of_another_spec_is_not_overwritten(tmp_path):
     for name in ("a.nrs.yaml", "b.nrs.yaml"):
         (tmp_path / name).write_bytes(Path(SPEC).read_bytes())

@@ -5,14 +5,6 @@ import typer
 
 from nrs_design.errors import PoseError
 from nrs_design.robot.cli.options import read_pose, three_numbers
-from nrs_design.robot.models import build_robot
-from nrs_design.spec import parse_spec
-from nrs_design.spec.templates import TEMPLATES
-
-
-@pytest.fixture(scope="module")
-def robot():
-    return build_robot(parse_spec(TEMPLATES["robot"]))
 
 
 def test_three_numbers():

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState
 from nrs_design.robot.design.motion_control import design_computed_torque
 from nrs_design.robot.models import inverse_kinematics
 
@@ -18,8 +18,8 @@ def law(spec, load):
 
 
 @pytest.fixture(scope="module")
-def angle(robot):
-    return 5 * inverse_kinematics(robot, POSE)
+def angle(tilted):
+    return 5 * inverse_kinematics(tilted, POSE)
 
 
 def test_equation_4_18_with_acceleration_and_error_of_the_encoders(law, load, angle):

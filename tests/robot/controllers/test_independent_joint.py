@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState
 from nrs_design.robot.design.motion_control import design_independent_joint
 from nrs_design.robot.models import inverse_kinematics, simplified_dynamics
 
@@ -9,8 +9,8 @@ POSE = np.array([[0.05, -0.1, 0.2]])
 
 
 @pytest.fixture(scope="module")
-def angle(robot):
-    return 5 * inverse_kinematics(robot, POSE)
+def angle(tilted):
+    return 5 * inverse_kinematics(tilted, POSE)
 
 
 def reference(angle, ahead):
@@ -27,11 +27,11 @@ def test_pd_in_encoder_coordinates_is_in_rpm_already(spec, angle):
     assert second == pytest.approx(np.full((1, 3), expected), rel=1e-6)
 
 
-def test_weight_is_fed_forward_through_gradient_and_gears(spec, robot, load, angle):
+def test_weight_is_fed_forward_through_gradient_and_gears(spec, tilted, load, angle):
     law = design_independent_joint(spec, load)
     command, memory = law.step(LawState(), reference(angle, 0.0), angle)
     K = np.array(load.correction)
-    expected = 2.7044e5 / 905 * K * simplified_dynamics(robot, POSE).Gs
+    expected = 2.7044e5 / 905 * K * simplified_dynamics(tilted, POSE).Gs
     assert command == pytest.approx(expected, rel=1e-9)
     assert memory.load is not None
 

@@ -7,10 +7,10 @@ from math import degrees
 import numpy as np
 import pytest
 
+from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.controllers.replica import step
 from nrs_design.errors import PoseError
-from nrs_design.robot.controllers import JointReference
-from nrs_design.robot.controllers.state import LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState, LoadModel
 from nrs_design.robot.controllers.step_laws import (
     Joints,
     build_base,
@@ -18,6 +18,7 @@ from nrs_design.robot.controllers.step_laws import (
     build_independent_joint,
     build_inverse_dynamics,
 )
+from nrs_design.robot.controllers.traced_robot import LARGEST_ANGLES
 from nrs_design.robot.design.motion_control import (
     design_computed_torque,
     design_independent_joint,
@@ -26,6 +27,7 @@ from nrs_design.robot.design.motion_control import (
 from nrs_design.robot.models import (
     build_robot,
     direct_kinematics,
+    gravity_torque,
     inverse_dynamics,
     inverse_kinematics,
     is_reachable,
@@ -89,6 +91,39 @@ def exchanged(robot):
 def test_inverse_dynamics_are_those_of_the_model(robot):
     """Coriolis forces and all links; the model itself is checked against Pinocchio elsewhere."""
     check_torques(robot)
+
+
+def turned(robot, angle):
+    """The same robot with all base axes turned about the vertical."""
+    legs = tuple(replace(leg, azimuth=leg.azimuth + angle) for leg in robot.legs)
+    return replace(robot, legs=legs)
+
+
+@pytest.mark.parametrize(
+    "robot",
+    [THESIS, crooked(THESIS), exchanged(THESIS), turned(THESIS, 0.4)],
+    ids=["thesis", "crooked", "exchanged", "turned"],
+)
+def test_the_weight_that_is_fed_forward_is_that_of_the_model(robot):
+    """Middle arms with mass beside their plane, and axes in any direction, too."""
+    silent = ProportionalDerivative(Fraction(0), Fraction(0))
+    law = design_independent_joint(SPEC, LoadModel(robot, RATIO, None))
+    law = replace(law, motion=silent, command_per_torque=1.0)
+    joints, pose = Joints(robot, RATIO), poses(robot)
+    q = inverse_kinematics(robot, pose)
+    given = {"angle": RATIO * q, "position": q, "error_before": 0 * q}
+    result = run(build_independent_joint(joints, law), **given, **base_of(robot, len(pose)))
+    assert result.valid.all()
+    wanted = gravity_torque(joints.simplified, pose)
+    assert len(pose) > 30
+    assert np.abs(wanted).max() > 1
+    np.testing.assert_allclose(outputs(result), wanted, atol=5e-6, rtol=2e-6)
+
+
+def test_the_angles_are_those_of_the_polynomials():
+    """Planes to 1.5 rad, the crank to 2 rad: the header says so."""
+    assert (Fraction(3, 2), Fraction(3, 2), 2) == LARGEST_ANGLES
+    assert [angle.limit for angle in Joints(THESIS, 1.0).angles] == list(LARGEST_ANGLES)
 
 
 def check_torques(robot):

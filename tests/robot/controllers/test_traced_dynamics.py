@@ -2,13 +2,10 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from nrs_design.robot.controllers.traced_dynamics import is_flat
-from nrs_design.robot.models import inverse_dynamics, inverse_kinematics
 from nrs_design.robot.models.body import Body
-from nrs_design.robot.models.lumped import in_lengths, lumped
-from tests.robot.controllers.test_step_laws import RNG, THESIS, check_torques, poses
+from nrs_design.robot.models.lumped import lumped
+from tests.robot.controllers.test_step_laws import THESIS, check_torques
 from tests.robot.models.crooked import crooked
 
 
@@ -40,18 +37,3 @@ def test_which_robots_are_flat():
 def test_torques_are_those_of_the_model():
     """The model is checked against Pinocchio elsewhere."""
     check_torques(uneven(THESIS))
-
-
-def test_lengths_may_be_counted_in_any():
-    robot = uneven(THESIS)
-    pose = poses(robot)
-    joints = inverse_kinematics(robot, pose)
-    velocity, acceleration = RNG.normal(0, 1, joints.shape), RNG.normal(0, 5, joints.shape)
-    other = in_lengths(robot, 0.25)
-    scaled = pose / np.array([1.0, 1.0, 0.25])
-    np.testing.assert_allclose(
-        inverse_dynamics(other, scaled, velocity, acceleration),
-        inverse_dynamics(robot, pose, velocity, acceleration),
-        rtol=1e-9,
-        atol=1e-12,
-    )

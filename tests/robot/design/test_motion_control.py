@@ -6,9 +6,8 @@ from nrs_design.errors import DesignError
 from nrs_design.robot.design.motion_control import (
     design_computed_torque,
     design_independent_joint,
-    design_load_model,
 )
-from nrs_design.robot.models import build_robot, inverse_kinematics, mass_matrix
+from nrs_design.robot.models import inverse_kinematics, mass_matrix
 from nrs_design.robot.models.drive import build_drive
 from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
@@ -17,18 +16,8 @@ TEXT = TEMPLATES["robot"]
 CHOSEN = "    derivative_gain: 2060 rpm*s/rad\n    zero: 56.9706 1/s\n"
 
 
-@pytest.fixture(scope="module")
-def spec():
-    return parse_spec(TEXT)
-
-
-@pytest.fixture(scope="module")
-def robot(spec):
-    return build_robot(spec).tilted(spec.balance.tilt.si)
-
-
-def test_computed_torque_of_4_14_and_4_15(spec, robot):
-    law = design_computed_torque(spec, design_load_model(spec, robot))
+def test_computed_torque_of_4_14_and_4_15(spec, tilted, load):
+    law = design_computed_torque(spec, load)
     assert law.Kp**0.5 == pytest.approx(40.297, rel=1e-4)
     assert law.Kp == pytest.approx(1623.85, rel=1e-4)
     assert law.Kd == pytest.approx(56.980, rel=1e-4)
@@ -50,24 +39,24 @@ def test_root_locus_where_the_spec_gives_no_gains():
     assert float(motion.zero) == pytest.approx(56.9706, rel=5e-4)
 
 
-def test_correction_for_the_tilt_of_the_experiments(spec, robot):
+def test_correction_for_the_tilt_of_the_experiments(spec, tilted, load):
     # 4.19 prints 1.848, 1.845, 2.152; recomputed by the errata.
-    load = design_load_model(spec, robot)
+    load = load
     assert load.correction == pytest.approx([1.845, 1.842, 2.188], rel=1e-3)
     assert load.encoder_ratio == 5
 
 
-def test_why_independent_joints_are_stiffer(spec, robot):
+def test_why_independent_joints_are_stiffer(spec, tilted, load):
     # What docs/robot/motion-control.md states: stiffness of both at d = 200 mm in N m/rad, and the
     # slowest pole of computed torque on the rotors, which its law does not know.
-    load, drive = design_load_model(spec, robot), build_drive(spec.drive)
+    load, drive = load, build_drive(spec.drive)
     torque, joint = design_computed_torque(spec, load), design_independent_joint(spec, None)
-    known = load.terms(5 * inverse_kinematics(robot, robot.home)[None]).inertia[0]
+    known = load.terms(5 * inverse_kinematics(tilted, tilted.home)[None]).inertia[0]
     stiffness = np.sort(np.linalg.eigvals(torque.Kp * known))
     assert stiffness == pytest.approx([21.4, 117.7, 436.8], rel=3e-3)
     stiff = float(joint.motion.Kp) * drive.encoder_ratio * drive.torque_per_command
     assert stiff == pytest.approx(1964, rel=1e-3)
-    M = mass_matrix(robot, robot.home)
+    M = mass_matrix(tilted, tilted.home)
     assert drive.inertia / np.linalg.eigvalsh(M) == pytest.approx([76, 15, 5], rel=2e-2)
     total = M + drive.inertia * np.eye(3)
     damping = torque.Kd * known + drive.damping * np.eye(3)

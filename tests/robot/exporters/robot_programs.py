@@ -1,8 +1,5 @@
 """Programs that run cases of a robot's laws and compare every bit, and cases for them."""
 
-import numpy as np
-
-from nrs_design.controllers.replica import step
 from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.robot.exporters.c import names_of
 
@@ -81,23 +78,6 @@ def _loop(spec, name, law, cases):
         }}
     }}
 """
-
-
-def given_at(law, joints, values):
-    """Return inputs and states at joint angles; what is not given is zero."""
-    given = {v.name: np.zeros(len(joints), np.float32) for v in law.values}
-    for i in range(3):
-        given[f"angle_{i + 1}"] = (5 * joints[:, i]).astype(np.float32)
-    for name, numbers in values.items():
-        given[name] = np.broadcast_to(np.asarray(numbers, np.float32), len(joints)).copy()
-    return {name: given[name] for name in (v.name for v in law.values)}
-
-
-def outputs_at(law, given):
-    """Return valid outputs in doubles, shape (n, outputs)."""
-    result = step(law, np.zeros(len(next(iter(given.values()))), np.uint32), given)
-    assert result.valid.all()
-    return np.stack([values.astype(float) for values in result.outputs.values()], axis=-1)
 
 
 def wild(laws, count):

@@ -32,23 +32,6 @@ def grid(robot):
     return 0.95 * (workspace_grid(robot, 5, GRID_DEPTHS).reshape(-1, 3) - robot.home) + robot.home
 
 
-def test_left_leg(balance):
-    left = balance.left
-    masses = [1e3 * m for m in (left.arm_mass, left.coupler_mass, left.total_mass)]
-    assert masses == pytest.approx([843.6, 1301.2, 2887.9], abs=0.06)
-    assert 1e3 * left.total_distance == pytest.approx(133.49, abs=6e-3)
-    assert 1e-3 * left.stiffness == pytest.approx(1.8042, abs=6e-5)
-
-
-def test_right_leg(balance):
-    right = balance.right
-    masses = [1e3 * m for m in (right.arm_mass, right.coupler_mass, right.total_mass)]
-    assert masses == pytest.approx([844.1, 1302.4, 2891.8], abs=0.06)
-    assert 1e3 * right.total_distance == pytest.approx(133.48, abs=6e-3)
-    # Printed as 1.5919 N/mm.
-    assert 1e-3 * right.stiffness == pytest.approx(1.5916, rel=2e-4)
-
-
 def ideal(robot, spec, balance):
     """The robot as the balance sees it: payloads on the side arms, and no middle leg."""
 

@@ -6,11 +6,6 @@ from nrs_design.spec import parse_spec
 from nrs_design.spec.templates import TEMPLATES
 
 
-@pytest.fixture(scope="module")
-def drive(spec):
-    return build_drive(spec.drive)
-
-
 def test_ratios_of_the_thesis(drive):
     # Thesis 4.2: 181:1 and 5:1.
     assert (drive.ratio, drive.encoder_ratio) == (905, 5)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from nrs_design.robot.models import (
     coriolis_matrix,
@@ -68,32 +68,6 @@ def test_potential_is_that_of_the_centers_of_mass(robot, pose):
     assert potential_energy(bare, pose) == pytest.approx(0.7972 * 9.81 * height, rel=1e-12)
 
 
-@pytest.mark.slow
-@settings(max_examples=3)
-@given(pose=poses, velocity=rates)
-def test_energy_of_a_free_motion_is_kept(robot, pose, velocity):
-    # Released without friction or torque, for 25 ms in steps of 0.5 ms.
-    x, v, h = np.array(pose), 0.2 * velocity, 5e-4
-
-    def energy(x, v):
-        return v @ mass_matrix(robot, x) @ v / 2 + potential_energy(robot, x)
-
-    def slope(x, v):
-        M, bias = mass_and_bias(robot, x, v)
-        return jacobian(robot, x) @ v, np.linalg.solve(M, -bias)
-
-    before = energy(x, v)
-    for _ in range(50):
-        if abs(x[2] - 0.2) > 0.05:
-            break
-        k = [slope(x, v)]
-        for part in (h / 2, h / 2, h):
-            k.append(slope(x + part * k[-1][0], v + part * k[-1][1]))
-        x = x + h / 6 * (k[0][0] + 2 * k[1][0] + 2 * k[2][0] + k[3][0])
-        v = v + h / 6 * (k[0][1] + 2 * k[1][1] + 2 * k[2][1] + k[3][1])
-    assert energy(x, v) == pytest.approx(before, abs=1e-6)
-
-
 @given(pose=poses, velocity=rates, acceleration=rates)
 def test_power_of_the_torques_is_the_rate_of_energy(robot, pose, velocity, acceleration):
     h = 1e-5
@@ -120,12 +94,6 @@ def test_batch_is_pose_by_pose(robot):
         assert batch[i] == pytest.approx(alone, abs=1e-12)
     C = coriolis_matrix(robot, pose[:5], velocity[:5])
     assert C[4] == pytest.approx(coriolis_matrix(robot, pose[4], velocity[4]), abs=1e-14)
-
-
-def test_motion_may_be_the_same_for_all_poses(robot):
-    poses = np.array([[0, 0, 0.2], [0.1, -0.2, 0.2]])
-    torques = inverse_dynamics(robot, poses, (0.5, -0.3, 0.8), (1, 2, -1))
-    assert torques[1] == pytest.approx([-3.412764, 3.142030, 2.681441], abs=1e-6)
 
 
 def test_rotor_of_the_middle_actuator_counts(robot):

@@ -67,26 +67,6 @@ def test_inverse_jacobian(robot, pose):
 
 
 @given(pose=poses)
-def test_jacobian_solves_the_implicit_equations(robot, pose):
-    # Thesis 3.11 and 3.12: f(theta1, theta2, phi, psi) = 0 stays so along a motion.
-    def equations(theta, x):
-        root = np.sqrt(1 - np.sin(x[1]) ** 2 - np.sin(x[0]) ** 2)
-        cosines = np.sqrt(2) * np.cos(theta[0]) * np.cos(theta[1])
-        return np.array(
-            [
-                root * np.sin(theta[1] - theta[0]) - np.sin(x[1]) * cosines,
-                root * np.sin(theta[1] + theta[0]) - np.sin(x[0]) * cosines,
-            ]
-        )
-
-    theta, J = inverse_kinematics(robot, pose), jacobian(robot, pose)
-    assert equations(theta, pose) == pytest.approx(0, abs=1e-14)
-    for unit in np.eye(3):
-        moved = equations(theta + TINY * 1j * unit, pose + TINY * 1j * (J @ unit))
-        assert moved.imag / TINY == pytest.approx(0, abs=1e-13)
-
-
-@given(pose=poses)
 def test_orientation_turns_z_into_the_endoscope(pose):
     # Thesis 3.16, corrected.
     x, y, d = orientation(pose)

@@ -1,7 +1,5 @@
 """Inertia and gravity corrected apart, which chapter 8 of the thesis proposes."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,6 @@ from nrs_design.robot.models import (
     correct_separately,
     gravity_torque,
     mass_matrix,
-    separate_correction,
     simplified_dynamics,
     thesis_grid,
 )
@@ -35,22 +32,3 @@ def test_no_other_coefficients_leave_less(robot):
             assert gravity > found.gravity_error * np.linalg.norm(G)
             rows = np.linalg.norm(M - (found.inertia_rows + step * unit)[:, None] * Ms)
             assert rows > found.rows_error * np.linalg.norm(M)
-
-
-def test_a_pure_factor_is_found_exactly(robot, monkeypatch):
-    simplified = simplified_dynamics(robot, POSES)
-    factors = np.array([1.5, 2.0, 2.5])
-    monkeypatch.setattr(
-        separate_correction,
-        "simplified_dynamics",
-        lambda *_: replace(
-            simplified,
-            Ms=mass_matrix(robot, POSES) / factors[:, None],
-            Gs=gravity_torque(robot, POSES) / factors,
-        ),
-    )
-    found = correct_separately(robot, POSES)
-    assert found.gravity == pytest.approx(factors)
-    assert found.inertia_rows == pytest.approx(factors)
-    assert found.inertia_entries == pytest.approx(np.repeat(factors[:, None], 3, axis=1))
-    assert found.rows_error == pytest.approx(0, abs=1e-12)

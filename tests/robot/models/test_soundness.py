@@ -38,8 +38,3 @@ def test_a_workspace_out_of_reach(robot):
     far = Workspace(robot.workspace.phi, robot.workspace.psi, (0.5, 0.6))
     with pytest.raises(PoseError, match="overstretched"):
         examine_inertia(replace(robot, workspace=far))
-
-
-def test_moving_mass_is_that_of_table_3_1(robot):
-    grams = (73.3, 115.8, 111.3, 74.3, 116.1, 112.1, 159.7, 93.6, 361.9, 797.2)
-    assert robot.moving_mass == pytest.approx(sum(grams) / 1000)

@@ -6,13 +6,10 @@ import numpy as np
 import pytest
 
 from nrs_design.progress import silent
-from nrs_design.robot.models import build_robot
 from nrs_design.robot.simulation.mujoco_body import STEP, MujocoBody
 from nrs_design.robot.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.bodies import deviation
 from nrs_design.simulation.processor import Motors, run_axes
-from nrs_design.spec import parse_spec
-from nrs_design.spec.templates import TEMPLATES
 from tests.robot.models.crooked import crooked
 from tests.simulation.interactions import axes_of, text_of
 
@@ -98,9 +95,9 @@ def test_without_a_load_the_tissue_does_not_push_the_hinge():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("holds", HOMES, ids=["everywhere", "at-rest"])
-def test_the_robot_moves_as_ours(holds):
+def test_the_robot_moves_as_ours(robot, holds):
     """Closed loops, masses and gravity are MuJoCo's; ours has closed forms and virtual work."""
-    robot = crooked(build_robot(parse_spec(TEMPLATES["robot"]))).tilted(0.3)
+    robot = crooked(robot).tilted(0.3)
     arm = Arm(robot, robot.home + np.array([0.05, -0.08, 0.01]), holds)
     text = loaded(", errors: {friction: 30 rpm}")
     ours = run(text, lambda axes, plant: RobotBody(arm, plant, axes), 3)

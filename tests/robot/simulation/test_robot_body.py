@@ -7,23 +7,16 @@ import pytest
 
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.progress import silent
-from nrs_design.robot.models import build_robot, gravity_torque, mass_matrix
+from nrs_design.robot.models import gravity_torque, mass_matrix
 from nrs_design.robot.models.body import MASSLESS
 from nrs_design.robot.simulation.robot_body import Arm, RobotBody
 from nrs_design.simulation.processor import Motors, run_axes
-from nrs_design.spec import parse_spec
-from nrs_design.spec.templates import TEMPLATES
 from tests.simulation.interactions import axes_of, text_of
 
 RUN = (
     "command: {sinusoid: {amplitude: 7 deg/s, frequency: 1 Hz}}, duration: 0.1 s, "
     "surfaces: [{environment: soft, at: 0.05 deg}], control: {fixed: withdrawal}"
 )
-
-
-@pytest.fixture(scope="module")
-def robot():
-    return build_robot(parse_spec(TEMPLATES["robot"]))
 
 
 def text(scenario=RUN, inertia="1.213"):
@@ -38,9 +31,7 @@ def run(body, scenario=RUN, inertia="1.213"):
 
 
 def test_links_without_mass_leave_every_axis_alone(robot):
-    bare = tuple(replace(leg, crank=MASSLESS, coupler=MASSLESS, arm=MASSLESS, axis_inertia=0.0)
-                 for leg in robot.legs)  # fmt: skip
-    arm = Arm(replace(robot, legs=bare, platform=MASSLESS), robot.home)
+    arm = Arm(replace(robot.without_links(), platform=MASSLESS), robot.home)
     together = run(lambda axes, plant: RobotBody(arm, plant, axes))
     alone = run(lambda axes, plant: Motors())
     for one, other in zip(together, alone, strict=True):

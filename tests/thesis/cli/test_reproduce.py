@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from nrs_design.cli.app import make_app
 from nrs_design.thesis import specimens, table
 from nrs_design.thesis.comparison import PrintVerdict
+from nrs_design.thesis.table import topic_rows
 from tests.support import ROOT
 
 
@@ -22,9 +23,9 @@ def short(monkeypatch):
 
 @pytest.fixture
 def drifting(short, monkeypatch):
-    good = specimens.rows()
+    good = topic_rows(specimens)
     bad = replace(good[1], verdict=PrintVerdict.DRIFT, value="700")
-    monkeypatch.setattr(specimens, "rows", lambda: (good[0], bad, *good[2:]))
+    monkeypatch.setattr(table, "topic_rows", lambda topic: (good[0], bad, *good[2:]))
 
 
 def run(*arguments):
@@ -63,52 +64,33 @@ def test_the_command_as_typed():
 
 
 @pytest.mark.usefixtures("short")
-def test_text_has_table_notes_and_counts():
-    result = run()
-    assert result.exit_code == 0
-    assert "mean of the fits" in result.stdout
-    why = "6.1 elastic fits, soft specimen: Not reproducible, because the records"
-    assert why in result.stdout
-    assert "converted by machine" in result.stdout
-    assert table.count_verdicts(specimens.rows())["not reproducible"] == 8
-    last = result.stdout.splitlines()[-1].strip()
-    assert last == table.counts_line(specimens.rows())
-
-
-@pytest.mark.usefixtures("short")
-def test_counts_lines_and_json_agree():
-    found = json.loads(run("--json").stdout)
+def test_text_json_and_page_agree(tmp_path):
+    page = tmp_path / "new" / "page.html"
+    text, result = run().stdout, run("--json", "--html", str(page))
+    found, last = json.loads(result.stdout), text.splitlines()[-1].strip()
+    assert run("--quiet").output == ""
+    assert "6.1 elastic fits, soft specimen: Not reproducible, because the records" in text
+    assert "converted by machine" in text
+    assert last == found["summary"] == table.counts_line(topic_rows(specimens))
     parts = [f"{count} {verdict}" for verdict, count in found["counts"].items()]
     assert sum(found["counts"].values()) == len(found["rows"])
     assert all(part in found["summary"] for part in parts)
-    assert found["summary"] == run().stdout.splitlines()[-1].strip()
     (error,) = found["errors_of_the_print"]
     assert (error["id"], len(error["rows"])) == ("6.1 largest error", 2)
     assert "(errors of the print: 1)" in found["summary"]
-
-
-@pytest.mark.usefixtures("drifting")
-def test_a_drift_is_counted_in_the_last_line():
-    assert ", 1 drift." in run().stdout.splitlines()[-1]
-
-
-@pytest.mark.usefixtures("short")
-def test_quiet_prints_nothing():
-    assert run("--quiet").output == ""
+    assert "page written to" in result.stderr
+    assert page.read_text(encoding="utf-8").rstrip().endswith("</html>")
+    assert [path.name for path in page.parent.iterdir()] == ["page.html"]
 
 
 @pytest.mark.usefixtures("drifting")
 def test_a_drift_exits_1_and_is_named():
-    result = run("--quiet")
-    assert result.exit_code == 1
-    assert "drift: 6.1 mean of the fits, soft specimen: 700 N/m, printed 747.14" in result.stderr
-
-
-@pytest.mark.usefixtures("drifting")
-def test_json_of_a_drift():
     result = run("--json")
     assert result.exit_code == 1
-    assert json.loads(result.stdout)["drift"] == ["mean of the fits, soft specimen"]
+    found = json.loads(result.stdout)
+    assert found["drift"] == ["mean of the fits, soft specimen"]
+    assert ", 1 drift." in found["summary"]
+    assert "drift: 6.1 mean of the fits, soft specimen: 700 N/m, printed 747.14" in result.stderr
 
 
 def test_a_page_is_named_as_one(tmp_path):
@@ -116,21 +98,6 @@ def test_a_page_is_named_as_one(tmp_path):
     done = run("--html", str(tmp_path / "table.txt"))
     assert ".txt is not a type of report" in str(done.exception)
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.usefixtures("short")
-def test_html_is_written_whole(tmp_path):
-    page = tmp_path / "new" / "page.html"
-    assert run("--html", str(page)).exit_code == 0
-    assert page.read_text(encoding="utf-8").rstrip().endswith("</html>")
-    assert [path.name for path in page.parent.iterdir()] == ["page.html"]
-
-
-@pytest.mark.usefixtures("short")
-def test_json_stays_clean_beside_html(tmp_path):
-    result = run("--json", "--html", str(tmp_path / "page.html"))
-    assert json.loads(result.stdout)["rows"]
-    assert "page written to" in result.stderr
 
 
 def test_unwritable_page_is_a_usage_error(tmp_path):

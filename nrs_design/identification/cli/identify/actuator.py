@@ -62,20 +62,13 @@ def actuator(
     motor = MotorConstants(torque_constant, back_emf_constant, inertia, reduction)
     items = read_all(data, read_actuator, columns or [])
     series = [(item,) if isinstance(item, FrequencyResponse) else item for item in items]
-    items_of_all = [item for group in series for item in group]
+    records = [record for group in series for record in group]
     if outputs.spec is not None:
-        for item in items_of_all:
-            check_actuator(outputs.spec, item.unit)
+        for record in records:
+            check_actuator(outputs.spec, record.unit)
     with progress("fitting") as step:
-        found = identify_actuator(items_of_all, motor, covers.value, step)
-    return deliver(
-        outputs,
-        found,
-        lambda: _facts(found),
-        lambda: _print(found),
-        lambda: actuator_report(found),
-        lambda spec: merge_actuator(spec, found),
-    )
+        found = identify_actuator(records, motor, covers.value, step)
+    return deliver(outputs, found, _facts, _print, actuator_report, merge_actuator)
 
 
 def _print(found: ActuatorIdentification) -> None:

@@ -52,6 +52,7 @@ Facts = dict[str, Any]
 SYNTHETIC = "SYNTHETIC data: made by a simulation, not measured."
 
 T = TypeVar("T")
+F = TypeVar("F", bound=Finding)
 
 
 def read_all(
@@ -108,11 +109,11 @@ def estimate_numbers(estimate: Estimate) -> dict[str, float | None]:
 
 def deliver(
     outputs: Destinations,
-    found: Finding,
-    facts: Callable[[], Facts],
-    show: Callable[[], None],
-    page: Callable[[], Report],
-    merge: Callable[[LoadedSpec], str],
+    found: F,
+    facts: Callable[[F], Facts],
+    show: Callable[[F], None],
+    page: Callable[[F], Report],
+    merge: Callable[[LoadedSpec, F], str],
 ) -> Answer:
     """Print and write what was found; where it is in doubt, the answer is inconclusive.
 
@@ -123,18 +124,18 @@ def deliver(
     found : Finding
         The result.
     facts, show : callable
-        What is in its JSON document, and prints the same, beside what all findings have.
+        Return what its JSON document has beside what all have, and print the same.
     page : callable
         Returns its page.
     merge : callable
-        Returns a spec with the result in it.
+        Returns the text of a spec with the result in it.
     """
 
     def all_facts() -> Facts:
         return {
             "synthetic": is_synthetic(found.sources),
             "records": sources(found.sources),
-            **facts(),
+            **facts(found),
             "remarks": list(found.remarks),
             "doubts": list(found.doubts),
             "caveats": list(found.caveats),
@@ -143,7 +144,7 @@ def deliver(
     def show_all() -> None:
         if is_synthetic(found.sources):
             say(SYNTHETIC)
-        show()
+        show(found)
         for remark in found.remarks:
             say(remark)
         for doubt in found.doubts:
@@ -151,7 +152,13 @@ def deliver(
 
     code = exit_codes.INCONCLUSIVE if found.doubts else exit_codes.PROVED
     answer = Answer(all_facts, show_all, code)
-    return outputs.deliver(answer, page, merge, found.doubts, found.caveats)
+    return outputs.deliver(
+        answer,
+        lambda: page(found),
+        lambda spec: merge(spec, found),
+        found.doubts,
+        found.caveats,
+    )
 
 
 def sources(files: Iterable[Source]) -> list[dict[str, Any]]:

@@ -75,14 +75,7 @@ def delay(
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         found = identify_delay(record)
-    return deliver(
-        outputs,
-        found,
-        lambda: _facts(found),
-        lambda: _print(found),
-        lambda: delay_report(found),
-        lambda spec: merge_delay(spec, found),
-    )
+    return deliver(outputs, found, _facts, _print, delay_report, merge_delay)
 
 
 def _print(found: DelayIdentification) -> None:

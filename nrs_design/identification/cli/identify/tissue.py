@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import typer
@@ -48,7 +49,6 @@ if TYPE_CHECKING:
     from nrs_design.identification.tissue.prony import Series
     from nrs_design.identification.tissue.tangent import Tangent
     from nrs_design.models.contact import AbstractContactLaw
-    from nrs_design.reporting import Report
 
 
 @command("identify-tissue")
@@ -87,6 +87,7 @@ def tissue(
     """
     from nrs_design.identification.datasets import read_tissue
     from nrs_design.identification.lever import parse_arm, parse_offset, parse_preload
+    from nrs_design.identification.reporting.tissue import tissue_report
     from nrs_design.identification.tissue import Preparation, identify_tissue
     from nrs_design.identification.tissue.prony import fit_series
     from nrs_design.identification.write_spec import law_to_write, merge_tissue
@@ -129,23 +130,18 @@ def tissue(
             declared=asked is None,
         )
         series = [fit_series(trial) for trial in found.trials] if prony else None
+    texts = [item.text(rotational=found.rotational) for item in series or ()]
     return deliver(
         outputs,
         found,
-        lambda: _facts(found, arm, series),
-        lambda: _print(found, arm, series or []),
-        lambda: _page(found, arm, series or []),
-        lambda spec: merge_tissue(spec, found, environment, lever_arm),
+        partial(_facts, arm=arm, series=series),
+        partial(_print, arm=arm, texts=texts),
+        partial(tissue_report, arm=arm, series=texts),
+        partial(merge_tissue, environment=environment, arm=lever_arm),
     )
 
 
-def _page(found: TissueIdentification, arm: float | None, series: list[Series]) -> Report:
-    from nrs_design.identification.reporting.tissue import tissue_report
-
-    return tissue_report(found, arm, [item.text(rotational=found.rotational) for item in series])
-
-
-def _print(found: TissueIdentification, arm: float | None, series: list[Series]) -> None:
+def _print(found: TissueIdentification, arm: float | None, texts: Sequence[str]) -> None:
     from nrs_design.identification.lever import in_words, named
     from nrs_design.identification.reporting.tissue import comparison
 
@@ -164,8 +160,8 @@ def _print(found: TissueIdentification, arm: float | None, series: list[Series])
     if arm is not None:
         turned = [f"{value:.6g}" for value in law.at_pivot(arm).values]
         say(f"at the pivot: {in_words(named(law, turned, True))}")
-    for item in series:
-        say(item.text(rotational=found.rotational))
+    for text in texts:
+        say(text)
 
 
 def _print_tangent(about: Tangent, rotational: bool) -> None:

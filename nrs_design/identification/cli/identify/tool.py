@@ -49,22 +49,15 @@ def tool(
     from nrs_design.identification.datasets import read_poses
     from nrs_design.identification.reporting.tool import tool_report
     from nrs_design.identification.tool import identify_tool
-    from nrs_design.identification.write_spec import check_tool, merge_tool
+    from nrs_design.identification.write_spec import check_interaction, merge_tool
 
     outputs = Destinations.checked(write, report, date)
     if outputs.spec is not None:
-        check_tool(outputs.spec)
+        check_interaction(outputs.spec)
     records = read_all(data, read_poses, columns or [])
     with progress("fitting"):
         found = identify_tool(records, gravity)
-    return deliver(
-        outputs,
-        found,
-        lambda: _facts(found),
-        lambda: _print(found),
-        lambda: tool_report(found),
-        lambda spec: merge_tool(spec, found),
-    )
+    return deliver(outputs, found, _facts, _print, tool_report, merge_tool)
 
 
 def _print(found: ToolIdentification) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from nrs_design.identification.numeric import Array, Complex, Flags
 from nrs_design.reporting.style import (
     BLUE,
     INK,
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from nrs_design.identification.actuator import ActuatorIdentification
     from nrs_design.identification.statistics import Estimate
 
-Array = NDArray[np.float64]
 
 # More points than these cannot be told apart on a page.
 _POINTS = 1500
@@ -40,7 +39,7 @@ def draw_fit(
     measured: Array,
     fitted: Array,
     label: str,
-    used: NDArray[np.bool_] | None = None,
+    used: Flags | None = None,
 ) -> Figure:
     """Draw a measured and a fitted output over time, and their difference below.
 
@@ -162,7 +161,7 @@ def draw_bode(found: ActuatorIdentification) -> Figure:
     return figure
 
 
-def _decibel(values: NDArray[np.complex128]) -> Array:
+def _decibel(values: Complex) -> Array:
     return np.asarray(20 * np.log10(np.abs(values)))
 
 

@@ -14,13 +14,7 @@ from nrs_design.errors import DesignError
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.robot.models.enclosure.enclose import Enclosed, Goal, enclose, find_largest
-from nrs_design.robot.models.enclosure.quantities import (
-    AbstractQuantity,
-    GravityGradient,
-    Inertia,
-    Mobility,
-    VelocityTorques,
-)
+from nrs_design.robot.models.enclosure.quantities import QUANTITIES, RobotQuantity
 from nrs_design.robot.models.geometry import is_reachable, unreachable
 from nrs_design.robot.models.robot import Robot, Workspace
 from nrs_design.robot.models.workspace import workspace_grid
@@ -30,17 +24,11 @@ from nrs_design.spec.robot_bounds import SCHEMA, UNITS, content_id
 # What is shown is at most this times what is found at a pose. Velocity torques take second
 # derivatives of the loops: to come as near as the others would take much longer.
 ROOM = 1.02
-ROOMS: Mapping[str, float] = {VelocityTorques.name: 1.35}
+ROOMS: Mapping[str, float] = {"velocity_torques": 1.35}
 # Of a sampled value, which is computed in floating point.
 ROUNDING = 1e-9
 # In SI, of a quantity that is zero, such as gravity in space: no enclosure is exactly that.
 NOTHING = 1e-9
-_QUANTITIES: Mapping[str, AbstractQuantity] = {
-    "heaviest": Inertia(),
-    "lightest": Mobility(),
-    "velocity_torques": VelocityTorques(),
-    "gravity_gradient": GravityGradient(),
-}
 DIGITS = 5
 
 
@@ -99,12 +87,12 @@ def compute_bounds(
     """
     _refuse_unreachable(robot, space)
     found = {}
-    for key, quantity in _QUANTITIES.items():
+    for key, quantity in QUANTITIES.items():
         found[key] = enclose(
             robot,
             quantity,
             space.workspace,
-            goal_of(ROOMS.get(quantity.name, ROOM)),
+            goal_of(ROOMS.get(key, ROOM)),
             budget,
             progress,
         )
@@ -181,9 +169,9 @@ def contradict_bounds(
             yield _exceeded(key, quantity, found, pose)
 
 
-def _claimed(document: Mapping[str, Any]) -> Iterator[tuple[str, AbstractQuantity, float]]:
+def _claimed(document: Mapping[str, Any]) -> Iterator[tuple[str, RobotQuantity, float]]:
     """Yield what the bounds of a file claim of each quantity; no float above that will do."""
-    for key, quantity in _QUANTITIES.items():
+    for key, quantity in QUANTITIES.items():
         claimed = parse_exact(document["bounds"][key])
         if key == "lightest":
             if not claimed:
@@ -199,7 +187,7 @@ def _claimed(document: Mapping[str, Any]) -> Iterator[tuple[str, AbstractQuantit
 
 
 def _exceeded(
-    key: str, quantity: AbstractQuantity, found: float, pose: tuple[float, float, float]
+    key: str, quantity: RobotQuantity, found: float, pose: tuple[float, float, float]
 ) -> str:
     said = _pose_words(quantity, found, pose)
     return f"{key.replace('_', ' ')}: {said} exceeds the bound in the file"
@@ -278,7 +266,7 @@ def pose_text(item: Enclosed) -> str:
     return _pose_words(item.quantity, item.found, item.pose)
 
 
-def _pose_words(quantity: AbstractQuantity, found: float, pose: tuple[float, float, float]) -> str:
+def _pose_words(quantity: RobotQuantity, found: float, pose: tuple[float, float, float]) -> str:
     phi, psi, d = pose
     value = f"{found:.6g} {quantity.unit}"
     return (

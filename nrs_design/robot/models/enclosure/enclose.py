@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from nrs_design.progress import Progress, silent
 from nrs_design.robot.models.enclosure.balls import Floats
 from nrs_design.robot.models.enclosure.cover import Boxes, Cover, cover, cut
-from nrs_design.robot.models.enclosure.quantities import AbstractQuantity
+from nrs_design.robot.models.enclosure.quantities import RobotQuantity
 from nrs_design.robot.models.robot import Robot, Workspace
 from nrs_design.work import Allowance, Fuse
 
@@ -33,7 +33,7 @@ Goal = Callable[[float], float]
 class Enclosed:
     """The largest value of a quantity over a workspace, from both sides."""
 
-    quantity: AbstractQuantity  # Of what
+    quantity: RobotQuantity  # Of what
     found: float  # At a pose, in floating point; not above the largest value but for rounding
     pose: tuple[float, float, float]  # That pose, (phi, psi, d) in rad and m
     cover: Cover  # The boxes that show the bound
@@ -58,14 +58,14 @@ def to_pose(point: Floats) -> tuple[float, float, float]:
     return float(np.arcsin(-y)), float(np.arcsin(x)), d
 
 
-def values_at(robot: Robot, quantity: AbstractQuantity, pose: ArrayLike) -> Floats:
+def values_at(robot: Robot, quantity: RobotQuantity, pose: ArrayLike) -> Floats:
     """Return a quantity at poses, in floating point.
 
     Parameters
     ----------
     robot : Robot
         The robot.
-    quantity : AbstractQuantity
+    quantity : RobotQuantity
         Which.
     pose : array_like
         (phi, psi, d), shape (..., 3), in rad and m.
@@ -76,7 +76,7 @@ def values_at(robot: Robot, quantity: AbstractQuantity, pose: ArrayLike) -> Floa
 
 
 def find_largest(
-    robot: Robot, quantity: AbstractQuantity, workspace: Workspace
+    robot: Robot, quantity: RobotQuantity, workspace: Workspace
 ) -> tuple[float, tuple[float, float, float]]:
     """Sample a quantity over a workspace, ever closer to the largest value so far.
 
@@ -84,7 +84,7 @@ def find_largest(
     ----------
     robot : Robot
         The robot.
-    quantity : AbstractQuantity
+    quantity : RobotQuantity
         Of which the largest value is wanted.
     workspace : Workspace
         All of it must be reachable.
@@ -116,7 +116,7 @@ def find_largest(
 
 def enclose(
     robot: Robot,
-    quantity: AbstractQuantity,
+    quantity: RobotQuantity,
     workspace: Workspace,
     goal: Goal,
     budget: float = inf,
@@ -128,7 +128,7 @@ def enclose(
     ----------
     robot : Robot
         The robot.
-    quantity : AbstractQuantity
+    quantity : RobotQuantity
         Of which the largest value is wanted.
     workspace : Workspace
         Over which.

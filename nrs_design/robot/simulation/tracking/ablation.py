@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from nrs_design.robot.controllers import ComputedTorque, IndependentJoint
+from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint
 from nrs_design.robot.models import Robot
 from nrs_design.robot.simulation.tracking.track import Track, build_track
 from nrs_design.spec import RobotSpec

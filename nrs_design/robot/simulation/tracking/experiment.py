@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from nrs_design.robot.controllers import JointReference
+from nrs_design.robot.controllers.motion_laws import JointReference
 from nrs_design.robot.models import Robot, joint_motion
 from nrs_design.robot.models.vectors import Array
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from nrs_design.errors import DesignError, PoseError
 from nrs_design.progress import Progress, silent
-from nrs_design.robot.controllers import JointReference, LawState
+from nrs_design.robot.controllers.motion_laws import JointReference, LawState
 from nrs_design.robot.models import direct_kinematics
 from nrs_design.robot.models.vectors import Array
 from nrs_design.robot.simulation.tracking.plant import DriveArrays, JointState, Stepper

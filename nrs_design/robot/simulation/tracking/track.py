@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 
-from nrs_design.robot.controllers import IndependentJoint, MotionLaw
+from nrs_design.robot.controllers.motion_laws import IndependentJoint, MotionLaw
 from nrs_design.robot.design.motion_control import (
     design_computed_torque,
     design_independent_joint,

@@ -14,32 +14,16 @@ from nrs_design.robot.models import (
     inverse_kinematics,
     mass_matrix,
 )
-from nrs_design.robot.models.body import Body, point_mass, rigid_body
+from nrs_design.robot.models.body import Body, point_mass
 from nrs_design.robot.models.enclosure.links import Links, moments
+from tests.robot.models.crooked import crooked
 
 POSE = np.array([0.1, -0.2, 0.2])
 
 
-@pytest.fixture(scope="module")
-def crooked(robot):
-    """A robot of the family without any symmetry, tilted."""
-    rng = np.random.default_rng(5)
-
-    def body(mass):
-        A = rng.normal(0, 0.02, (3, 3))
-        second = A @ A.T
-        return rigid_body(mass, rng.normal(0, 0.05, 3), np.trace(second) * np.eye(3) - second)
-
-    legs = tuple(
-        replace(leg, crank=body(0.1), coupler=body(0.2), arm=body(0.3), azimuth=azimuth, l1=l1)
-        for leg, azimuth, l1 in zip(robot.legs, (-0.9, 0.7, 0.1), (0.14, 0.135, 0.13), strict=True)
-    )
-    return replace(robot, legs=legs, platform=body(0.8), base_tilt=-0.5)
-
-
 @pytest.fixture(params=["neuroboscope", "crooked"])
-def either(request, robot, crooked):
-    return {"neuroboscope": robot, "crooked": crooked}[request.param]
+def either(request, robot):
+    return robot if request.param == "neuroboscope" else crooked(robot)
 
 
 def point(pose):

@@ -7,8 +7,8 @@ from tests.support import ROOT
 
 
 @pytest.fixture(scope="module")
-def changed(spec, robot):
-    return ablation_tracks(spec, robot)
+def changed(spec, tilted):
+    return ablation_tracks(spec, tilted)
 
 
 def test_same_motions_for_both_controllers(changed):

@@ -6,57 +6,48 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nrs_design.errors import PoseError
-from nrs_design.robot.simulation.tracking import Experiment, thesis_experiments
+from nrs_design.robot.simulation.tracking import COORDINATE, Experiment, thesis_experiments
 
-MILLIMETER, DEGREE = 1e-3, np.pi / 180
-
-
-def poses(experiment, *times):
-    return experiment.motion(np.array(times))[0]
+# Of the equations, with the 0.0571 rad/s of 4.33c and 4.37 to 4.39 taken literally.
+SLOW = np.sin(0.0571 * 20)
 
 
-def test_depth_of_4_20(robot):
-    depth = thesis_experiments(robot, "computed-torque")[0]
-    wanted = [[0, 0, d * MILLIMETER] for d in (200, 200, 250, 200, 150, 200)]
-    assert poses(depth, 0, 10, 12.5, 15, 17.5, 20) == pytest.approx(np.array(wanted), abs=1e-12)
-    assert depth.duration == pytest.approx(20)
+@pytest.mark.parametrize(
+    ("controllers", "moved", "times", "values", "duration"),
+    [
+        (("computed-torque",), "d", (0, 10, 12.5, 15, 17.5), (0, 0, 0.05, 0, -0.05), 20),
+        (("independent-joint", "balanced"), "d", (30,), (0.05 * SLOW,), 120.04),
+        (("computed-torque", "independent-joint"), "phi", (3, 12.5, 17.5), (0, 15, -15), 20),
+        (("computed-torque", "independent-joint"), "psi", (3, 12.5, 17.5), (0, 20, -20), 20),
+        (("balanced",), "phi", (30,), (15 * SLOW,), 120.04),
+        (("balanced",), "psi", (30,), (20 * SLOW,), 120.04),
+    ],
+)
+def test_motions_of_the_thesis(tilted, controllers, moved, times, values, duration):
+    """4.20 to 4.22, 4.33 to 4.35, and 4.37 to 4.39; angles in deg."""
+    for controller in controllers:
+        (one,) = (e for e in thesis_experiments(tilted, controller) if e.moved == moved)
+        depth = 0.2 if moved == "d" or controller == "balanced" else 0.15
+        swing = np.zeros((len(times), 3))
+        swing[:, COORDINATE[moved]] = values if moved == "d" else np.radians(values)
+        pose = one.motion(np.array(times))[0]
+        assert pose == pytest.approx(np.add(swing, (0, 0, depth)), abs=1e-12)
+        assert one.duration == pytest.approx(duration, abs=0.01)
 
 
-@pytest.mark.parametrize("controller", ["computed-torque", "independent-joint"])
-def test_angles_of_4_21_4_22_4_34_and_4_35(robot, controller):
-    _, phi, psi = thesis_experiments(robot, controller)
-    assert poses(phi, 3, 12.5, 17.5) == pytest.approx(
-        np.array([[0, 0, 0.15], [15 * DEGREE, 0, 0.15], [-15 * DEGREE, 0, 0.15]]), abs=1e-12
-    )
-    assert poses(psi, 3, 12.5, 17.5) == pytest.approx(
-        np.array([[0, 0, 0.15], [0, 20 * DEGREE, 0.15], [0, -20 * DEGREE, 0.15]]), abs=1e-12
-    )
-
-
-def test_depth_of_4_33c_is_slow_if_the_print_is_literal(robot):
-    depth = thesis_experiments(robot, "independent-joint")[0]
-    assert poses(depth, 30)[0, 2] == pytest.approx(0.2 + 0.05 * np.sin(0.0571 * 20))
-    assert depth.duration == pytest.approx(10 + 110.04, abs=0.01)
-
-
-def test_balanced_robot_of_4_37_to_4_39(robot):
-    depth, phi, psi = thesis_experiments(robot, "balanced")
-    assert poses(depth, 30)[0] == pytest.approx([0, 0, 0.2 + 0.05 * np.sin(0.0571 * 20)])
-    assert poses(phi, 30)[0] == pytest.approx([15 * DEGREE * np.sin(0.0571 * 20), 0, 0.2])
-    assert poses(psi, 30)[0] == pytest.approx([0, 20 * DEGREE * np.sin(0.0571 * 20), 0.2])
-
-
-def test_a_period_of_ones_own(robot):
+def test_a_period_of_ones_own(tilted):
     for controller in ("computed-torque", "independent-joint", "balanced"):
-        lengths = {one.duration for one in thesis_experiments(robot, controller, 4.0)}
+        lengths = {one.duration for one in thesis_experiments(tilted, controller, 4.0)}
         assert lengths == {14.0}
 
 
-def test_another_workspace_scales_the_motions(robot):
-    small = replace(robot, workspace=replace(robot.workspace, phi=0.1, d=(0.16, 0.22)))
+def test_another_workspace_scales_the_motions(tilted):
+    small = replace(tilted, workspace=replace(tilted.workspace, phi=0.1, d=(0.16, 0.22)))
     depth, phi, _ = thesis_experiments(small, "computed-torque")
-    assert poses(depth, 12.5)[0] == pytest.approx([0, 0, 0.22])
-    assert poses(phi, 12.5)[0] == pytest.approx([0.1, 0, 0.16])
+    assert [one.motion(np.array([12.5]))[0][0].tolist() for one in (depth, phi)] == [
+        pytest.approx([0, 0, 0.22]),
+        pytest.approx([0.1, 0, 0.16]),
+    ]
 
 
 @given(moved=st.sampled_from(["d", "phi", "psi"]), time=st.floats(10.01, 14.9))
@@ -71,9 +62,9 @@ def test_velocity_and_acceleration_are_derivatives(moved, time):
     assert (after - 2 * now + before) / h**2 == pytest.approx(a, abs=1e-7)
 
 
-def test_reference_of_the_joints_is_that_of_the_pose(robot):
-    depth = thesis_experiments(robot, "computed-torque")[0]
-    wanted = depth.reference(robot, np.array([0.0, 12.5, 17.5]))
+def test_reference_of_the_joints_is_that_of_the_pose(tilted):
+    depth = thesis_experiments(tilted, "computed-torque")[0]
+    wanted = depth.reference(tilted, np.array([0.0, 12.5, 17.5]))
     # Reference values: theta3 at d = 200, 250 and 150 mm.
     assert np.degrees(wanted.position[:, 2]) == pytest.approx(
         [21.967097, 39.241659, 3.822554], abs=1e-6
@@ -82,7 +73,7 @@ def test_reference_of_the_joints_is_that_of_the_pose(robot):
     assert np.all(wanted.acceleration[0] == 0)
 
 
-def test_out_of_reach(robot):
+def test_out_of_reach(tilted):
     far = Experiment("d", (0.0, 0.0, 0.3), 0.1, 1.0)
     with pytest.raises(PoseError, match="overstretched"):
-        far.reference(robot, np.linspace(10, 17, 50))
+        far.reference(tilted, np.linspace(10, 17, 50))

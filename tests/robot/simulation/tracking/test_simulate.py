@@ -14,8 +14,8 @@ PERIOD, HOLD = 2.0, 0.5
 
 
 @pytest.fixture(scope="module")
-def tracks(spec, robot):
-    return [shortened(build_track(spec, robot, name, PERIOD)) for name in CONTROLLERS]
+def tracks(spec, tilted):
+    return [shortened(build_track(spec, tilted, name, PERIOD)) for name in CONTROLLERS]
 
 
 def shortened(track):
@@ -53,12 +53,6 @@ def test_measured_is_actual_to_the_count(records):
 
 
 @pytest.mark.slow
-def test_lockstep_changes_nothing(tracks, records):
-    (alone,) = simulate([tracks[1].only("phi")])
-    assert alone.rmse == pytest.approx(records[4].rmse, rel=1e-9)
-
-
-@pytest.mark.slow
 def test_more_steps_change_nothing(tracks, records):
     # Two steps for each tick, and mass and bias anew at every one of them.
     again = simulate([track.only("psi") for track in tracks[:2]], steps=2, held_phase=0.0)
@@ -75,10 +69,10 @@ def test_independent_joints_beat_computed_torque(records):
 
 
 @pytest.mark.slow
-def test_complete_computed_torque_follows_almost_perfectly(spec, robot):
+def test_complete_computed_torque_follows_almost_perfectly(spec, tilted):
     # The law's model is the plant's: full dynamics, rotors and motors, no friction, no counts.
     # What remains is the sampling.
-    track = shortened(build_track(spec, robot, "computed-torque", PERIOD)).only("psi")
+    track = shortened(build_track(spec, tilted, "computed-torque", PERIOD)).only("psi")
     law = replace(
         track.law,
         load=replace(track.law.load, correction=None),
@@ -125,8 +119,8 @@ def test_too_many_ticks(tracks):
 
 
 @pytest.mark.slow
-def test_the_page_states_what_is_simulated(spec, robot):
-    found = simulate([build_track(spec, robot, name) for name in CONTROLLERS])
+def test_the_page_states_what_is_simulated(spec, tilted):
+    found = simulate([build_track(spec, tilted, name) for name in CONTROLLERS])
     page = (ROOT / "docs/robot/motion-control.md").read_text()
     first = page.index("| computed-torque | d | 10 |")
     rows = [line.strip("| ").split(" | ") for line in page[first:].splitlines()[:9]]

@@ -1,7 +1,7 @@
 import pytest
 
 from nrs_design.errors import DesignError
-from nrs_design.robot.controllers import ComputedTorque, IndependentJoint
+from nrs_design.robot.controllers.motion_laws import ComputedTorque, IndependentJoint
 from nrs_design.robot.models import build_robot
 from nrs_design.robot.simulation.tracking import CONTROLLERS, build_track, experiment_tilt
 from nrs_design.spec import parse_spec
@@ -11,8 +11,8 @@ TEXT = TEMPLATES["robot"]
 UNBALANCED = TEXT[: TEXT.index("# Thesis 4.4 and its")]
 
 
-def test_three_controllers_of_the_thesis(spec, robot):
-    torque, joint, balanced = (build_track(spec, robot, name) for name in CONTROLLERS)
+def test_three_controllers_of_the_thesis(spec, tilted):
+    torque, joint, balanced = (build_track(spec, tilted, name) for name in CONTROLLERS)
     assert isinstance(torque.law, ComputedTorque)
     assert isinstance(joint.law, IndependentJoint)
     assert joint.law.load is not None
@@ -29,8 +29,8 @@ def test_three_controllers_of_the_thesis(spec, robot):
     assert {t.encoder.counts for t in (torque, joint, balanced)} == {8192}
 
 
-def test_experiments_one_by_one(spec, robot):
-    track = build_track(spec, robot, "computed-torque")
+def test_experiments_one_by_one(spec, tilted):
+    track = build_track(spec, tilted, "computed-torque")
     assert [one.experiments[0].moved for one in track.split()] == ["d", "phi", "psi"]
     assert [one.moved for one in track.only("psi").experiments] == ["psi"]
     assert track.only(None).experiments == track.experiments

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from nrs_design.identification.steps import limited_step
+from nrs_design.identification.numeric import limited_step
 
 
 def test_a_long_step_keeps_its_direction():

@@ -1,7 +1,10 @@
+"""The robot of the thesis, on a level base and on that of its experiments."""
+
 from dataclasses import replace
 
 import pytest
 
+from nrs_design.robot.design.motion_control import design_load_model
 from nrs_design.robot.models import build_robot
 from nrs_design.robot.models.drive import build_drive
 from nrs_design.robot.simulation.tracking import experiment_tilt
@@ -16,7 +19,17 @@ def spec():
 
 @pytest.fixture(scope="session")
 def robot(spec):
-    return build_robot(spec).tilted(experiment_tilt(spec))
+    return build_robot(spec)
+
+
+@pytest.fixture(scope="session")
+def tilted(spec, robot):
+    return robot.tilted(experiment_tilt(spec))
+
+
+@pytest.fixture(scope="session")
+def load(spec, tilted):
+    return design_load_model(spec, tilted)
 
 
 @pytest.fixture(scope="session")

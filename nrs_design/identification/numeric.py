@@ -1,0 +1,72 @@
+"""Types of arrays, and small steps that several fits share."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Flags = NDArray[np.bool_]
+Rows = NDArray[np.int64]
+
+TINY = float(np.finfo(float).tiny)
+# A column below this has faded to denormal numbers, whose digits say nothing.
+_FADED = 1e-300
+
+
+def usual_step(time: Array) -> float:
+    """Return the usual time between samples."""
+    return float(np.median(np.diff(time)))
+
+
+def column_sizes(X: Array) -> Array:
+    """Return the norm of each column, never 0."""
+    return np.asarray(np.maximum(np.linalg.norm(X, axis=0), _FADED))
+
+
+def beyond(basis: Array, values: Array) -> Array:
+    """Return values less their projection on orthonormal columns."""
+    return np.asarray(values - basis @ (basis.T @ values), float)
+
+
+def bic(errors: Array, count: int) -> float:
+    """Return the Bayesian information criterion of a fit, up to a constant of its data.
+
+    Parameters
+    ----------
+    errors : ndarray, shape (n,)
+        Measured less fitted.
+    count : int
+        Parameters.
+    """
+    n = len(errors)
+    power = max(float(errors @ errors), TINY)
+    return n * float(np.log(power / n)) + count * float(np.log(n))
+
+
+def parted(changes: Flags) -> list[tuple[int, int]]:
+    """Return first row and end of the stretches that changes between neighbours part."""
+    return list(pairwise([0, *(np.flatnonzero(changes) + 1).tolist(), len(changes) + 1]))
+
+
+def runs(flags: Flags) -> list[tuple[int, int]]:
+    """Return first row and end of every stretch of true flags."""
+    edges = np.flatnonzero(np.diff(flags, prepend=False, append=False)).tolist()
+    return list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def limited_step(step: Array, limit: Array) -> Array:
+    """Shorten a step of a search as a whole until no part of it is beyond its limit.
+
+    It keeps its direction, along which errors fall: parts that are cut one by one would leave a
+    narrow valley.
+
+    Parameters
+    ----------
+    step, limit : ndarray, shape (p,)
+        In the units of the parameters; limits are positive.
+    """
+    return step / max(1.0, float(np.max(np.abs(step) / limit)))

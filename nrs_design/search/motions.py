@@ -1,0 +1,84 @@
+"""Motions in contact and free in floating point, and the multipliers of lost contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.mode import Time
+from nrs_design.search.balance import mean_norm
+from nrs_design.search.family import Family, to_floats
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Motions:
+    """The maps in contact and free, in floating point."""
+
+    time: Time  # Continuous or discrete
+    contact: Array  # Shape (m, n, n). Modes in contact.
+    free: Array  # Shape (f, n, n). Free modes.
+    pulls: Array  # Shape (p, n). Forces of environments that could pull.
+
+    @classmethod
+    def of(cls, family: Family) -> Motions:
+        """Convert the motions of a system to the coordinates of a family."""
+        contact, d = family.system.contact or Contact(()), family.exponents
+        free = to_floats([mode.A for mode in contact.free]).reshape(-1, len(d), len(d))
+        rows = [to_floats([q])[0, 0] for q in contact.pulls]
+        pulls = np.ldexp(np.array(rows).reshape(-1, len(d)), d[None, :])
+        scaled = np.ldexp(free, d[None, :] - d[:, None])
+        return cls(family.system.time, family.matrices, scaled, pulls)
+
+    def transformed(self, T: Array) -> Motions:
+        """Return the same in coordinates ``x = T z``."""
+        inverse = np.linalg.inv(T)
+        return Motions(
+            self.time, inverse @ self.contact @ T, inverse @ self.free @ T, self.pulls @ T
+        )
+
+
+def separating_coordinates(motions: Motions) -> Array:
+    """Return T that makes the mean of the modes' norms round, but leaves the deflection alone."""
+    n = motions.contact.shape[-1]
+    Q = mean_norm(motions.contact, motions.time)
+    T = np.zeros((n, n))
+    T[:-1, :-1] = np.linalg.inv(np.linalg.cholesky(Q[:-1, :-1])).T
+    T[-1, -1] = 1 / np.sqrt(Q[-1, -1])
+    return T
+
+
+def multiplied(contact: Contact, time: Time) -> NDArray[np.int64]:
+    """Return for each multiplier how often the deflection is in its product."""
+    if time is Time.CONTINUOUS:
+        return np.ones(len(contact.free) * len(contact.pulls), dtype=np.int64)
+    return np.array([2, *[1, 1, 2] * len(contact.pulls)])
+
+
+def in_numerators(multipliers: Array, contact: Contact, time: Time) -> Array:
+    """Return multipliers of forces, in discrete time as those of their numerators.
+
+    Parameters
+    ----------
+    multipliers : ndarray
+        As a search finds them.
+    contact : Contact
+        With the forces.
+    time : Time
+        Continuous or discrete.
+    """
+    if time is Time.CONTINUOUS:
+        return multipliers
+    below = [d for q in contact.pulls for d in (q.denominator, q.denominator, 1)]
+    return np.asarray(multipliers / np.array([1, *below][: len(multipliers)], dtype=float))
+
+
+def numerators(multipliers: Array, log2: int) -> tuple[int, ...]:
+    """Round multipliers to integers over two to a power; none becomes negative."""
+    whole = Fraction(2) ** log2
+    return tuple(round(max(Fraction(float(entry)), Fraction(0)) * whole) for entry in multipliers)

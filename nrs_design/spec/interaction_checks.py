@@ -338,6 +338,16 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "the sensor says how far its signal is off, and force_step does, too",
         "move it to `sensor: {{resolution: ...}}`",
     ),
+    Row(
+        "safety",
+        lambda s: (
+            s.safety is not None
+            and (s.disturbances is None or s.disturbances.largest_angle is None)
+        ),
+        "how far the safety layer keeps its limits depends on the rounding of angles, and nothing "
+        "says how large they get",
+        "add `disturbances: {{largest_angle: 3 rad}}`",
+    ),
     *each(_commands, IN_ITS_UNIT),
     Row(
         "coupling.axes",

@@ -11,7 +11,6 @@ from nrs_design.proof.bounds import lower, rounded_down, rounded_up, upper
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.safety import (
-    Governed,
     Limits,
     Motor,
     Reach,

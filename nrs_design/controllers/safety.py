@@ -64,7 +64,7 @@ class SafetyLimits:
         ):
             raise DesignError(
                 "a limit of the safety layer is too small for single precision",
-                remedy="give a torque of at least 1e-6 N*m, and a speed and an energy to speak of",
+                remedy="give a torque of at least 1e-6 N*m, and more speed and energy",
                 at=("safety",),
             )
         return found

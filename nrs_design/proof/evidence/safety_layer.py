@@ -94,23 +94,22 @@ class SafetyLayer(AbstractEvidence):
         """State what is kept, from where, and below what the layer is idle."""
         loop, most = system.safety, self.limits
         assert loop is not None, "said of a system with a safety layer"
+        torque, energy = rounded_down(loop.torque, "N*m"), rounded_up(loop.energy, "J")
         low, high = loop.stiffness
         return (
-            "With its safety layer, from rest in the air or in contact of at most "
-            f"{rounded_down(loop.torque, 'N*m')}, whatever modes, gains and commands do and however "
-            f"contact is made and lost, while angle and reference are within "
-            f"{rounded_down(loop.angle, 'rad')} and what is touched rests and presses with "
-            f"{_between(low, high, 'N*m/rad')} times its deflection, at will: the joint never turns "
-            f"faster than {rounded_up(most.velocity, 'rad/s')}, the torque of contact never exceeds "
-            f"{rounded_up(most.torque, 'N*m')}, and {rounded_up(most.steady, 'N*m')} and "
-            f"{rounded_up(most.stored, 'J')} of energy stored where the stiffness is constant; the "
-            f"command of the motor never exceeds {rounded_up(most.command, loop.unit)}. Over any n "
-            "samples, the steps of the reference do at most "
-            f"{rounded_up(loop.energy, 'J')} + n {rounded_up(loop.refill + most.lost, 'J')} of work "
-            "against the measured torque. While the reference is to move by at most "
-            f"{rounded_down(loop.speed, 'rad/s')}, the measured torque is at most "
-            f"{rounded_down(loop.torque, 'N*m')} and this energy is not used up, the layer is idle "
-            "and changes no bit."
+            "Safety layer, whatever modes, gains and commands do: from rest in the air, or in "
+            f"contact of at most {torque}, while angle and reference are within "
+            f"{rounded_down(loop.angle, 'rad')} and one surface at rest presses with {upper(low)} "
+            f"to {lower(high)} N*m/rad times its deflection, which may change at will: the joint "
+            f"turns by at most {rounded_up(most.velocity, 'rad/s')}; the torque of contact is at "
+            f"most {rounded_up(most.torque, 'N*m')}, and for a constant stiffness "
+            f"{rounded_up(most.steady, 'N*m')}, with {rounded_up(most.stored, 'J')} stored; the "
+            f"command of the motor is at most {rounded_up(most.command, loop.unit)}; and over any "
+            f"n samples the steps of the reference do at most {energy} + n "
+            f"{rounded_up(loop.refill + most.lost, 'J')} of work against the measured torque. The "
+            "layer is idle, and changes no bit, while the reference is to move by at most "
+            f"{rounded_down(loop.speed, 'rad/s')}, the measured torque is at most {torque} and the "
+            "energy that is booked stays within its limit."
         )
 
 
@@ -121,7 +120,3 @@ def _beyond(found: Reach | Limits, claimed: Reach | Limits) -> str | None:
         if least > getattr(claimed, field.name):
             return field.name
     return None
-
-
-def _between(low: Fraction, high: Fraction, unit: str) -> str:
-    return f"{upper(low)} to {lower(high)} {unit}"

@@ -109,11 +109,11 @@ def _operations(*, refills: bool) -> Iterator[Operation]:
     """Yield the layer: from the speed that the laws want to the step that is made."""
     yield Operation("safe", "saturate", "safe_speed", SPEED)
     yield Operation("step", "multiply", "T", "safe")
-    # Beyond the limit of the torque, it has the other sign of the torque, and else it is zero.
+    # Beyond the limit of the torque, it has the other sign than the torque, and else it is zero.
     yield Operation("borne", "saturate", "safe_torque", "torque")
-    yield Operation("short", "subtract", "borne", "torque")
-    yield Operation("short_magnified", "multiply", "magnified", "short")
-    yield Operation("outward", "product", "short_magnified", "step")
+    yield Operation("excess", "subtract", "borne", "torque")
+    yield Operation("excess_magnified", "multiply", "magnified", "excess")
+    yield Operation("outward", "product", "excess_magnified", "step")
     yield Operation("allowed", "permit", "outward", "step")
     yield Operation("work", "product", "torque", "allowed")
     yield Operation("would_spend", "add", "spent", "work")

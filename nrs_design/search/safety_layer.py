@@ -57,7 +57,7 @@ def search_safety(system: SwitchedSystem) -> Candidates[SafetyLayer]:
         return "the ranges of the motor are too wide for the bounds of the layer"
     reach = Reach(*(_above(number * (1 + MORE)) for number in _numbers(reach)))
     limits = Limits(*map(_above, _numbers(limits_of(loop, period, motor, found, reach))))
-    yield Candidate(SafetyLayer(horizon, reach, limits), "proved")
+    yield Candidate(SafetyLayer(horizon, reach, limits))
     return None
 
 

@@ -114,5 +114,6 @@ OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "invariant-ellipsoid": _one,
     "no-common-quadratic": _traces,
     "parameter-quadratic": _ends,
+    "safety-layer": lambda e: Offer(),
     "saturated-ellipsoid": _one,
 }

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence.safety_layer import SafetyLayer
-from nrs_design.reporting.document import Paragraph, Section, Table
+from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.evidence.page import AbstractPage
+from nrs_design.reporting.evidence.runs import simulated
+from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
+from nrs_design.simulation.governed import hardest_run
 
 _MEANING = (
     "The layer moves the reference of the motion loop, and the tissue does not load the motor. So "
@@ -18,6 +22,12 @@ _TEXT = (
     "What is kept at all times, not at samples alone. The proof takes no part of the controllers "
     "and of their modes."
 )
+_RUN = (
+    "Simulated run from rest: every step of the reference is the largest that the layer lets pass, "
+    "forward or back, as it does most to the last velocity. The motor is that in the middle of its "
+    "range; the bound is for all of them. The run is no part of the proof."
+)
+_SIGNS = ("forward", "back")
 
 
 class SafetyPage(AbstractPage):
@@ -43,24 +53,42 @@ class SafetyPage(AbstractPage):
 
     def sections(self, *, first: bool = True) -> tuple[Section, ...]:
         """Show the limits in a table."""
-        loop, evidence = self.system.safety, self.evidence
+        loop = self.system.safety
         assert loop is not None, "the evidence is about it"
-        assert isinstance(evidence, SafetyLayer), "no other shows this"
-        most = evidence.limits
+        proved = (
+            ("Speed of the joint", "rad/s"),
+            ("Reference less angle", "rad"),
+            ("Command of the motor", loop.unit),
+            ("Torque where the stiffness jumps", "N*m"),
+            ("Torque at a constant stiffness", "N*m"),
+            ("Energy stored at a constant stiffness", "J"),
+        )
         rows = (
             ("Speed of the reference, by the layer", rounded_down(loop.speed, "rad/s")),
             ("Measured torque for a step inward, by the layer", rounded_down(loop.torque, "N*m")),
             ("Work of the reference, by the layer", rounded_down(loop.energy, "J")),
-            ("Speed of the joint, proved", rounded_up(most.velocity, "rad/s")),
-            ("Reference less angle, proved", rounded_up(most.error, "rad")),
-            ("Command of the motor, proved", rounded_up(most.command, loop.unit)),
-            ("Torque where the stiffness jumps, proved", rounded_up(most.torque, "N*m")),
-            ("Torque at a constant stiffness, proved", rounded_up(most.steady, "N*m")),
-            ("Energy stored at a constant stiffness, proved", rounded_up(most.stored, "J")),
+            *(
+                (f"{name}, proved", rounded_up(number, unit))
+                for (name, unit), number in zip(proved, self.offer.numbers, strict=True)
+            ),
         )
         blocks = (Paragraph(_TEXT), Table("Safety layer", ("Quantity", "At most"), rows))
-        return (Section("Safety layer", blocks),)
+        return (Section("Safety layer", (*blocks, self._illustration())),)
 
     def run(self) -> Section:
-        """Show the table again: there is no run of modes."""
-        return self.sections()[0]
+        """Draw the speed of the joint under the hardest steps of the reference."""
+        return simulated(self._illustration())
+
+    def _illustration(self) -> Illustration:
+        loop, period = self.system.safety, self.system.sample_time
+        assert loop is not None, "the evidence is about it"
+        assert period is not None, "it is sampled"
+        run = hardest_run(loop, period)
+        bound = np.full(len(run.time), float(self.offer.numbers[0]))
+        signal = BoundedSignal("Velocity [rad/s]", run.state[:, 2:], float(loop.speed), bound)
+        return Illustration(
+            "safety-run",
+            "Hardest steps below the safety layer",
+            _RUN,
+            draw_bounded_run(run, [signal], _SIGNS, "s"),
+        )

@@ -40,8 +40,7 @@ def search_safety(system: SwitchedSystem) -> Candidates[SafetyLayer]:
     radius = float(max(abs(np.linalg.eigvals(A))))
     if radius >= 1:
         return "the motion loop is not stable"
-    # Enough for a double root, too.
-    horizon = 2 * ceil(log(LEFT) / log(max(radius, 0.1)))
+    horizon = ceil(log(LEFT) / log(max(radius, 0.1)))
     if horizon > LONGEST:
         return "the motion loop is too slow for its period"
     found = respond(loop, motor, horizon, loop.oldest)

@@ -372,10 +372,12 @@ FACTS = {
     "covers_clock": GRAPHS - RULED | {"growing-sequence"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"},
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
+    | {"safety-layer"},
     "covers_mixtures": SETS
     | BOUNCING
-    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
+    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"}
+    | {"safety-layer"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,

@@ -48,7 +48,7 @@ class SafetyLimits:
         Raises
         ------
         DesignError
-            If a limit is lost in single precision.
+            If the limit of the torque is lost in single precision.
         """
         power = Fraction(0) if spec.power is None else spec.power.not_above
         found = cls(

@@ -84,7 +84,7 @@ class Governed:
 
 
 @dataclass(frozen=True, slots=True)
-class Motor:
+class SampledMotor:
     """Numbers of a motor over a period, each within a radius of a dyadic one."""
 
     E: Range
@@ -93,7 +93,7 @@ class Motor:
     h: Range
 
     @classmethod
-    def of(cls, loop: Governed, period: Fraction) -> Motor:
+    def of(cls, loop: Governed, period: Fraction) -> SampledMotor:
         """Enclose those of all motors of a loop: middle and radius of each."""
         (fast, slow), (least, most) = loop.time_constant, loop.gain
         E = exponential_between(-period / fast)[0], exponential_between(-period / slow)[1]
@@ -141,12 +141,12 @@ class Responses:
     forward: bool
 
 
-def respond(loop: Governed, motor: Motor, horizon: int, oldest: int) -> Responses | None:
+def respond(loop: Governed, motor: SampledMotor, horizon: int, oldest: int) -> Responses | None:
     """Sum the responses of a loop; None where they have not died down by the horizon.
 
     Parameters
     ----------
-    loop, motor : Governed, Motor
+    loop, motor : Governed, SampledMotor
         The loop, with one motor.
     horizon : int
         Samples that are summed one by one.
@@ -269,7 +269,7 @@ class Reach:
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class SafetyBounds:
     """What is kept at all times; every number is a bound on a size."""
 
     velocity: Fraction  # Of the joint, rad/s
@@ -282,7 +282,7 @@ class Limits:
     lost: Fraction  # By which the books are off, J in a sample
 
 
-def reach_of(loop: Governed, motor: Motor, found: Responses, claimed: Reach) -> Reach:
+def reach_of(loop: Governed, motor: SampledMotor, found: Responses, claimed: Reach) -> Reach:
     """Return how far the loop goes in a sample more, while it has not gone beyond what is claimed.
 
     Parameters
@@ -304,7 +304,7 @@ def _roundings(loop: Governed, claimed: Reach) -> Fraction:
     return OF_TERMS * terms + LOST
 
 
-def _strays(loop: Governed, motor: Motor, claimed: Reach) -> Range:
+def _strays(loop: Governed, motor: SampledMotor, claimed: Reach) -> Range:
     """Return by how much the way and the velocity of a sample differ from those of one motor."""
     disturbed = loop.friction + _roundings(loop, claimed)
     (_, E), (_, s), (g, off), (h, away) = motor.E, motor.s, motor.g, motor.h
@@ -314,8 +314,8 @@ def _strays(loop: Governed, motor: Motor, claimed: Reach) -> Range:
 
 
 def limits_of(
-    loop: Governed, period: Fraction, motor: Motor, found: Responses, reach: Reach
-) -> Limits:
+    loop: Governed, period: Fraction, motor: SampledMotor, found: Responses, reach: Reach
+) -> SafetyBounds:
     """Return what is kept at all times by a loop that keeps its reach.
 
     Parameters
@@ -333,7 +333,7 @@ def limits_of(
     depth = found.carry * loop.step + 2 * stray + velocity * period / 2
     seen, (low, high) = loop.torque * (1 + OF_TERMS) + loop.sensor, loop.stiffness
     pressed = (seen + k * depth for k in (low, high))
-    return Limits(
+    return SafetyBounds(
         velocity,
         reach.error + loop.noise,
         reach.command + _roundings(loop, reach),

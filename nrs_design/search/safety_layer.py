@@ -13,7 +13,7 @@ from math import ceil, log
 import numpy as np
 
 from nrs_design.proof.evidence.safety_layer import LONGEST, SafetyLayer
-from nrs_design.proof.safety import Limits, Motor, Reach, limits_of, reach_of, respond
+from nrs_design.proof.safety import Reach, SafetyBounds, SampledMotor, limits_of, reach_of, respond
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.candidates import Candidate, Candidates
 
@@ -35,7 +35,7 @@ def search_safety(system: SwitchedSystem) -> Candidates[SafetyLayer]:
     loop, period = system.safety, system.sample_time
     if loop is None or period is None:
         return "there is no safety layer"
-    motor = Motor.of(loop, period)
+    motor = SampledMotor.of(loop, period)
     A = np.array([[float(entry) for entry in row] for row in motor.matrix(loop)])
     radius = float(max(abs(np.linalg.eigvals(A))))
     if radius >= 1:
@@ -55,12 +55,12 @@ def search_safety(system: SwitchedSystem) -> Candidates[SafetyLayer]:
     else:
         return "the ranges of the motor are too wide for the bounds of the layer"
     reach = Reach(*(_above(number * (1 + MORE)) for number in _numbers(reach)))
-    limits = Limits(*map(_above, _numbers(limits_of(loop, period, motor, found, reach))))
+    limits = SafetyBounds(*map(_above, _numbers(limits_of(loop, period, motor, found, reach))))
     yield Candidate(SafetyLayer(horizon, reach, limits))
     return None
 
 
-def _numbers(item: Reach | Limits) -> list[Fraction]:
+def _numbers(item: Reach | SafetyBounds) -> list[Fraction]:
     return [getattr(item, field.name) for field in fields(item)]
 
 

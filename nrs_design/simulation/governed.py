@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.proof.safety import Governed, Motor
+from nrs_design.proof.safety import Governed, SampledMotor
 from nrs_design.simulation.switched import SwitchedRun
 
 # Behind them, nothing is left of a response.
@@ -27,7 +27,8 @@ def hardest_run(loop: Governed, period: Fraction) -> SwitchedRun:
     period : Fraction
         In s.
     """
-    A = np.array([[float(entry) for entry in row] for row in Motor.of(loop, period).matrix(loop)])
+    motor = SampledMotor.of(loop, period)
+    A = np.array([[float(entry) for entry in row] for row in motor.matrix(loop)])
     radius = float(np.abs(np.linalg.eigvals(A)).max())
     count = int(np.ceil(np.log(LEFT) / np.log(radius)))
     begin, responses = np.array([1.0, 0.0, 0.0]), []

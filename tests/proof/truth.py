@@ -242,7 +242,8 @@ def _safety_layer(system: SwitchedSystem, item: SafetyLayer) -> bool:
         "lost": 2**-22 * float(loop.energy),
     }
     kept = all(
-        float(getattr(item.limits, key)) >= value * (1 - 1e-9) for key, value in wanted.items()
+        getattr(item.limits, key) >= Fraction(float(value) * (1 - 1e-9))
+        for key, value in wanted.items()
     )
     return kept and (loop.command is None or item.limits.command <= loop.command)
 

@@ -85,7 +85,6 @@ class Plants:
 
     def move(self, command):
         """Yield angles and velocities at instants up to the next sample."""
-        low, high = ((float(a), float(b)) for a, b in zip(GAIN, GAIN, strict=True))
         low, high = float(GAIN[0]), float(GAIN[1])
         fast, slow = float(TAU[0]), float(TAU[1])
         share = self.rng.random((2, len(command)))
@@ -101,7 +100,7 @@ class Plants:
             )
 
 
-def run(law, adversary, count, samples, seed, oldest=1, ends=True):
+def run(law, adversary, count, samples, seed, oldest=1, ends=True, start=None):
     """Let an adversary choose mode, states of the law, command, stiffness and age at every sample.
 
     Parameters
@@ -118,7 +117,7 @@ def run(law, adversary, count, samples, seed, oldest=1, ends=True):
     felt = [zero] * (oldest + 1)
     found = Runs(zero, zero, zero, zero)
     work, withheld = [], []
-    stiffness = np.full(count, float(STIFFNESS[0]))
+    stiffness = np.full(count, float(STIFFNESS[0] if start is None else start))
     for k in range(samples):
         torque = stiffness * plants.deflection()
         felt = [torque, *felt[:oldest]]

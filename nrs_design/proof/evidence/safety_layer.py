@@ -11,9 +11,9 @@ from nrs_design.proof.bounds import lower, rounded_down, rounded_up, upper
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.safety import (
-    Limits,
-    Motor,
     Reach,
+    SafetyBounds,
+    SampledMotor,
     limits_of,
     reach_of,
     respond,
@@ -41,7 +41,7 @@ class SafetyLayer(AbstractEvidence):
 
     horizon: int  # Samples of the responses that are summed one by one
     reach: Reach  # How far the loop goes at samples
-    limits: Limits  # What is kept at all times
+    limits: SafetyBounds  # What is kept at all times
 
     @property
     def shows(self) -> Shows:
@@ -67,7 +67,7 @@ class SafetyLayer(AbstractEvidence):
             return odd
         if not 1 <= self.horizon <= LONGEST:
             return f"its horizon is not from 1 to {LONGEST} samples"
-        motor = Motor.of(loop, period)
+        motor = SampledMotor.of(loop, period)
         found = respond(loop, motor, self.horizon, loop.oldest)
         if found is None:
             return "what moves the reference has not died down by the horizon"
@@ -113,7 +113,7 @@ class SafetyLayer(AbstractEvidence):
         )
 
 
-def _beyond(found: Reach | Limits, claimed: Reach | Limits) -> str | None:
+def _beyond(found: Reach | SafetyBounds, claimed: Reach | SafetyBounds) -> str | None:
     """Return the first number that is above the claimed one, or None."""
     for field in fields(claimed):
         least: Fraction = getattr(found, field.name)

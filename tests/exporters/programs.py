@@ -87,7 +87,7 @@ LAWS = {
     ),
     "safety": add_safety(
         law(limits=StepLimits(Fraction(3), to_float32(Fraction("0.13")), None)),
-        SafetyLimits(*map(to_float32, map(Fraction, ("0.2", "0.25", "0.0001", "1e-6")))),
+        SafetyLimits(*map(to_float32, map(Fraction, ("0.2", "0.25", "1e-5", "1e-8")))),
     ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }

@@ -58,6 +58,7 @@ class Governed:
     encoder: Fraction = ZERO
     sensor: Fraction = ZERO
     friction: Fraction = ZERO
+    damping: Fraction = ZERO  # Of whatever is touched, at most, in N m s/rad
     command: Fraction | None = None  # Where the command saturates; None for nowhere
 
     @property
@@ -75,7 +76,8 @@ class Governed:
         least = (self.gain[0], self.time_constant[0], self.stiffness[0], self.Kp, self.tick)
         ranges = (self.gain, self.time_constant, self.stiffness)
         kept = (self.speed, self.torque, self.energy, self.angle)
-        borne = (self.D, self.refill, self.encoder, self.sensor, self.friction, self.command or ONE)
+        disturbing = (self.encoder, self.sensor, self.friction, self.damping)
+        borne = (self.D, self.refill, *disturbing, self.command or ONE)
         if min(*least, *kept) <= 0 or min(borne) < 0 or any(low > high for low, high in ranges):
             return "the safety layer has a number that no layer has"
         if self.torque < Fraction(1, 2**20):
@@ -331,15 +333,17 @@ def limits_of(
     stray = found.error.step * turned + found.error.spin * spun
     stray += (found.error.change + 1) * loop.noise
     depth = found.carry * loop.step + 2 * stray + velocity * period / 2
-    seen, (low, high) = loop.torque * (1 + OF_TERMS) + loop.sensor, loop.stiffness
+    damped, (low, high) = loop.damping * velocity, loop.stiffness
+    # A retreat hides as much of the torque of the spring.
+    seen = loop.torque * (1 + OF_TERMS) + loop.sensor + damped
     pressed = (seen + k * depth for k in (low, high))
     return SafetyBounds(
         velocity,
         reach.error + loop.noise,
         reach.command + _roundings(loop, reach),
         depth,
-        high * (seen / low + depth),
-        seen + high * depth,
+        high * (seen / low + depth) + damped,
+        seen + high * depth + damped,
         max(torque**2 / (2 * k) for torque, k in zip(pressed, (low, high), strict=True)),
         2 * OF_TERMS * (loop.energy + loop.refill) + LOST,
     )

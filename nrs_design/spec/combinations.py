@@ -107,7 +107,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
     # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
-    *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP),
+    *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
     not_together(COMMAND, OTHERS, SAMPLED),
     # It would move the position that the spring draws to.
     not_together(COMMAND, SPRUNG, SAMPLED),

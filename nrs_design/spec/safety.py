@@ -10,6 +10,7 @@ from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
     AngularVelocity,
     Energy,
+    Impedance,
     Power,
     RotationalStiffness,
     Torque,
@@ -35,6 +36,10 @@ class SafetySpec(SpecModel):
     stiffness: tuple[RotationalStiffness, RotationalStiffness] = Field(
         description="[lowest, highest] torque over deflection in N*m/rad, of whatever is touched: "
         "a wider range than that of the environments"
+    )
+    damping: Impedance | None = optional(
+        "largest torque over rate of the deflection in N*m*s/rad, of whatever is touched; default: "
+        "it does not damp"
     )
 
     checks = (

@@ -56,6 +56,7 @@ def with_safety(
         bounds.get("encoder error", ZERO),
         bounds.get("force error", ZERO) + design.sensor.lasting,
         bounds.get("friction", ZERO),
+        ZERO if spec.damping is None else spec.damping.exact,
         None if largest is None else float32_not_above(largest),
     )
     return replace(system, safety=loop)

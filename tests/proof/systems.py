@@ -302,6 +302,7 @@ def governed() -> SwitchedSystem:
         encoder=Fraction(1, 10_000),
         sensor=Fraction(1, 1000),
         friction=Fraction(1, 1000),
+        damping=Fraction(1, 8),
         command=Fraction(1),
     )
     steps = family([["1/2"]], time=Time.DISCRETE)

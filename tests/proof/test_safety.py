@@ -152,6 +152,7 @@ ODD = {
     "encoder": Fraction(-1),
     "sensor": Fraction(-1),
     "friction": Fraction(-1),
+    "damping": Fraction(-1),
     "command": Fraction(-1),
     "oldest": -1,
     "torque": Fraction(1, 2**21),

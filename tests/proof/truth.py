@@ -230,14 +230,15 @@ def _safety_layer(system: SwitchedSystem, item: SafetyLayer) -> bool:
     stray += (abs(change[0]).sum() + 1) * noise
     speed = reach[2] + 2 * (h + off[3]) * friction
     depth = carry * W + 2 * stray + speed * T / 2
-    seen = float(loop.torque * (1 + Fraction(1, 2**22)) + loop.sensor)
+    damped = float(loop.damping) * speed
+    seen = float(loop.torque * (1 + Fraction(1, 2**22)) + loop.sensor) + damped
     wanted = {
         "velocity": speed,
         "error": reach[0] + noise,
         "command": reach[3] + lost - friction,
         "depth": depth,
-        "torque": most * (seen / least + depth),
-        "steady": seen + most * depth,
+        "torque": most * (seen / least + depth) + damped,
+        "steady": seen + most * depth + damped,
         "stored": max((seen + k * depth) ** 2 / (2 * k) for k in (least, most)),
         "lost": 2**-22 * float(loop.energy),
     }

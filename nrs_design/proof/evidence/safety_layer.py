@@ -96,11 +96,14 @@ class SafetyLayer(AbstractEvidence):
         assert loop is not None, "said of a system with a safety layer"
         torque, energy = rounded_down(loop.torque, "N*m"), rounded_up(loop.energy, "J")
         low, high = loop.stiffness
+        damped = ""
+        if loop.damping:
+            damped = f", and at most {rounded_down(loop.damping, 'N*m*s/rad')} times its rate"
         return (
             "Safety layer, whatever modes, gains and commands do: from rest in the air, or in "
             f"contact of at most {torque}, while angle and reference are within "
             f"{rounded_down(loop.angle, 'rad')} and one surface at rest presses with {upper(low)} "
-            f"to {lower(high)} N*m/rad times its deflection, which may change at will: the joint "
+            f"to {lower(high)} N*m/rad times its deflection{damped}, changing at will: the joint "
             f"turns by at most {rounded_up(most.velocity, 'rad/s')}; the torque of contact is at "
             f"most {rounded_up(most.torque, 'N*m')}, and for a constant stiffness "
             f"{rounded_up(most.steady, 'N*m')}, with {rounded_up(most.stored, 'J')} stored; the "

@@ -46,7 +46,7 @@ class SafetyPage(AbstractPage):
     def limits(self) -> tuple[str, ...]:
         """Say what does not follow."""
         return (
-            "A surface that moves, two surfaces that are touched at once, and tissue that damps.",
+            "A surface that moves, and two surfaces that are touched at once.",
             "Work against the torque that acts, beside that against the measured one.",
             "Steps that the guards of the law refuse, and samples that come late.",
         )

@@ -26,7 +26,7 @@ def test_it_holds_and_says_what_is_kept():
     for words in (
         "in contact of at most 0.5 N*m",
         "within 2 rad",
-        "20 to 40 N*m/rad",
+        "20 to 40 N*m/rad times its deflection, and at most 0.125 N*m*s/rad times its rate",
         "at most 0.015625 J + n ",
         "at most 0.25 rad/s",
         "changes no bit",
@@ -60,6 +60,7 @@ def test_larger_limits_hold_and_a_larger_reach_needs_them():
         ({"angle": Fraction(2000)}, "sample can take"),
         ({"oldest": 2}, "limit of depth"),
         ({"sensor": Fraction(2, 1000)}, "limit of torque"),
+        ({"damping": Fraction(2, 8)}, "limit of torque"),
         ({"stiffness": (Fraction(19), Fraction(40))}, "limit of torque"),
         ({"stiffness": (Fraction(20), Fraction(41))}, "limit of torque"),
         ({"torque": Fraction(51, 100)}, "limit of torque"),
@@ -77,6 +78,7 @@ def test_a_weaker_loop_has_it_too():
     for changed in (
         {"speed": Fraction(24, 100)},
         {"oldest": 0},
+        {"damping": Fraction(0)},
         {"command": None},
         {"stiffness": (Fraction(21), Fraction(39))},
     ):

@@ -207,10 +207,10 @@ def _powers(A: tuple[Row, Row, Row], horizon: int) -> tuple[list[list[list[int]]
 
 def _tail(row: Row, powers: list[list[list[int]]], weights: tuple[int, ...]) -> Fraction:
     """Bound ``sum |C A^j| v`` over the horizon, in units."""
-    size = sum(map(abs, row))
-    sums = [[sum(c * p[i][k] for i, c in enumerate(row)) for k in range(3)] for p in powers]
-    each = (sum((abs(c) + size) * v for c, v in zip(r, weights, strict=True)) for r in sums)
-    return sum(each, ZERO) / 2**SUM_BITS
+    size = sum((abs(c) for c in row), ZERO)
+    sums = [[sum((c * p[i][k] for i, c in enumerate(row)), ZERO) for k in range(3)] for p in powers]
+    each = (sum(((abs(c) + size) * v for c, v in zip(r, weights, strict=True)), ZERO) for r in sums)
+    return sum(each, ZERO) / (1 << SUM_BITS)
 
 
 def _response(
@@ -220,7 +220,7 @@ def _response(
 
     Every entry of ``C A^j`` is off by less than the sum of the sizes of C, in units.
     """
-    size, unit = sum(map(abs, row)), 2**SUM_BITS
+    size, unit = sum((abs(c) for c in row), ZERO), 2**SUM_BITS
     steps, spins = (
         [sum((c * p[i][k] for i, c in enumerate(row)), ZERO) for p in powers] for k in (0, 2)
     )

@@ -39,6 +39,6 @@ def hardest_run(loop: Governed, period: Fraction) -> SwitchedRun:
     states = [np.zeros(3)]
     for sign in signs:
         states.append(A @ states[-1] + [sign * float(loop.step), 0.0, 0.0])
-    time = np.arange(count + 1) * float(period)
+    time = float(period) * np.arange(count + 1, dtype=np.float64)
     modes = np.where(signs < 0, 1, 0)
-    return SwitchedRun(time, np.array(states), modes)
+    return SwitchedRun(time, np.array(states, dtype=np.float64), modes)

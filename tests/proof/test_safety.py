@@ -2,6 +2,8 @@
 
 from dataclasses import astuple, replace
 from fractions import Fraction
+from functools import cache
+from math import ceil
 
 import numpy as np
 import pytest
@@ -81,6 +83,19 @@ def test_an_angle_that_goes_back_while_the_reference_goes_on_is_seen():
         assert respond(loop, held, 200, 0).forward == forward
 
 
+@cache
+def limits_below(loop):
+    """Return what a loop keeps, by iteration from nothing."""
+    motor = SampledMotor.of(loop, PERIOD)
+    found = respond(loop, motor, 68, loop.oldest)
+    reach = Reach(*[Fraction(0)] * 4)
+    for _ in range(30):
+        # Short numbers that are not below.
+        numbers = astuple(reach_of(loop, motor, found, reach))
+        reach = Reach(*(Fraction(ceil(n * 2**40), 2**40) for n in numbers))
+    return limits_of(loop, PERIOD, motor, found, reach)
+
+
 @given(
     st.lists(st.sampled_from([-1.0, 1.0]), min_size=1, max_size=40),
     st.floats(0, 1),
@@ -88,12 +103,7 @@ def test_an_angle_that_goes_back_while_the_reference_goes_on_is_seen():
 )
 def test_no_steps_of_the_reference_leave_the_reach(signs, gain, tau):
     """Any motor of the ranges, held for the run, with steps of the largest size."""
-    motor = SampledMotor.of(LOOP, PERIOD)
-    found = respond(LOOP, motor, 68, 1)
-    reach = Reach(*[Fraction(0)] * 4)
-    for _ in range(60):
-        reach = reach_of(LOOP, motor, found, reach)
-    limits = limits_of(LOOP, PERIOD, motor, found, reach)
+    limits = limits_below(LOOP)
     low, high = LOOP.gain
     Km = float(low) + gain * float(high - low)
     fast, slow = LOOP.time_constant
@@ -118,22 +128,21 @@ def test_a_reach_that_is_claimed_too_small_is_not_kept():
 
 
 def test_what_disturbs_makes_every_limit_larger():
-    def limits(loop):
-        motor = SampledMotor.of(loop, PERIOD)
-        found = respond(loop, motor, 68, loop.oldest)
-        reach = Reach(*[Fraction(0)] * 4)
-        for _ in range(60):
-            reach = reach_of(loop, motor, found, reach)
-        return limits_of(loop, PERIOD, motor, found, reach)
-
-    quiet = replace(LOOP, encoder=Fraction(0), sensor=Fraction(0), friction=Fraction(0))
-    base = limits(quiet)
-    rubbed = limits(replace(quiet, friction=LOOP.friction))
+    quiet = replace(
+        LOOP, **dict.fromkeys(("encoder", "sensor", "friction", "damping"), Fraction(0))
+    )
+    base = limits_below(quiet)
+    rubbed = limits_below(replace(quiet, friction=LOOP.friction))
     assert all(a < b for a, b in zip(astuple(base)[:7], astuple(rubbed)[:7], strict=True))
-    seen = limits(replace(quiet, sensor=Fraction(1, 10)))
+    seen = limits_below(replace(quiet, sensor=Fraction(1, 10)))
     assert seen.torque == base.torque + Fraction(1, 10) * 2
     assert seen.steady == base.steady + Fraction(1, 10)
-    older = limits(replace(quiet, oldest=3))
+    damped = limits_below(replace(quiet, damping=Fraction(1, 8)))
+    # What hides in a retreat, over the stiffness, and what presses in addition.
+    pressing = base.velocity / 8
+    assert damped.torque == base.torque + pressing * 2 + pressing
+    assert damped.steady == base.steady + 2 * pressing
+    older = limits_below(replace(quiet, oldest=3))
     # Two samples more are two steps more.
     assert older.depth - base.depth == pytest.approx(float(2 * quiet.step), rel=1e-6)
 

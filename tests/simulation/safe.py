@@ -83,6 +83,12 @@ class Plants:
         y = (self.theta if theta is None else theta) - self.surface
         return np.where(self.surface >= 0, np.maximum(y, 0), np.minimum(y, 0))
 
+    def torque(self, stiffness, damping):
+        """Return what tissue presses with; it does not pull."""
+        side, y = np.where(self.surface >= 0, 1, -1), self.deflection()
+        force = side * (stiffness * y + damping * self.omega)
+        return side * np.where(y != 0, np.maximum(force, 0), 0)
+
     def move(self, command):
         """Yield angles and velocities at instants up to the next sample."""
         low, high = float(GAIN[0]), float(GAIN[1])
@@ -100,7 +106,7 @@ class Plants:
             )
 
 
-def run(law, adversary, count, samples, seed, oldest=1, ends=True, start=None):
+def run(law, adversary, count, samples, seed, oldest=1, ends=True, start=None, damping=0.0):
     """Let an adversary choose mode, states of the law, command, stiffness and age at every sample.
 
     Parameters
@@ -119,7 +125,7 @@ def run(law, adversary, count, samples, seed, oldest=1, ends=True, start=None):
     work, withheld = [], []
     stiffness = np.full(count, float(STIFFNESS[0] if start is None else start))
     for k in range(samples):
-        torque = stiffness * plants.deflection()
+        torque = plants.torque(stiffness, damping)
         felt = [torque, *felt[:oldest]]
         ages = rng.integers(0, oldest + 1, count) if k % 3 else np.full(count, oldest)
         seen = np.choose(ages, felt)
@@ -149,6 +155,7 @@ def run(law, adversary, count, samples, seed, oldest=1, ends=True, start=None):
             largest = float(STIFFNESS[1]) * np.abs(plants.deflection(theta))
             constant = stiffness * np.abs(plants.deflection(theta))
             pressed = constant if getattr(adversary, "constant", False) else largest
+            pressed = pressed + np.where(pressed > 0, damping * np.abs(omega), 0)
             found.speed = np.maximum(found.speed, np.abs(omega))
             found.torque = np.maximum(found.torque, pressed)
         plants.theta, plants.omega = theta, omega

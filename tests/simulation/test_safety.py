@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,14 +18,14 @@ SOFT, STIFF = map(float, STIFFNESS)
 COUNT, SAMPLES = 40, 600
 
 
-def proved(oldest: int) -> SafetyLayer:
-    system: SwitchedSystem = replace(small(), sample_time=PERIOD, safety=governed(oldest))
+@cache
+def proved(oldest: int, damping: Fraction = Fraction(0)) -> SafetyLayer:
+    system: SwitchedSystem = replace(
+        small(), sample_time=PERIOD, safety=governed(oldest, damping=damping)
+    )
     evidence = next(search_safety(system)).evidence
     assert evidence.find_fault(system) is None
     return evidence
-
-
-LIMIT = {oldest: proved(oldest) for oldest in (0, 1, 3)}
 
 
 def still(plants):
@@ -68,7 +69,7 @@ def worst_window(work):
 @pytest.mark.parametrize("oldest", [0, 1, 3])
 @pytest.mark.parametrize("adversary", [wild, pushing, swinging, pumping])
 def test_no_adversary_leaves_what_is_proved(adversary, oldest):
-    most = LIMIT[oldest].limits
+    most = proved(oldest).limits
     found = run(law_of(), adversary, COUNT, SAMPLES, seed=oldest, oldest=oldest)
     assert found.speed.max() <= float(most.velocity)
     assert found.torque.max() <= float(most.torque)
@@ -82,11 +83,19 @@ def test_no_adversary_leaves_what_is_proved(adversary, oldest):
 
 def test_the_bounds_are_not_far_from_what_is_found():
     """Ratios of the worst that was found to what is proved."""
-    most = LIMIT[1].limits
+    most = proved(1).limits
     found = [run(law_of(), one, COUNT, SAMPLES, seed=1) for one in (pushing, swinging)]
     assert max(one.speed.max() for one in found) > 0.9 * float(most.velocity)
     assert max(one.torque.max() for one in found) > 0.85 * float(most.torque)
     assert max(one.error.max() for one in found) > 0.9 * float(most.error)
+
+
+@pytest.mark.parametrize("adversary", [wild, pushing, swinging])
+def test_nor_where_the_tissue_damps(adversary):
+    most = proved(1, Fraction(1, 2)).limits
+    found = run(law_of(), adversary, COUNT, SAMPLES, seed=5, damping=0.5)
+    assert 0.3 * float(most.torque) < found.torque.max() <= float(most.torque)
+    assert found.speed.max() <= float(most.velocity)
 
 
 def test_the_work_of_the_reference_comes_to_its_limit_and_not_beyond():
@@ -98,14 +107,14 @@ def test_the_work_of_the_reference_comes_to_its_limit_and_not_beyond():
 
 
 def test_without_the_layer_the_same_adversary_leaves_them():
-    most = LIMIT[1].limits
+    most = proved(1).limits
     found = run(law_of(layer=False), wild, COUNT, 300, seed=1)
     assert found.speed.max() > 2 * float(most.velocity)
     assert found.torque.max() > 2 * float(most.torque)
 
 
 def test_at_a_constant_stiffness_the_torque_stays_below_the_sharper_bound():
-    most = LIMIT[1].limits
+    most = proved(1).limits
     for stiffness in (SOFT, STIFF):
 
         def press(k, plants, seen, rng, stiffness=stiffness):

@@ -32,6 +32,7 @@ def test_it_holds_and_says_what_is_kept():
         "changes no bit",
     ):
         assert words in claim
+    assert "times its rate" not in EVIDENCE.claim(with_loop(damping=Fraction(0)))
 
 
 @pytest.mark.parametrize("part", ["reach", "limits"])

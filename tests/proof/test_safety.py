@@ -1,6 +1,7 @@
 """Sums of responses below a safety layer: known answers, sums in floats, and odd numbers."""
 
 from dataclasses import astuple, replace
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cache
 from math import ceil
@@ -12,6 +13,8 @@ from hypothesis import strategies as st
 
 from nrs_design.proof.safety import (
     Reach,
+    Response,
+    Responses,
     SampledMotor,
     limits_of,
     reach_of,
@@ -19,6 +22,7 @@ from nrs_design.proof.safety import (
 )
 from tests.proof.systems import governed
 
+F = Fraction
 LOOP = governed().safety
 PERIOD = Fraction(1, 100)
 # A motor that follows its command at once, but for what has no number: E is next to nothing.
@@ -173,3 +177,163 @@ def test_numbers_that_no_layer_has_are_found(key):
     assert LOOP.find_odd() is None
     assert replace(LOOP, command=None).find_odd() is None
     assert replace(LOOP, **{key: ODD[key]}).find_odd() is not None
+
+
+TINY = F(1, 2**22)
+
+
+def spread(number, low, high):
+    """Tell whether an interval holds another, and is hardly wider."""
+    middle, radius = number
+    return (
+        low - F(1, 10**13) < middle - radius <= low < high <= middle + radius < high + F(1, 10**13)
+    )
+
+
+def decimal(number):
+    return Decimal(number.numerator) / Decimal(number.denominator)
+
+
+def test_steps_and_noise_have_the_rounding_of_the_largest_angle():
+    assert LOOP.step == LOOP.tick * LOOP.speed * (1 + TINY) + LOOP.angle * TINY
+    assert LOOP.noise == LOOP.encoder + LOOP.angle * TINY
+
+
+def test_the_motor_is_enclosed_between_its_ends():
+    with localcontext(prec=60):
+        T = decimal(PERIOD)
+        ends = []
+        for tau in map(decimal, LOOP.time_constant):
+            E = (-T / tau).exp()
+            ends.append((F(E), F(tau * (1 - E))))
+    (E_fast, s_fast), (E_slow, s_slow) = ends
+    (least, most), motor = LOOP.gain, SampledMotor.of(LOOP, PERIOD)
+    assert spread(motor.E, E_fast, E_slow)
+    assert spread(motor.s, s_fast, s_slow)
+    assert spread(motor.g, least * (PERIOD - s_slow), most * (PERIOD - s_fast))
+    assert spread(motor.h, least * (1 - E_slow), most * (1 - E_fast))
+    assert all((middle * 2**48).denominator == 1 for middle, _ in astuple(motor))
+
+
+def test_a_motor_that_hardly_moves_in_a_period_is_not_driven_back():
+    slow = replace(LOOP, time_constant=(F(10**12),) * 2)
+    assert SampledMotor.of(slow, PERIOD).g[0] >= 0
+
+
+MOTOR = SampledMotor(
+    E=(F(1, 2), F(1, 101)), s=(F(1, 3), F(1, 103)), g=(F(1, 5), F(1, 107)), h=(F(1, 7), F(1, 109))
+)
+FOUND = Responses(
+    error=Response(F(2), F(3), F(5)),
+    change=Response(F(7), F(11), F(13)),
+    velocity=Response(F(17), F(19), F(23)),
+    command=Response(F(29), F(31), F(37)),
+    carry=F(41),
+    forward=True,
+)
+REACH = Reach(F(43), F(47), F(53), F(59))
+
+
+def test_the_matrix_is_the_step_of_the_loop():
+    e, before, w = F(3), F(5), F(7)
+    u = LOOP.Kp * e + LOOP.D * (e - before)
+    (E, _), (s, _), (g, _), (h, _) = astuple(MOTOR)
+    rows = MOTOR.matrix(LOOP)
+    after = [sum(a * x for a, x in zip(row, (e, before, w), strict=True)) for row in rows]
+    assert after == [e - s * w - g * u, e, E * w + h * u]
+
+
+def strays(lost):
+    turned = F(1, 103) * 53 + F(1, 107) * 59 + (F(1, 5) + F(1, 107)) * lost
+    spun = F(1, 101) * 53 + F(1, 109) * 59 + (F(1, 7) + F(1, 109)) * lost
+    return turned, spun
+
+
+ROUNDED = TINY * (LOOP.Kp * 43 + LOOP.D * 47) + F(1, 2**100)
+
+
+def test_the_reach_is_the_sum_of_what_acts():
+    turned, spun = strays(LOOP.friction + ROUNDED)
+    step, noise = LOOP.step + turned, LOOP.noise
+    assert astuple(reach_of(LOOP, MOTOR, FOUND, REACH)) == (
+        2 * step + 3 * noise + 5 * spun,
+        7 * step + 11 * noise + 13 * spun,
+        17 * step + 19 * noise + 23 * spun,
+        29 * step + 31 * noise + 37 * spun,
+    )
+
+
+def test_the_limits_follow_from_the_reach():
+    most = limits_of(LOOP, PERIOD, MOTOR, FOUND, REACH)
+    turned, spun = strays(LOOP.friction + ROUNDED)
+    velocity = 53 + 2 * (F(1, 7) + F(1, 109)) * LOOP.friction
+    stray = 2 * turned + 5 * spun + (3 + 1) * LOOP.noise
+    depth = 41 * LOOP.step + 2 * stray + velocity * PERIOD / 2
+    damped = LOOP.damping * velocity
+    seen = LOOP.torque * (1 + TINY) + LOOP.sensor + damped
+    low, high = LOOP.stiffness
+    assert most.velocity == velocity
+    assert most.error == 43 + LOOP.noise
+    assert most.command == 59 + ROUNDED
+    assert most.depth == depth
+    assert most.torque == high * (seen / low + depth) + damped
+    assert most.steady == seen + high * depth + damped
+    ends = [(seen + k * depth) ** 2 / (2 * k) for k in (low, high)]
+    assert most.stored == max(ends)
+    assert most.lost == 2 * TINY * (LOOP.energy + LOOP.refill) + F(1, 2**100)
+    soft = replace(LOOP, stiffness=(F(1, 10**6), high))
+    assert limits_of(soft, PERIOD, MOTOR, FOUND, REACH).stored > 10**3 * most.stored / 10**6
+
+
+@cache
+def true_powers(count=400):
+    """A^0, A^1, ... of the loop with 60 digits, until nothing is left."""
+    with localcontext(prec=60):
+        rows = SampledMotor.of(LOOP, PERIOD).matrix(LOOP)
+        A = [[decimal(v) for v in row] for row in rows]
+        P = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
+        powers = []
+        for _ in range(count):
+            powers.append(P)
+            P = [[sum(A[i][k] * P[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+    return powers
+
+
+def true_sums():
+    """Sums of the responses of error, change, velocity and command."""
+    Kp, D = decimal(LOOP.Kp), decimal(LOOP.D)
+    rows = {
+        "error": (1, 0, 0),
+        "change": (1, -1, 0),
+        "velocity": (0, 0, 1),
+        "command": (Kp + D, -D, 0),
+    }
+    for name, row in rows.items():
+        step, spin = (
+            [sum(c * P[i][k] for i, c in enumerate(row)) for P in true_powers()] for k in (0, 2)
+        )
+        jumps = [abs(b - a) for a, b in zip([Decimal(0), *step], step, strict=False)]
+        yield name, (sum(map(abs, step)), sum(jumps), sum(map(abs, spin)))
+
+
+def true_carry(oldest):
+    h = [1 - P[0][0] for P in true_powers()]
+    h = [Decimal(0)] * (oldest + 1) + h
+    ends = [*h, *([Decimal(1)] * len(h))]
+    return max(sum(abs(ends[q + M] - ends[q]) for q in range(len(h))) for M in range(1, len(h)))
+
+
+@pytest.mark.parametrize(("horizon", "share"), [(20, 0.2), (30, 0.02), (120, 1e-14)])
+def test_sums_are_not_too_small_and_hardly_too_large(horizon, share):
+    found = respond(LOOP, SampledMotor.of(LOOP, PERIOD), horizon, 1)
+    for name, wanted in true_sums():
+        for number, true in zip(astuple(getattr(found, name)), wanted, strict=True):
+            assert F(true) * (1 - F(1, 10**40)) <= number <= F(true) * (1 + F(share)), name
+
+
+@pytest.mark.parametrize("oldest", [0, 1, 4])
+def test_the_way_on_is_not_too_small_and_hardly_too_large(oldest):
+    motor, wanted = SampledMotor.of(LOOP, PERIOD), F(true_carry(oldest))
+    for horizon, share in ((20, 0.5), (120, 1e-12)):
+        carry = respond(LOOP, motor, horizon, oldest).carry
+        assert wanted * (1 - F(1, 10**20)) <= carry <= wanted * (1 + F(share))

@@ -96,7 +96,6 @@ NUMBERS = {
     "constant-force": {"Q", "slope"},
     "graph": {"nodes", "denominator_log2", "vanishing", "multipliers"},
     "parameter-quadratic": {"low", "high", "denominator_log2"},
-    "safety-layer": {"horizon", "reach", "limits"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
     "growing-sequence": {"steps", "doublings", "share"},

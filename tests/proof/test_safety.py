@@ -80,11 +80,11 @@ def test_an_angle_that_goes_back_while_the_reference_goes_on_is_seen():
         loop = replace(LOOP, **motor, Kp=Fraction(100), D=Fraction(D))
         held = SampledMotor.of(loop, PERIOD)
         A, x, least = np.array([[float(v) for v in row] for row in held.matrix(loop)]), [1, 0, 0], 0
-        for _ in range(200):
+        for _ in range(60):
             x = A @ x
             least = min(least, 1 - x[0])
         assert (least >= 0) == forward
-        assert respond(loop, held, 200, 0).forward == forward
+        assert respond(loop, held, 60, 0).forward == forward
 
 
 @cache
@@ -153,8 +153,8 @@ def test_what_disturbs_makes_every_limit_larger():
 
 ODD = {
     "gain": (Fraction(0), Fraction(1)),
-    "time_constant": (Fraction(2), Fraction(1)),
-    "stiffness": (Fraction(-1), Fraction(1)),
+    "time_constant": (Fraction(0), Fraction(1)),
+    "stiffness": (Fraction(2), Fraction(1)),
     "Kp": Fraction(0),
     "tick": Fraction(0),
     "speed": Fraction(0),
@@ -170,6 +170,25 @@ ODD = {
     "oldest": -1,
     "torque": Fraction(1, 2**21),
 }
+
+
+FINE = {
+    "gain": (F(1),) * 2,
+    "time_constant": (F(1),) * 2,
+    "stiffness": (F(1),) * 2,
+    **dict.fromkeys(("D", "refill", "encoder", "sensor", "friction", "damping"), F(0)),
+    "torque": F(1, 2**20),
+}
+
+
+@pytest.mark.parametrize("key", FINE)
+def test_numbers_at_their_edges_are_those_of_a_layer(key):
+    assert replace(LOOP, **{key: FINE[key]}).find_odd() is None
+
+
+@pytest.mark.parametrize(("oldest", "fine"), [(0, True), (1000, True), (1001, False)])
+def test_an_age_is_from_zero_to_a_thousand_samples(oldest, fine):
+    assert (replace(LOOP, oldest=oldest).find_odd() is None) == fine
 
 
 @pytest.mark.parametrize("key", ODD)

@@ -93,7 +93,7 @@ def test_an_angle_that_goes_back_has_no_statement():
         Kp=Fraction(100),
         D=Fraction(160),
     )
-    assert "go back" in replace(EVIDENCE, horizon=200).find_fault(loop)
+    assert "go back" in replace(EVIDENCE, horizon=60).find_fault(loop)
 
 
 @pytest.mark.parametrize("horizon", [0, LONGEST + 1])

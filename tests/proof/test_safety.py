@@ -356,3 +356,20 @@ def test_the_way_on_is_not_too_small_and_hardly_too_large(oldest):
     for horizon, share in ((20, 0.5), (120, 1e-12)):
         carry = respond(LOOP, motor, horizon, oldest).carry
         assert wanted * (1 - F(1, 10**20)) <= carry <= wanted * (1 + F(share))
+
+
+@pytest.mark.parametrize("oldest", [0, 2])
+def test_an_angle_that_swings_about_the_reference_goes_on_by_more_than_its_error(oldest):
+    """``e+ = e + r - 1.9 e``: two samples apart the angle is alike, one sample apart it is not."""
+    loop = replace(QUICK, Kp=F(190))
+    motor = SampledMotor.of(loop, PERIOD)
+    found = respond(loop, motor, 250, oldest)
+    A = np.array([[float(v) for v in row] for row in motor.matrix(loop)])
+    x, error = np.array([1.0, 0, 0]), []
+    for _ in range(500):
+        error.append(x[0])
+        x = A @ x
+    h = np.concatenate([np.zeros(oldest + 1), 1 - np.array(error), np.ones(600)])
+    wanted = max(abs(h[M:] - h[:-M]).sum() for M in range(1, 500))
+    assert wanted > sum(map(abs, error)) + oldest + 1
+    assert wanted * (1 - 1e-9) <= float(found.carry) <= wanted * (1 + 1e-6)

@@ -80,6 +80,8 @@ class Governed:
         borne = (self.D, self.refill, *disturbing, self.command or ONE)
         if min(*least, *kept) <= 0 or min(borne) < 0 or any(low > high for low, high in ranges):
             return "the safety layer has a number that no layer has"
+        if self.tick * self.speed > self.angle:
+            return "a step is larger than the largest angle"
         if self.torque < Fraction(1, 2**20):
             return "the limit of its torque is lost where signs are formed"
         return None if 0 <= self.oldest <= 1000 else "its torque is too old"

@@ -186,6 +186,13 @@ def test_numbers_at_their_edges_are_those_of_a_layer(key):
     assert replace(LOOP, **{key: FINE[key]}).find_odd() is None
 
 
+def test_a_step_is_within_the_largest_angle():
+    """Else the rounding of a reference is not that of the largest angle."""
+    edge = LOOP.angle / LOOP.tick
+    assert replace(LOOP, speed=edge).find_odd() is None
+    assert "largest angle" in replace(LOOP, speed=edge + 1).find_odd()
+
+
 @pytest.mark.parametrize(("oldest", "fine"), [(0, True), (1000, True), (1001, False)])
 def test_an_age_is_from_zero_to_a_thousand_samples(oldest, fine):
     assert (replace(LOOP, oldest=oldest).find_odd() is None) == fine

@@ -186,6 +186,12 @@ def test_numbers_at_their_edges_are_those_of_a_layer(key):
     assert replace(LOOP, **{key: FINE[key]}).find_odd() is None
 
 
+@pytest.mark.parametrize("key", ["gain", "time_constant", "stiffness"])
+@pytest.mark.parametrize("ends", [(F(0), F(1)), (F(2), F(1)), (F(-1), F(1))])
+def test_a_range_begins_above_zero_and_ends_above_its_beginning(key, ends):
+    assert replace(LOOP, **{key: ends}).find_odd() is not None
+
+
 def test_a_step_is_within_the_largest_angle():
     """Else the rounding of a reference is not that of the largest angle."""
     edge = LOOP.angle / LOOP.tick

@@ -53,18 +53,22 @@ def test_a_motor_without_lag_has_the_sums_of_a_geometric_series():
     assert found.forward
 
 
-def test_bounds_are_never_below_those_of_a_geometric_series():
-    motor = SampledMotor.of(QUICK, PERIOD)
-    A = np.array([[float(x) for x in row] for row in motor.matrix(QUICK)])
-    sums, power = np.zeros(3), np.eye(3)
-    for _ in range(200):
-        sums += abs(power[:, 0])
+@pytest.mark.parametrize(("Kp", "horizon"), [(50, 5), (50, 60), (5, 20), (5, 60)])
+def test_bounds_are_never_below_those_of_a_geometric_series(Kp, horizon):
+    """What is behind the horizon is counted: of ``0.95^j``, a twentieth after sixty samples."""
+    loop = replace(QUICK, Kp=F(Kp))
+    motor = SampledMotor.of(loop, PERIOD)
+    A = np.array([[float(x) for x in row] for row in motor.matrix(loop)])
+    sums, power = np.zeros((3, 3)), np.eye(3)
+    for _ in range(2000):
+        sums += abs(power)
         power = A @ power
-    for horizon in (5, 20, 60):
-        found = respond(QUICK, motor, horizon, 0)
-        assert float(found.error.step) >= sums[0] * (1 - 1e-12)
-        assert float(found.velocity.step) >= sums[2] * (1 - 1e-12)
-    assert float(found.error.step) == pytest.approx(sums[0], rel=1e-12)
+    found = respond(loop, motor, horizon, 0)
+    for response, row in ((found.error, 0), (found.velocity, 2)):
+        assert float(response.step) >= sums[row, 0] * (1 - 1e-12)
+        assert float(response.spin) >= sums[row, 2] * (1 - 1e-12)
+    if (Kp, horizon) == (50, 60):
+        assert float(found.error.step) == pytest.approx(sums[0, 0], rel=1e-12)
 
 
 @pytest.mark.parametrize(("horizon", "decided"), [(1, False), (60, True)])

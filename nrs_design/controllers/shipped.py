@@ -12,6 +12,7 @@ from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.parts import BEYOND
+from nrs_design.controllers.safety import SafetyLimits, add_safety
 from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
@@ -48,7 +49,8 @@ def shipped_law(
     laws = {c.name: _discrete(c, outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
-    return replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
+    law = replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
+    return law if spec.safety is None else add_safety(law, SafetyLimits.of(spec.safety, period))
 
 
 def _discrete(controller: Controller, period: Fraction, method: str) -> DiscreteLaw:

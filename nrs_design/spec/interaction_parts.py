@@ -25,6 +25,7 @@ from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.safety import SafetySpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
@@ -77,6 +78,10 @@ class AbstractInteractionSpec(SpecModel):
     )
     disturbances: DisturbancesSpec | None = optional(
         "what acts on the loop from outside; its effect on force and velocity is bounded"
+    )
+    safety: SafetySpec | None = optional(
+        "a safety layer between the controllers and the motion loop, with limits that are kept "
+        "whatever the controllers command"
     )
     coupling: CouplingSpec | None = optional(
         "what the axes do to each other through their links, for a proof about all "

@@ -1,0 +1,58 @@
+"""Which certificates have a theorem of Coq, and of which part of the library."""
+
+from __future__ import annotations
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.errors import DesignError
+from nrs_design.exporters.proof_assistant.flows import flows_theorem
+from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
+from nrs_design.exporters.proof_assistant.theorem import Theorem
+from nrs_design.proof.evidence.graph import FormsOnGraph
+from nrs_design.proof.mode import Time
+from nrs_design.proof.system import SwitchedSystem
+
+COVERED = (
+    "forms for all modes (lmi, gradient, polynomial in continuous time, conewise-quadratic, "
+    "conewise-polynomial, conewise-mode-quadratic, coupled-axes in continuous time)"
+)
+
+
+def choose_theorem(certificate: Certificate) -> Theorem:
+    """Return the theorem of a certificate.
+
+    Raises
+    ------
+    DesignError
+        If the library for Coq has none of its kind, or of its shape.
+    """
+    system, evidence = certificate.system, certificate.evidence
+    if not isinstance(evidence, FormsOnGraph):
+        kind = "nothing" if evidence is None else f"kind {evidence.kind}"
+        raise _refused(f"stability is shown by {kind}")
+    if (odd := _find_uncovered(system, evidence)) is not None:
+        raise _refused(odd)
+    if system.time is Time.CONTINUOUS:
+        return flows_theorem(system, evidence)
+    return sampled_theorem(system, evidence)
+
+
+def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | None:
+    contact = system.contact if evidence.covers_lost_contact else None
+    if contact is not None and contact.pulls:
+        return "its environment could pull where contact is lost"
+    if system.clock is not None:
+        return "its modes take turns"
+    if system.time is Time.CONTINUOUS:
+        return None
+    if evidence.degree > 1:
+        return "its forms are polynomials in discrete time"
+    if evidence.covers_coupling:
+        return "its axes act on each other in discrete time"
+    return None
+
+
+def _refused(reason: str) -> DesignError:
+    return DesignError(
+        f"there is no theorem for Coq of this certificate: {reason}",
+        remedy=f"those are covered that have {COVERED}",
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import DesignError
 from nrs_design.exporters.proof_assistant.flows import flows_theorem
+from nrs_design.exporters.proof_assistant.places import places_theorem
 from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
 from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
@@ -31,6 +32,8 @@ def choose_theorem(certificate: Certificate) -> Theorem:
         raise _refused(f"stability is shown by {kind}")
     if (odd := _find_uncovered(system, evidence)) is not None:
         raise _refused(odd)
+    if evidence.stays is not None:
+        return places_theorem(system, evidence)
     if system.time is Time.CONTINUOUS:
         return flows_theorem(system, evidence)
     return sampled_theorem(system, evidence)
@@ -43,6 +46,9 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
     if system.clock is not None:
         return "its modes take turns"
     if system.time is Time.CONTINUOUS:
+        stays = system.stays().values() if evidence.stays is not None else ()
+        if any(stay.shortest > 0 for stay in stays):
+            return "it encloses an exponential, as modes stay for some time"
         return None
     if evidence.degree > 1:
         return "its forms are polynomials in discrete time"

@@ -6,9 +6,6 @@
 Record flow := Flow
   { rows : list (list Z); over : Z; limits : list (list Z); limit_over : Z }.
 
-Definition joined (n : nat) (x e : vec) : vec :=
-  fun k => if (k <? n)%nat then x k else e (k - n)%nat.
-
 (* For a mode: a form in the monomials of a basis, and the factor that it has. *)
 Record witness := Witness { gram : sym; times_decrease : Z }.
 
@@ -156,23 +153,23 @@ Inductive moves (x : R -> vec) (e l : vec) (t : R) : Prop :=
 Fixpoint total (axes : nat) (f : nat -> R) : R :=
   match axes with O => 0 | S a => total a f + f a end.
 
-(* Any number of axes: the sum of V over them falls exponentially. *)
+(* Any number of axes, up to any time: the sum of V over them falls exponentially. *)
 Definition all_axes_decay : Prop :=
-  forall (axes : nat) (x : nat -> R -> vec) (e l : nat -> R -> vec),
-  (forall a k t, (a < axes)%nat -> (k < n)%nat -> 0 < t -> continuity_pt (fun s => x a s k) t) ->
-  (forall a t, (a < axes)%nat -> 0 <= t -> moves (x a) (e a t) (l a t) t) ->
-  (forall i t, (i < length multipliers)%nat -> 0 <= t ->
+  forall (axes : nat) (x : nat -> R -> vec) (e l : nat -> R -> vec) (time : R), 0 <= time ->
+  (forall a k t, (a < axes)%nat -> (k < n)%nat -> 0 < t <= time ->
+     continuity_pt (fun s => x a s k) t) ->
+  (forall a t, (a < axes)%nat -> 0 <= t < time -> moves (x a) (e a t) (l a t) t) ->
+  (forall i t, (i < length multipliers)%nat -> 0 <= t < time ->
      total axes (fun a => squared (e a t) i) <= total axes (fun a => squared (l a t) i)) ->
-  forall t, 0 <= t ->
-  total axes (fun a => V (seen (x a t)))
-  <= exp (- (2 * INR d * alpha) * t) * total axes (fun a => V (seen (x a 0))).
+  total axes (fun a => V (seen (x a time)))
+  <= exp (- (2 * INR d * alpha) * time) * total axes (fun a => V (seen (x a 0))).
 
 (* One axis on which no other acts. *)
 Definition decays : Prop :=
-  forall x : R -> vec,
-  (forall k t, (k < n)%nat -> 0 < t -> continuity_pt (fun s => x s k) t) ->
-  (forall t, 0 <= t -> moves x (fun _ => 0) (fun _ => 0) t) ->
-  forall t, 0 <= t -> V (seen (x t)) <= exp (- (2 * INR d * alpha) * t) * V (seen (x 0)).
+  forall (x : R -> vec) (time : R), 0 <= time ->
+  (forall k t, (k < n)%nat -> 0 < t <= time -> continuity_pt (fun s => x s k) t) ->
+  (forall t, 0 <= t < time -> moves x (fun _ => 0) (fun _ => 0) t) ->
+  V (seen (x time)) <= exp (- (2 * INR d * alpha) * time) * V (seen (x 0)).
 
 (* V is no smaller than the squares of all monomials of the basis but for a factor. *)
 Definition is_definite : Prop :=
@@ -385,8 +382,8 @@ Qed.
 
 Theorem all_axes_sound : all_axes_decay.
 Proof.
-  intros axes x e l C M G.
-  apply (falls_exponentially (fun t => total axes (fun a => V (seen (x a t))))).
+  intros axes x e l time End C M G.
+  apply (falls_exponentially (fun t => total axes (fun a => V (seen (x a t)))) _ _ End).
   - intros t T.
     destruct (right_total axes (fun a s => V (seen (x a s))) (- (2 * INR d * alpha))
       (fun a => dot multipliers (fun i => squared (e a t) i - squared (l a t) i)) t)
@@ -402,10 +399,10 @@ Qed.
 
 Theorem decays_sound : multipliers = [] -> decays.
 Proof.
-  intros N x C M t T.
-  assert (K := all_axes_sound 1%nat (fun _ => x) (fun _ _ _ => 0) (fun _ _ _ => 0)
+  intros N x time End C M.
+  assert (K := all_axes_sound 1%nat (fun _ => x) (fun _ _ _ => 0) (fun _ _ _ => 0) time End
     (fun a k t _ => C k t) (fun a t _ => M t)
-    ltac:(rewrite N; simpl; intros; lia) t T).
+    ltac:(rewrite N; simpl; intros; lia)).
   simpl in K. rewrite !Rplus_0_l in K. exact K.
 Qed.
 

@@ -119,7 +119,8 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     definitions.define("form", symmetric(form))
     definitions.define("multipliers", f"{listed(map(str, multipliers))} : list Z")
     definitions.define("all_terms", flows.basis(n, flows.acting))
-    definitions.define("free_terms", flows.basis(states, flows.acting) if flows.lost else "[]")
+    terms = flows.basis(states, flows.acting) if flows.lost else "[]"
+    definitions.define("free_terms", f"{terms} : list mono")
     found: dict[bool, list[str]] = {True: [], False: []}
     for k, (place, gram, factor) in enumerate(flows.witnesses(), 1):
         text = f"Witness {symmetric(gram, long_integer)} {factor}"

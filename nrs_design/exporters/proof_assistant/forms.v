@@ -123,6 +123,35 @@ Proof.
   rewrite (H 0%nat), IH; [lra | intro k; apply H].
 Qed.
 
+(* A vector behind the first n entries of another. *)
+Definition joined (n : nat) (x e : vec) : vec :=
+  fun k => if (k <? n)%nat then x k else e (k - n)%nat.
+
+(* Whether a form is one of n entries. *)
+Fixpoint shaped (n : nat) (F : sym) : bool :=
+  match n, F with
+  | O, [] => true
+  | S k, (_, r) :: F' => (length r =? k)%nat && shaped k F'
+  | _, _ => false
+  end.
+
+Lemma dot_ext_below r : forall x y,
+  (forall k, (k < length r)%nat -> x k = y k) -> dot r x = dot r y.
+Proof.
+  induction r as [| c r IH]; intros x y H; simpl in *; [reflexivity |].
+  rewrite (H 0%nat), (IH (tail x) (tail y)); [reflexivity | | lia].
+  intros k K. apply H. lia.
+Qed.
+
+Lemma quad_ext_below n : forall F x y, shaped n F = true ->
+  (forall k, (k < n)%nat -> x k = y k) -> quad F x = quad F y.
+Proof.
+  induction n as [| n IH]; intros [| [c r] F] x y S H; simpl in *; try discriminate; [reflexivity |].
+  apply andb_true_iff in S. destruct S as [L S]. apply Nat.eqb_eq in L.
+  rewrite (H 0%nat), (IH F (tail x) (tail y)), (dot_ext_below r (tail x) (tail y)); auto; try lia;
+    intros k K; apply H; lia.
+Qed.
+
 Lemma norm2_ext n : forall x y, (forall k, x k = y k) -> norm2 n x = norm2 n y.
 Proof.
   induction n as [| n IH]; intros x y H; simpl; [reflexivity |].

@@ -181,11 +181,11 @@ Proof.
   replace (t + (s - t)) with s in K by ring. apply K. rewrite Rabs_right; lra.
 Qed.
 
-Lemma never_grows f :
-  (forall t, 0 <= t -> exists v, right f v t /\ v <= 0) ->
-  (forall t, 0 < t -> continuity_pt f t) -> forall t, 0 <= t -> f t <= f 0.
+Lemma never_grows f t : 0 <= t ->
+  (forall s, 0 <= s < t -> exists v, right f v s /\ v <= 0) ->
+  (forall s, 0 < s <= t -> continuity_pt f s) -> f t <= f 0.
 Proof.
-  intros D C t T. apply le_epsilon. intros e E.
+  intros T D C. apply le_epsilon. intros e E.
   set (a := e / (t + 1)). assert (A : 0 < a) by (apply Rdiv_lt_0_compat; lra).
   set (P := fun s => 0 <= s <= t /\ forall u, 0 <= u <= s -> f u <= f 0 + a * u).
   assert (P0 : P 0).
@@ -212,7 +212,7 @@ Proof.
     apply Rabs_def2 in H0. nra. }
   assert (c = t).
   { destruct (Req_dec c t) as [| Ne]; [assumption | exfalso].
-    destruct (D c C0) as (v & Dv & N).
+    destruct (D c ltac:(lra)) as (v & Dv & N).
     destruct (proj1 (right_iff _ _ _) Dv a A) as (d & Dp & K).
     set (h := Rmin (d / 2) (t - c)).
     assert (H : 0 < h <= d / 2 /\ h <= t - c).
@@ -230,18 +230,18 @@ Proof.
   replace (e / (t + 1) * t * (t + 1)) with (e * t) by (field; lra). nra.
 Qed.
 
-Lemma falls_exponentially f a :
-  (forall t, 0 <= t -> exists v, right f v t /\ v <= - a * f t) ->
-  (forall t, 0 < t -> continuity_pt f t) -> forall t, 0 <= t -> f t <= exp (- a * t) * f 0.
+Lemma falls_exponentially f a t : 0 <= t ->
+  (forall s, 0 <= s < t -> exists v, right f v s /\ v <= - a * f s) ->
+  (forall s, 0 < s <= t -> continuity_pt f s) -> f t <= exp (- a * t) * f 0.
 Proof.
-  intros D C t T.
+  intros T D C.
   assert (X : forall t, derivable_pt_lim (fun s => exp (a * s)) t (a * exp (a * t))).
   { intro s. rewrite (Rmult_comm a (exp _)).
     apply (derivable_pt_lim_comp (fun s => a * s) exp); [| apply derivable_pt_lim_exp].
     pose proof (derivable_pt_lim_scal id a s 1 (derivable_pt_lim_id s)) as L.
     rewrite Rmult_1_r in L. exact L. }
   assert (K : exp (a * t) * f t <= exp (a * 0) * f 0).
-  { apply (never_grows (fun s => exp (a * s) * f s)); [| | exact T].
+  { apply (never_grows (fun s => exp (a * s) * f s) t T).
     - intros s S. destruct (D s S) as (v & Dv & N).
       exists (a * exp (a * s) * f s + exp (a * s) * v). split.
       + apply (right_times (fun u => exp (a * u)) f); [apply right_derivative, X | exact Dv].

@@ -5,9 +5,6 @@
    than the i-th of the bounds, a row over the zeta_j. *)
 Record mode := Mode { units : list Z; columns : list (list Z); bounds : list (list Z) }.
 
-(* The first n entries are the state, those after it the errors. *)
-Definition joined (n : nat) (x e : vec) : vec :=
-  fun k => if (k <? n)%nat then x k else e (k - n)%nat.
 Definition zeta (n : nat) (m : mode) (x e : vec) : vec :=
   fun k => joined n x e k / IZR (nth k (units m) 1%Z).
 Definition allowed (n : nat) (m : mode) (x e : vec) : Prop :=
@@ -46,30 +43,6 @@ Definition fits (n : nat) (m : mode) (ms : list Z) : bool :=
 Definition decrease (n : nat) (m : mode) (ms : list Z) (F G : sym) (cols : list (list Z)) : sym :=
   slin 1 (scaled (map (fun u => u * p / q)%Z (firstn n (units m))) F) 1
     (slin (-1) (congruence G cols) 1 (slack n (skipn n (units m)) (bounds m) ms)).
-
-Fixpoint shaped (n : nat) (F : sym) : bool :=
-  match n, F with
-  | O, [] => true
-  | S k, (_, r) :: F' => (length r =? k)%nat && shaped k F'
-  | _, _ => false
-  end.
-
-Lemma dot_ext_below r : forall x y,
-  (forall k, (k < length r)%nat -> x k = y k) -> dot r x = dot r y.
-Proof.
-  induction r as [| c r IH]; intros x y H; simpl in *; [reflexivity |].
-  rewrite (H 0%nat), (IH (tail x) (tail y)); [reflexivity | | lia].
-  intros k K. apply H. lia.
-Qed.
-
-Lemma quad_ext_below n : forall F x y, shaped n F = true ->
-  (forall k, (k < n)%nat -> x k = y k) -> quad F x = quad F y.
-Proof.
-  induction n as [| n IH]; intros [| [c r] F] x y S H; simpl in *; try discriminate; [reflexivity |].
-  apply andb_true_iff in S. destruct S as [L S]. apply Nat.eqb_eq in L.
-  rewrite (H 0%nat), (IH F (tail x) (tail y)), (dot_ext_below r (tail x) (tail y)); auto; try lia;
-    intros k K; apply H; lia.
-Qed.
 
 Lemma dot_times_real r : forall t x, dot r (fun k => t * x k) = t * dot r x.
 Proof.

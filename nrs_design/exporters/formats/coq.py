@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nrs_design.certificates.certificate import Certificate
-from nrs_design.errors import DesignError
 from nrs_design.exporters import Format
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
@@ -24,9 +23,11 @@ FORMAT = Format(
 )
 _LIBRARY = Path(__file__).parent.parent / "proof_assistant"
 # What the statement leaves out against the claim of the certificate.
+# What no statement of the library covers of a claim.
 _LEFT_OUT = (
-    "that these modes are those of the robot: the certificate's assumptions, below",
-    "that the modes come from the spec: `nrs-design verify CERTIFICATE SPEC` assembles them again",
+    "values between the corners of ranges, which are averages of these modes: docs, `ranges`",
+    "that these modes are those of the robot: what is taken for granted, below",
+    "that they come from the spec: `nrs-design verify CERTIFICATE SPEC` assembles them again",
 )
 
 
@@ -60,13 +61,14 @@ def _head(export: Export, certificate: Certificate, theorem: Theorem) -> str:
 
 
 def _head_lines(export: Export, certificate: Certificate, theorem: Theorem) -> Iterator[str]:
+    yield "to check it: coqc and the name of this file; the last lines print what it assumes"
     if export.record is not None:
         yield from header_lines(export.record)
     else:
+        evidence = certificate.evidence
+        assert evidence is not None, "it is proved"
         yield f"spec: {certificate.spec_name}, sha256 {certificate.spec_sha256}"
         yield f"certificate: {certificate.id}"
-    evidence = certificate.evidence
-    if evidence is not None:
         yield f"claim: {evidence.claim(certificate.system)}"
     yield f"states, in this order: {', '.join(theorem.states)}"
     yield from (f"not in the theorem: {text}" for text in (*theorem.left_out, *_LEFT_OUT))

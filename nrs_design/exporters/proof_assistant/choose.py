@@ -5,10 +5,12 @@ from __future__ import annotations
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import DesignError
 from nrs_design.exporters.proof_assistant.flows import flows_theorem
+from nrs_design.exporters.proof_assistant.parameter import parameter_theorem
 from nrs_design.exporters.proof_assistant.places import places_theorem
 from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
 from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
+from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
@@ -27,6 +29,8 @@ def choose_theorem(certificate: Certificate) -> Theorem:
         If the library for Coq has none of its kind, or of its shape.
     """
     system, evidence = certificate.system, certificate.evidence
+    if isinstance(evidence, ParameterQuadratic):
+        return parameter_theorem(system, evidence)
     if not isinstance(evidence, FormsOnGraph):
         kind = "nothing" if evidence is None else f"kind {evidence.kind}"
         raise _refused(f"stability is shown by {kind}")

@@ -415,3 +415,22 @@ Proof.
 Qed.
 End Sound.
 End Flows.
+
+(** *** Quadratic forms *)
+
+Definition none : vec := fun _ => 0.
+
+Definition singles (n : nat) : list mono := map (fun k => [k]) (seq 0 n).
+
+Lemma nth_singles n : forall a k, (k < n)%nat ->
+  nth_error (map (fun k => [k]) (seq a n)) k = Some [(a + k)%nat].
+Proof.
+  induction n as [| n IH]; intros a [| k] K; simpl; try lia; [rewrite Nat.add_0_r; reflexivity |].
+  rewrite IH by lia. f_equal. f_equal. lia.
+Qed.
+
+Lemma V_singles n F x : shaped n F = true -> V (singles n) F x = quad F x.
+Proof.
+  intro S. apply (quad_ext_below n); [exact S |]. intros k K. unfold monomials, singles.
+  rewrite nth_singles by exact K. simpl. ring.
+Qed.

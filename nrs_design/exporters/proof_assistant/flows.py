@@ -145,8 +145,7 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         LIBRARY,
         definitions.texts,
         check,
-        f"{claim} {cut}\n    {modes}\n    {others}\n"
-        f"  /\\ is_definite basis form {factor}",
+        f"{claim} {cut}\n    {modes}\n    {others}\n  /\\ is_definite basis form {factor}",
         f"conj ({sound} _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ {last})"
         " (definite_sound _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ checked)",
         tuple(system.states[i] for i in flows.order),

@@ -89,7 +89,7 @@ class Sampled:
         }
         count = len(self.system.roundings) if self.evidence.covers_rounding else 0
         errors = [found.get(f"{ROUNDING} {i}", 0) for i in range(1, count + 1)]
-        place, form = self.evidence.nodes[k]
+        form = self.evidence.nodes[k].form
         order = [i for i in self.order if i < len(form)]
         return (
             f"Node {symmetric(reordered(form, order))} {found.get(LOST, 0)} "

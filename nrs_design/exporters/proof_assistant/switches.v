@@ -4,8 +4,6 @@ Record place := Place { size : nat; law : flow; form : sym; dwell : Z * Z; gives
 (* From a mode to a mode, by their places in the list, and what becomes of the state. *)
 Record switch := Switch { from : nat; to : nat; reset : option linear }.
 
-Definition none : vec := fun _ => 0.
-
 Section Switches.
 Variables (p q factor : Z) (places : list place) (switches : list switch).
 Notation alpha := (IZR p / IZR q).
@@ -33,8 +31,6 @@ Definition decays_by_mode : Prop :=
   quad (form l) (w span) <= exp (- (2 * alpha) * (time + span)) * quad (form m) x
   /\ norm2 (size l) (w span) <= IZR factor * quad (form l) (w span).
 
-Definition singles (n : nat) : list mono := map (fun k => [k]) (seq 0 n).
-
 Definition place_falls (m : place) : bool :=
   shaped (size m) (form m) && exceeds factor (form m)
   && flows_fall (size m) 1 p q (singles (size m)) (form m) [] factor false [law m] []
@@ -49,19 +45,6 @@ Definition switch_falls (s : switch) : bool :=
   end.
 
 Definition switches_fall : bool := forallb place_falls places && forallb switch_falls switches.
-
-Lemma nth_singles n : forall a k, (k < n)%nat ->
-  nth_error (map (fun k => [k]) (seq a n)) k = Some [(a + k)%nat].
-Proof.
-  induction n as [| n IH]; intros a [| k] K; simpl; try lia; [rewrite Nat.add_0_r; reflexivity |].
-  rewrite IH by lia. f_equal. f_equal. lia.
-Qed.
-
-Lemma V_singles n F x : shaped n F = true -> V (singles n) F x = quad F x.
-Proof.
-  intro S. apply (quad_ext_below n); [exact S |]. intros k K. unfold monomials, singles.
-  rewrite nth_singles by exact K. simpl. ring.
-Qed.
 
 Lemma stays_falls m w span : place_falls m = true -> 0 <= span -> stays m w span ->
   quad (form m) (w span) <= exp (- (2 * alpha) * span) * quad (form m) (w 0).

@@ -50,10 +50,8 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
     if system.clock is not None:
         return "its modes take turns"
     if system.time is Time.CONTINUOUS:
-        stays = system.stays().values() if evidence.stays is not None else ()
-        if any(stay.shortest > 0 for stay in stays):
-            return "it encloses an exponential, as modes stay for some time"
-        return None
+        left = evidence.stays is not None and evidence.stays.leaving
+        return "some of its modes must be left, in continuous time" if left else None
     if evidence.degree > 1:
         return "its forms are polynomials in discrete time"
     if evidence.covers_coupling:

@@ -434,3 +434,14 @@ Proof.
   intro S. apply (quad_ext_below n); [exact S |]. intros k K. unfold monomials, singles.
   rewrite nth_singles by exact K. simpl. ring.
 Qed.
+
+(* Whether a polynomial is one of the first n entries. *)
+Definition within (n : nat) (P : poly) : bool :=
+  forallb (fun '(_, m) => forallb (fun i => (i <? n)%nat) m) P.
+
+Lemma within_sound n P : within n P = true ->
+  forall c m, In (c, m) P -> forall i, In i m -> (i < n)%nat.
+Proof.
+  intros W c m I i J. apply (proj1 (forallb_forall _ _) W) in I. simpl in I.
+  apply (proj1 (forallb_forall _ _) I) in J. apply Nat.ltb_lt, J.
+Qed.

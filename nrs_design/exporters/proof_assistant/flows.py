@@ -22,6 +22,7 @@ from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.exact import IntegerMatrix, add
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode
+from nrs_design.proof.steps import Step
 from nrs_design.proof.system import SwitchedSystem
 
 LIBRARY = ("forms", "polynomials", "continuous")
@@ -85,6 +86,8 @@ class Flows:
         system, evidence = self.system, self.evidence
         added = iter(evidence.vanishing)
         for a, step, b in evidence.edges_in_time(system):
+            if not isinstance(step, Step):
+                continue  # A stay of some length, which Coq follows by itself
             form = evidence.inequality(step, a, b, system)
             if evidence.degree > 1:
                 form = add(form, next(added))

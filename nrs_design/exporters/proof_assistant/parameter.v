@@ -43,11 +43,8 @@ Fixpoint pairs_fall (ps : list (flow * flow)) (ws : list (witness * witness * wi
   | _, _ => false
   end.
 
-Definition within (P : poly) : bool :=
-  forallb (fun '(_, m) => forallb (fun i => (i <? n)%nat) m) P.
-
 Definition parameter_falls (ws : list (witness * witness * witness)) : bool :=
-  (0 <? q)%Z && shaped n low && shaped n high && within low_p && within high_p
+  (0 <? q)%Z && shaped n low && shaped n high && within n low_p && within n high_p
   && positive (lowered n (map (zrow factor) low)) && positive (lowered n (map (zrow factor) high))
   && pairs_fall pairs ws.
 
@@ -93,7 +90,7 @@ Proof.
     change (V basis F (y s) = quad F (x s)). unfold basis. rewrite V_singles by exact S.
     apply (quad_ext_below n); [exact S |]. intros k K. unfold y, joined.
     rewrite (proj2 (Nat.ltb_lt k n) K). reflexivity. }
-  assert (In_n : forall P, within P = true -> forall c m, In (c, m) P -> forall i, In i m ->
+  assert (In_n : forall P, within n P = true -> forall c m, In (c, m) P -> forall i, In i m ->
                  (i < n)%nat).
   { intros P W c m I i J. apply (proj1 (forallb_forall _ _) W) in I. simpl in I.
     apply (proj1 (forallb_forall _ _) I) in J. apply Nat.ltb_lt, J. }
@@ -110,7 +107,7 @@ Proof.
       { intros k K. apply (right_ext (fun r => x r k) _ _ _ 1 Rlt_0_1); [| exact (D k K)].
         intros. apply At, K. }
       exists ((1 - l) * slope low_p (y s) v + l * slope high_p (y s) v). split.
-      * assert (One : forall P a, within P = true ->
+      * assert (One : forall P a, within n P = true ->
           right (fun r => a * peval P (y r)) (a * slope P (y s) v) s).
         { intros P a W. replace (a * slope P (y s) v) with (0 * peval P (y s) + a * slope P (y s) v)
             by ring.
@@ -154,7 +151,7 @@ Proof.
     + intros s S.
       assert (Cy : forall k, (k < n)%nat -> continuity_pt (fun r => y r k) s).
       { intros k K. apply (continuous_ext (fun r => x r k)); [intro; apply At, K | apply C; auto]. }
-      assert (One : forall P a, within P = true -> continuity_pt (fun r => a * peval P (y r)) s).
+      assert (One : forall P a, within n P = true -> continuity_pt (fun r => a * peval P (y r)) s).
       { intros P a W. apply (continuity_pt_mult (fun _ => a) (fun r => peval P (y r)));
           [apply continuity_pt_const; intros ? ?; reflexivity |].
         apply continuous_peval. intros c m J i Im. apply Cy, (In_n P W c m J i Im). }

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from math import ceil
+
 from nrs_design.exporters.proof_assistant.flows import Flows
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
@@ -15,12 +18,15 @@ from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.exact import transpose
 from nrs_design.proof.matrix import RationalMatrix
-from nrs_design.proof.mode import Time
+from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.steps import Stays
 from nrs_design.proof.system import SwitchedSystem
 
 STAYS = ("forms", "jumps", "stays")
-SWITCHES = ("forms", "jumps", "polynomials", "continuous", "switches")
+SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches")
+# Of what follows a form through a stay: terms of a series for each piece, what is added for the rest
+# of it, and for rounding, and the scale of both.
+TERMS, MORE, SCALE = 20, 2**50, 2**80
 INSIDE = "what happens within a stay of a mode that must be left, between its switches"
 
 
@@ -40,7 +46,7 @@ def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     for mode in system.modes:
         definitions.define(names[mode.name], texts[mode.name], mode.name)
     places = listed(names[mode.name] for mode in system.modes)
-    definitions.define("switches", f"{_switches(system)} : list switch")
+    definitions.define("switches", f"{_switches(system, flows=flows)} : list switch")
     factor = max(factor_of(node.form) for node in evidence.nodes)
     rate = f"{evidence.rate.numerator} {evidence.rate.denominator}"
     if flows:
@@ -99,13 +105,22 @@ def _flowing(
     return found
 
 
-def _switches(system: SwitchedSystem) -> str:
+def _switches(system: SwitchedSystem, *, flows: bool) -> str:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
+    stays = system.stays()
     return listed(
-        f"Switch {index[edge.source.name]}%nat {index[edge.target.name]}%nat "
+        f"Switch {index[edge.source.name]} {index[edge.target.name]} "
         + ("None" if edge.map is None else f"(Some ({_linear(edge.map)}))")
+        + (_bridge(edge.source, stays[edge.source.name].shortest) if flows else "")
         for edge in system.edges()
     )
+
+
+def _bridge(mode: Mode, stay: Fraction) -> str:
+    """Return how a stay is followed: in pieces in which the mode does not move far."""
+    size = max(sum(map(abs, row)) for row in mode.A.numerators)
+    pieces = ceil(2 * stay * Fraction(size, mode.A.denominator)) or 1
+    return f" (Bridge {pieces} {TERMS} {MORE} {SCALE})"
 
 
 def _linear(A: RationalMatrix) -> str:

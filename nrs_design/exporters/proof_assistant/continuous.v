@@ -139,16 +139,22 @@ Definition seen (x : vec) : vec :=
 Definition for_a_while (P : R -> Prop) (t : R) : Prop :=
   exists h, 0 < h /\ forall s, t <= s < t + h -> P s.
 
-(* At the time t, and for a while after it, the state x is in contact, or free of it. Which mode is
-   in force, and the derivative from the right, may change at every time. *)
+(* Derivatives and limits of the modes, and any average of them. *)
+Inductive average (fs : list flow) (z : vec) : vec -> vec -> Prop :=
+  | of_one f : In f fs -> average fs z (field f z) (limit f z)
+  | of_two a v l u m : 0 <= a <= 1 -> average fs z v l -> average fs z u m ->
+      average fs z (fun k => (1 - a) * v k + a * u k) (fun i => (1 - a) * l i + a * m i).
+
+(* At the time t, and for a while after it, the state x is in contact, or free of it. What is in
+   force, a mode or an average of some, may change at every time, and with it the derivative from
+   the right. *)
 Inductive moves (x : R -> vec) (e l : vec) (t : R) : Prop :=
-  | touching f : In f modes -> (cut = true -> for_a_while (fun s => 0 <= x s 0%nat) t) ->
-      (forall k, (k < n)%nat -> right (fun s => x s k) (field f (joined n (x t) e) k) t) ->
-      (forall i, l i = limit f (joined n (x t) e) i) -> moves x e l t
-  | flying f : In f free -> cut = true -> for_a_while (fun s => x s 0%nat <= 0) t ->
-      (forall k, (0 < k < n)%nat ->
-         right (fun s => x s k) (field f (joined n (seen (x t)) e) k) t) ->
-      (forall i, l i = limit f (joined n (seen (x t)) e) i) -> moves x e l t.
+  | touching v : average modes (joined n (x t) e) v l ->
+      (cut = true -> for_a_while (fun s => 0 <= x s 0%nat) t) ->
+      (forall k, (k < n)%nat -> right (fun s => x s k) (v k) t) -> moves x e l t
+  | flying v : average free (joined n (seen (x t)) e) v l ->
+      cut = true -> for_a_while (fun s => x s 0%nat <= 0) t ->
+      (forall k, (0 < k < n)%nat -> right (fun s => x s k) (v k) t) -> moves x e l t.
 
 Fixpoint total (axes : nat) (f : nat -> R) : R :=
   match axes with O => 0 | S a => total a f + f a end.
@@ -168,7 +174,7 @@ Definition all_axes_decay : Prop :=
 Definition decays : Prop :=
   forall (x : R -> vec) (time : R), 0 <= time ->
   (forall k t, (k < n)%nat -> 0 < t <= time -> continuity_pt (fun s => x s k) t) ->
-  (forall t, 0 <= t < time -> moves x (fun _ => 0) (fun _ => 0) t) ->
+  (forall t, 0 <= t < time -> exists l, moves x (fun _ => 0) l t) ->
   V (seen (x time)) <= exp (- (2 * INR d * alpha) * time) * V (seen (x 0)).
 
 (* V is no smaller than the squares of all monomials of the basis but for a factor. *)
@@ -257,61 +263,108 @@ Proof.
   rewrite (proj2 (Nat.ltb_lt j n)) by (apply K; left; reflexivity). reflexivity.
 Qed.
 
+Lemma limits_convex ms a : 0 <= a <= 1 -> forallb (Z.leb 0) ms = true -> forall e l m : vec,
+  (1 - a) * dot ms (fun i => squared e i - squared l i) + a * dot ms (fun i => squared e i - squared m i)
+  <= dot ms (fun i => squared e i - squared (fun j => (1 - a) * l j + a * m j) i).
+Proof.
+  intro A. induction ms as [| c ms IH]; intros P e l m; cbn [dot forallb] in *; [lra |].
+  apply andb_true_iff in P. destruct P as [C P]. apply Z.leb_le, (IZR_le 0) in C.
+  specialize (IH P (tail e) (tail l) (tail m)). unfold tail, squared in *.
+  assert (0 <= IZR c * (a * (1 - a) * ((l 0%nat - m 0%nat) * (l 0%nat - m 0%nat)))).
+  { apply Rmult_le_pos; [exact C |]. apply Rmult_le_pos; [apply Rmult_le_pos; lra |].
+    apply Rle_0_sqr. }
+  nra.
+Qed.
+
+(* In free motion, what is seen of the deflection stays at zero. *)
+Definition kept_zero (surface : bool) (v : vec) : vec :=
+  fun k => match k with O => if surface then 0 else v 0%nat | S _ => v k end.
+
+Lemma average_falls surface fs ws o y e v l :
+  (0 < q)%Z -> forallb (Z.leb 0) multipliers = true -> all_falling surface fs ws o = true ->
+  let z := joined n y e in (surface = true -> z 0%nat = 0) -> average fs z v l ->
+  slope VP z (kept_zero surface v)
+  <= - (2 * INR d * alpha) * V z + dot multipliers (fun i => squared e i - squared l i).
+Proof.
+  intros Q P A z Z H. induction H as [f I | a v l u m Ha _ IHv _ IHu].
+  - destruct (all_falling_sound surface f fs ws o I A) as [w W].
+    pose proof (falling surface _ w o y e Q W Z) as K. cbv zeta in K. fold z in K.
+    rewrite (dot_ext multipliers (fun i => squared e i - squared (limit f z) i)
+      (fun i => squared (fun j => z (n + j)%nat) i
+                - squared (limit (if surface then unpushed f else f) z) i)).
+    + rewrite (slope_ext VP z _ (field (if surface then unpushed f else f) z)); [exact K |].
+      intros c m _ i _. destruct surface; destruct i; try reflexivity.
+      * unfold kept_zero, field. simpl. ring.
+      * unfold kept_zero, field. simpl. do 2 f_equal. destruct (rows f); [destruct i |]; reflexivity.
+    + intro i. unfold squared, z. rewrite joined_after. destruct surface; reflexivity.
+  - rewrite (slope_ext VP z _ (fun k => (1 - a) * kept_zero surface v k + a * kept_zero surface u k))
+      by (intros c k _ i _; destruct i, surface; simpl; ring).
+    rewrite slope_mix. pose proof (limits_convex multipliers a Ha P e l m) as C.
+    assert ((1 - a) * slope VP z (kept_zero surface v) <= (1 - a)
+      * (- (2 * INR d * alpha) * V z + dot multipliers (fun i => squared e i - squared l i)))
+      by (apply Rmult_le_compat_l; [lra | exact IHv]).
+    assert (a * slope VP z (kept_zero surface u) <= a
+      * (- (2 * INR d * alpha) * V z + dot multipliers (fun i => squared e i - squared m i)))
+      by (apply Rmult_le_compat_l; [lra | exact IHu]).
+    lra.
+Qed.
+
+Lemma average_ext fs y z v l : (forall k, y k = z k) -> average fs y v l ->
+  exists u m, average fs z u m /\ (forall k, v k = u k) /\ (forall i, l i = m i).
+Proof.
+  intros E H. induction H as [f I | a v l u m A _ (v' & l' & Hv & Ev & El) _ (u' & m' & Hu & Eu & Em)].
+  - exists (field f z), (limit f z). split; [constructor; exact I |].
+    split; intro k; [unfold field | unfold limit]; rewrite (dot_ext _ y z E); reflexivity.
+  - exists (fun k => (1 - a) * v' k + a * u' k), (fun i => (1 - a) * l' i + a * m' i).
+    split; [apply of_two; assumption |].
+    split; intro k; [rewrite Ev, Eu | rewrite El, Em]; reflexivity.
+Qed.
+
 (* One axis at one time. *)
 Lemma moves_falls x e l t : moves x e l t ->
   exists v, right (fun s => V (seen (x s))) v t
     /\ v <= - (2 * INR d * alpha) * V (seen (x t))
            + dot multipliers (fun i => squared e i - squared l i).
 Proof.
-  intro M. pose proof holds as H. unfold flows_fall in H. rewrite !andb_true_iff in H.
-  destruct H as [[[[[[[_ Q] N] _] _] _] T] Fr]. apply Z.ltb_lt in Q.
-  assert (Goal : forall f w o surface,
-    is_falling surface f w o = true -> (surface = true -> joined n (seen (x t)) e 0%nat = 0) ->
-    (forall k, (k < n)%nat ->
-       right (fun s => seen (x s) k) (field f (joined n (seen (x t)) e) k) t) ->
-    (forall i, l i = limit f (joined n (seen (x t)) e) i) ->
+  intro M. pose proof holds as H. unfold flows_fall in H. rewrite !andb_true_iff, !Z.ltb_lt in H.
+  destruct H as [[[[[[[_ Q] N] P] _] _] T] Fr].
+  assert (Goal : forall surface fs ws o v m,
+    all_falling surface fs ws o = true -> average fs (joined n (seen (x t)) e) v m ->
+    (surface = true -> joined n (seen (x t)) e 0%nat = 0) -> (forall i, l i = m i) ->
+    (forall k, (k < n)%nat -> right (fun s => seen (x s) k) (kept_zero surface v k) t) ->
     exists v, right (fun s => V (seen (x s))) v t
       /\ v <= - (2 * INR d * alpha) * V (seen (x t))
              + dot multipliers (fun i => squared e i - squared l i)).
-  { intros f w o surface Fa Su D L.
-    exists (slope VP (seen (x t)) (field f (joined n (seen (x t)) e))). split.
+  { intros surface fs ws o v m Fa A Su L D.
+    exists (slope VP (seen (x t)) (kept_zero surface v)). split.
     - apply (right_ext (fun s => peval VP (seen (x s))) _ _ _ 1 Rlt_0_1);
         [intros; symmetry; apply V_polynomial |].
-      apply right_peval. intros c m I i J. apply D. exact (below_n c m I i J).
-    - pose proof (falling surface f w o (seen (x t)) e Q Fa Su) as K. cbv zeta in K.
+      apply right_peval. intros c k I i J. apply D. exact (below_n c k I i J).
+    - pose proof (average_falls surface fs ws o (seen (x t)) e v m Q P Fa Su A) as K. cbv zeta in K.
       rewrite slope_joined, (V_polynomial (joined n (seen (x t)) e)), VP_joined in K.
-      rewrite (dot_ext multipliers (fun i => squared e i - squared l i)
-        (fun i => squared (fun j => joined n (seen (x t)) e (n + j)%nat) i
-                  - squared (limit f (joined n (seen (x t)) e)) i)); [exact K |].
-      intro i. unfold squared. rewrite joined_after, <- L. reflexivity. }
-  destruct M as [f I S D L | f I C S D L].
-  - destruct (all_falling_sound false f _ _ _ I T) as [w W].
-    assert (E : forall k, seen (x t) k = x t k).
-    { unfold seen. destruct cut; [| reflexivity]. destruct (S eq_refl) as (h & Hh & P).
-      intros [| k]; [| reflexivity]. apply Rmax_right, P. lra. }
-    assert (J : forall k, joined n (seen (x t)) e k = joined n (x t) e k).
-    { intro k. unfold joined. rewrite E. reflexivity. }
-    apply (Goal f w others false W); [discriminate | |].
-    + intros k K. unfold field. rewrite (dot_ext _ _ _ J). specialize (D k K). unfold field in D.
-      unfold seen. destruct cut; [| exact D]. destruct (S eq_refl) as (h & Hh & P).
-      apply (right_ext (fun s => x s k) _ _ _ h Hh); [| exact D].
-      intros s B. destruct k; [| reflexivity]. symmetry. apply Rmax_right, P, B.
-    + intro i. rewrite L. unfold limit. rewrite (dot_ext _ _ _ J). reflexivity.
-  - destruct (all_falling_sound true f _ _ _ I Fr) as [w W]. destruct S as (h & Hh & P).
+      rewrite (dot_ext multipliers _ (fun i => squared e i - squared m i)); [exact K |].
+      intro i. unfold squared. rewrite L. reflexivity. }
+  destruct M as [v A S D | v A C S D].
+  - assert (E : forall k, joined n (x t) e k = joined n (seen (x t)) e k).
+    { intro k. unfold joined. destruct (k <? n)%nat; [| reflexivity]. unfold seen.
+      destruct cut; [| reflexivity]. destruct (S eq_refl) as (h & Hh & B).
+      destruct k; [| reflexivity]. symmetry. apply Rmax_right, B. lra. }
+    destruct (average_ext _ _ _ _ _ E A) as (u & m & Au & Ev & El).
+    apply (Goal false modes gives others u m T Au); [discriminate | exact El |].
+    intros k K. replace (kept_zero false u k) with (v k) by (rewrite Ev; destruct k; reflexivity).
+    specialize (D k K). unfold seen. destruct cut; [| exact D].
+    destruct (S eq_refl) as (h & Hh & B). apply (right_ext (fun s => x s k) _ _ _ h Hh); [| exact D].
+    intros s Bs. destruct k; [| reflexivity]. symmetry. apply Rmax_right, B, Bs.
+  - destruct S as (h & Hh & B).
     assert (Z : forall s, t <= s < t + h -> seen (x s) 0%nat = 0).
-    { intros s B. unfold seen. rewrite C. apply Rmax_left, P, B. }
-    apply (Goal (unpushed f) w free_others true W).
+    { intros s Bs. unfold seen. rewrite C. apply Rmax_left, B, Bs. }
+    apply (Goal true free free_gives free_others v l Fr A); [| reflexivity |].
     + intros _. unfold joined. rewrite C in N. simpl in N. rewrite N. apply Z. lra.
-    + intros [| k] K.
-      * unfold field. simpl. rewrite Rmult_0_r.
-        apply (right_ext (fun _ => 0) _ _ _ h Hh); [intros; symmetry; apply Z; assumption |].
+    + intros [| k] K; simpl.
+      * apply (right_ext (fun _ => 0) _ _ _ h Hh); [intros; symmetry; apply Z; assumption |].
         apply right_const.
-      * specialize (D (S k) ltac:(lia)). unfold field in *. simpl.
-        replace (nth k (tl (rows f)) []) with (nth (S k) (rows f) []) 
-          by (destruct (rows f); [destruct k |]; reflexivity).
-        apply (right_ext (fun s => x s (S k)) _ _ _ 1 Rlt_0_1); [| exact D].
+      * apply (right_ext (fun s => x s (S k)) _ _ _ 1 Rlt_0_1); [| apply D; lia].
         intros. unfold seen. rewrite C. reflexivity.
-    + exact L.
 Qed.
 
 Lemma continuous_seen x t : (forall k, (k < n)%nat -> continuity_pt (fun s => x s k) t) ->
@@ -400,10 +453,10 @@ Qed.
 Theorem decays_sound : multipliers = [] -> decays.
 Proof.
   intros N x time End C M.
-  assert (K := all_axes_sound 1%nat (fun _ => x) (fun _ _ _ => 0) (fun _ _ _ => 0) time End
-    (fun a k t _ => C k t) (fun a t _ => M t)
-    ltac:(rewrite N; simpl; intros; lia)).
-  simpl in K. rewrite !Rplus_0_l in K. exact K.
+  apply (falls_exponentially (fun t => V (seen (x t))) _ _ End).
+  - intros t T. destruct (M t T) as [l Ml]. destruct (moves_falls x _ l t Ml) as (v & Dv & B).
+    exists v. split; [exact Dv |]. rewrite N in B. simpl in B. lra.
+  - intros t T. apply continuous_seen. intros k K. apply C; assumption.
 Qed.
 
 Theorem definite_sound : is_definite.

@@ -48,15 +48,6 @@ Definition parameter_falls (ws : list (witness * witness * witness)) : bool :=
   && positive (lowered n (map (zrow factor) low)) && positive (lowered n (map (zrow factor) high))
   && pairs_fall pairs ws.
 
-Lemma slope_mix P x v w l :
-  slope P x (fun i => (1 - l) * v i + l * w i) = (1 - l) * slope P x v + l * slope P x w.
-Proof.
-  induction P as [| [c m] P IH]; simpl; [ring |]. rewrite IH.
-  enough (E : mono_slope m x (fun i => (1 - l) * v i + l * w i)
-            = (1 - l) * mono_slope m x v + l * mono_slope m x w) by (rewrite E; ring).
-  clear. induction m as [| i m IH]; simpl; [ring |]. rewrite IH. ring.
-Qed.
-
 Lemma mixed_falling f g w z : (0 < q)%Z -> is_mixed_falling f g w = true ->
   slope high_p z (field f z) + slope low_p z (field g z)
   <= - (2 * rate) * (peval high_p z + peval low_p z).

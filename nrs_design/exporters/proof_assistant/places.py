@@ -26,7 +26,7 @@ STAYS = ("forms", "jumps", "stays")
 SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches")
 # Of what follows a form through a stay: terms of a series for each piece, what is added for the rest
 # of it, and for rounding, and the scale of both.
-TERMS, MORE, SCALE = 20, 2**50, 2**80
+TERMS, MORE, SCALE = 16, 2**40, 2**60
 INSIDE = "what happens within a stay of a mode that must be left, between its switches"
 
 

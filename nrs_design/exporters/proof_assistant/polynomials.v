@@ -141,6 +141,15 @@ Proof. induction m as [| i m IH]; simpl; [ring |]. rewrite IH. ring. Qed.
 Lemma slope_times P x v t : slope P x (fun i => t * v i) = t * slope P x v.
 Proof. induction P as [| [c m] P IH]; simpl; [ring |]. rewrite IH, mono_slope_times. ring. Qed.
 
+Lemma slope_mix P x v w l :
+  slope P x (fun i => (1 - l) * v i + l * w i) = (1 - l) * slope P x v + l * slope P x w.
+Proof.
+  induction P as [| [c m] P IH]; simpl; [ring |]. rewrite IH.
+  enough (E : mono_slope m x (fun i => (1 - l) * v i + l * w i)
+            = (1 - l) * mono_slope m x v + l * mono_slope m x w) by (rewrite E; ring).
+  clear. induction m as [| i m IH]; simpl; [ring |]. rewrite IH. ring.
+Qed.
+
 (** ** What has a derivative from the right that is never positive does not grow *)
 
 Definition right (f : R -> R) (v t : R) : Prop := D_in f (fun _ => v) (fun s => t < s) t.

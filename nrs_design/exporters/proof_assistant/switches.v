@@ -14,7 +14,7 @@ Notation alpha := (IZR p / IZR q).
 (* The mode m is in force from zero to a time. *)
 Definition stays (m : place) (w : R -> vec) (time : R) : Prop :=
   (forall k t, (k < size m)%nat -> 0 < t <= time -> continuity_pt (fun s => w s k) t)
-  /\ (forall t, 0 <= t < time -> moves (size m) false [law m] [] w none none t).
+  /\ (forall t, 0 <= t < time -> exists l, moves (size m) false [law m] [] w none l t).
 
 (* From the state x, where the mode i begins, the state y, where the mode j begins, is reached after
    a time: stays in modes, and a switch after each. *)
@@ -77,6 +77,13 @@ Qed.
 Lemma exp_sum a t u : exp (- a * (t + u)) = exp (- a * u) * exp (- a * t).
 Proof. rewrite <- exp_plus. f_equal. ring. Qed.
 
+Lemma average_of_one f z v l : average [f] z v l -> forall k, v k = field f z k.
+Proof.
+  intros H k. induction H as [g I | a v l u m _ _ IHv _ IHu].
+  - destruct I as [<- | []]. reflexivity.
+  - rewrite IHv, IHu. ring.
+Qed.
+
 (* From where the shortest stay before a switch begins to behind the switch. *)
 Lemma bridged_sound m l s w span : place_falls m = true -> (0 < snd (dwell m))%Z ->
   bridged m l s = true -> stays m w span ->
@@ -97,8 +104,8 @@ Proof.
   assert (F : flows_for (size m) (law m) w (span - time) time).
   { split.
     - intros j t J R. apply C; [exact J | lra].
-    - intros j t J R. destruct (M t ltac:(lra)) as [f I _ Dv _ |]; [| discriminate].
-      destruct I as [<- | []]. specialize (Dv j J). unfold field in *.
+    - intros j t J R. destruct (M t ltac:(lra)) as [l' [v A _ Dv |]]; [| discriminate].
+      specialize (Dv j J). rewrite (average_of_one _ _ _ _ A) in Dv. unfold field in *.
       rewrite (dot_ext_below _ (w t) (joined (size m) (w t) none)); [exact Dv |].
       intros i K. unfold joined. rewrite (proj2 (Nat.ltb_lt i (size m))); [reflexivity |].
       destruct (nth_in_or_default j (rows (law m)) []) as [G | G].

@@ -25,7 +25,6 @@ _LIBRARY = Path(__file__).parent.parent / "proof_assistant"
 # What the statement leaves out against the claim of the certificate.
 # What no statement of the library covers of a claim.
 _LEFT_OUT = (
-    "values between the corners of ranges, which are averages of these modes: docs, `ranges`",
     "that these modes are those of the robot: what is taken for granted, below",
     "that they come from the spec: `nrs-design verify CERTIFICATE SPEC` assembles them again",
 )

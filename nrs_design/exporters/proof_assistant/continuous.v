@@ -58,7 +58,6 @@ Definition is_falling (surface : bool) (f : flow) (w : witness) (others : list m
   && vanishes (if surface then no_first P else P)
   && positive (gram w).
 
-Definition squared (x : vec) : vec := fun k => x k * x k.
 Definition limit (f : flow) (z : vec) : vec :=
   fun i => dot (nth i (limits f) []) z / IZR (limit_over f).
 Definition field (f : flow) (z : vec) : vec :=
@@ -261,19 +260,6 @@ Proof.
   clear H. induction m as [| j m IHm]; simpl; [reflexivity |].
   rewrite IHm by (intros; apply K; right; assumption). unfold joined.
   rewrite (proj2 (Nat.ltb_lt j n)) by (apply K; left; reflexivity). reflexivity.
-Qed.
-
-Lemma limits_convex ms a : 0 <= a <= 1 -> forallb (Z.leb 0) ms = true -> forall e l m : vec,
-  (1 - a) * dot ms (fun i => squared e i - squared l i) + a * dot ms (fun i => squared e i - squared m i)
-  <= dot ms (fun i => squared e i - squared (fun j => (1 - a) * l j + a * m j) i).
-Proof.
-  intro A. induction ms as [| c ms IH]; intros P e l m; cbn [dot forallb] in *; [lra |].
-  apply andb_true_iff in P. destruct P as [C P]. apply Z.leb_le, (IZR_le 0) in C.
-  specialize (IH P (tail e) (tail l) (tail m)). unfold tail, squared in *.
-  assert (0 <= IZR c * (a * (1 - a) * ((l 0%nat - m 0%nat) * (l 0%nat - m 0%nat)))).
-  { apply Rmult_le_pos; [exact C |]. apply Rmult_le_pos; [apply Rmult_le_pos; lra |].
-    apply Rle_0_sqr. }
-  nra.
 Qed.
 
 (* In free motion, what is seen of the deflection stays at zero. *)

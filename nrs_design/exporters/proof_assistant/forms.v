@@ -289,6 +289,39 @@ Proof.
     rewrite !bilin_add, <- (bilin_self T w), (bilin_comm T w v). ring.
 Qed.
 
+(** ** Averages *)
+
+Definition squared (x : vec) : vec := fun k => x k * x k.
+Definition mix (a : R) (v u : vec) : vec := fun k => (1 - a) * v k + a * u k.
+
+(* Where T is nowhere negative, it is convex. *)
+Lemma quad_convex T a v u : (forall x, 0 <= quad T x) -> 0 <= a <= 1 ->
+  quad T (mix a v u) <= (1 - a) * quad T v + a * quad T u.
+Proof.
+  intros P A. set (w := fun k => u k - v k).
+  assert (E : forall t, quad T (fun k => t * w k + v k) = t * t * quad T w + 2 * t * bilin T w v + quad T v).
+  { intro t. rewrite <- bilin_self, bilin_add, (bilin_comm T w), (bilin_comm T v), !bilin_add,
+      !bilin_self, (bilin_comm T v w). ring. }
+  rewrite (quad_ext T (mix a v u) (fun k => a * w k + v k)) by (intro; unfold mix, w; ring).
+  rewrite (quad_ext T u (fun k => 1 * w k + v k)) by (intro; unfold w; ring).
+  rewrite !E. specialize (P w).
+  assert (0 <= a * (1 - a) * quad T w) by (apply Rmult_le_pos; [apply Rmult_le_pos |]; lra).
+  nra.
+Qed.
+
+Lemma limits_convex ms a : 0 <= a <= 1 -> forallb (Z.leb 0) ms = true -> forall e l m : vec,
+  (1 - a) * dot ms (fun i => squared e i - squared l i) + a * dot ms (fun i => squared e i - squared m i)
+  <= dot ms (fun i => squared e i - squared (fun j => (1 - a) * l j + a * m j) i).
+Proof.
+  intro A. induction ms as [| c ms IH]; intros P e l m; cbn [dot forallb] in *; [lra |].
+  apply andb_true_iff in P. destruct P as [C P]. apply Z.leb_le, (IZR_le 0) in C.
+  specialize (IH P (tail e) (tail l) (tail m)). unfold tail, squared in *.
+  assert (0 <= IZR c * (a * (1 - a) * ((l 0%nat - m 0%nat) * (l 0%nat - m 0%nat)))).
+  { apply Rmult_le_pos; [exact C |]. apply Rmult_le_pos; [apply Rmult_le_pos; lra |].
+    apply Rle_0_sqr. }
+  nra.
+Qed.
+
 (** ** Positive forms, decided by elimination in integers of bounded length *)
 
 (* Of the first m diagonal entries, one less. *)

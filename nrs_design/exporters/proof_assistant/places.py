@@ -28,6 +28,7 @@ SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches"
 # of it, and for rounding, and the scale of both.
 TERMS, MORE, SCALE = 16, 2**40, 2**60
 INSIDE = "what happens within a stay of a mode that must be left, between its switches"
+MIXED = "averages of modes, such as values between the corners of ranges"
 
 
 def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
@@ -57,6 +58,7 @@ def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
             f"decays_by_mode {rate} {factor}\n    {places}\n    switches",
             "switches_sound _ _ _ _ _ checked",
             system.states,
+            (MIXED,),
         )
     stays = evidence.stays
     return Theorem(
@@ -67,7 +69,7 @@ def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         f"    ({evidence.rate.numerator} / {evidence.rate.denominator})%R",
         "stays_sound _ _ _ _ _ checked",
         system.states,
-        (INSIDE,) if stays is not None and stays.leaving else (),
+        (MIXED, INSIDE) if stays is not None and stays.leaving else (MIXED,),
     )
 
 

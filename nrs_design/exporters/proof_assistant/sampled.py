@@ -133,6 +133,8 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     definitions.define("nodes", listed(map(sampled.node, nodes)))
     definitions.define("free_nodes", f"{listed(map(sampled.node, free_nodes))} : list node")
     factor = max(factor_of(node.form) for node in evidence.nodes)
+    rounded = len(system.roundings) if evidence.covers_rounding else 0
+    size = f"{rounded} {system.order}"
     rate = f"{evidence.rate.numerator} {evidence.rate.denominator}"
     modes = listed(names[mode.name] for mode in system.modes)
     sources = _naturals(sampled.source(mode.name, nodes) for mode in system.modes)
@@ -141,10 +143,10 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         return Theorem(
             LIBRARY,
             definitions.texts,
-            f"kept {rate} {factor} {system.order}\n    {modes}\n    nodes {sources}",
-            f"decays (step {system.order}\n    {modes})\n"
+            f"kept {rate} {factor} {size}\n    {modes}\n    nodes {sources}",
+            f"decays (step {size}\n    {modes})\n"
             f"    (largest (map form nodes)) (norm2 {system.order}) {real}%R {factor}%R",
-            "kept_sound _ _ _ _ _ _ _ checked",
+            "kept_sound _ _ _ _ _ _ _ _ checked",
             system.states,
         )
     flying = listed(names[mode.name] for mode in free)
@@ -152,11 +154,11 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     return Theorem(
         LIBRARY,
         definitions.texts,
-        f"losable {rate} {factor} {system.order}\n    {modes}\n    {flying}\n"
+        f"losable {rate} {factor} {size}\n    {modes}\n    {flying}\n"
         f"    nodes free_nodes {sources} {free_sources}",
-        f"decays (losable_step {system.order}\n    {modes}\n    {flying})\n"
+        f"decays (losable_step {size}\n    {modes}\n    {flying})\n"
         f"    (conewise nodes free_nodes) (conewise_size {system.order}) {real}%R {factor}%R",
-        "losable_sound _ _ _ _ _ _ _ _ _ _ checked",
+        "losable_sound _ _ _ _ _ _ _ _ _ _ _ checked",
         tuple(system.states[i] for i in sampled.order),
     )
 

@@ -40,7 +40,8 @@ Proof.
 Qed.
 
 Section Loop.
-Variables p q factor : Z.
+(* So many errors are made in a step. *)
+Variables (p q factor : Z) (rounded : nat).
 Notation rho := (IZR p / IZR q).
 
 Definition is_slow : bool := ((0 <=? p) && (p <? q))%Z.
@@ -63,24 +64,35 @@ Proof.
 Qed.
 
 Definition all_exceed (n : nat) (nodes : list node) : bool :=
-  negb (match nodes with [] => true | _ => false end) && (0 <=? factor)%Z
-  && forallb (fun b => exceeds n (form b)) nodes.
+  negb (match nodes with [] => true | _ => false end) && (0 <? factor)%Z
+  && forallb (fun b => exceeds n (form b) && (length (errors b) =? rounded)%nat
+                       && forallb (Z.leb 0) (errors b) && (0 <=? lost b)%Z) nodes.
+
+Lemma norm2_nonnegative n : forall x, 0 <= norm2 n x.
+Proof.
+  induction n as [| n IH]; intro x; simpl; [lra |].
+  pose proof (Rle_0_sqr (x 0%nat)) as Q. unfold Rsqr in Q. specialize (IH (tail x)). lra.
+Qed.
+
+Lemma all_exceed_each n nodes b : all_exceed n nodes = true -> In b nodes ->
+  shaped n (form b) = true /\ length (errors b) = rounded /\ forallb (Z.leb 0) (errors b) = true
+  /\ 0 <= IZR (lost b) /\ forall x, 0 <= quad (form b) x.
+Proof.
+  unfold all_exceed. rewrite !andb_true_iff, Z.ltb_lt. intros [[_ P] H] I.
+  apply (proj1 (forallb_forall _ _) H) in I. rewrite !andb_true_iff, Nat.eqb_eq, Z.leb_le in I.
+  destruct I as [[[E L] M] Lo]. split; [unfold exceeds in E; apply andb_true_iff in E; apply E |].
+  repeat split; auto; [apply (IZR_le 0), Lo |]. intro x. pose proof (exceeds_sound n _ x E). pose proof (norm2_nonnegative n x).
+  apply (IZR_lt 0) in P. apply Rmult_le_reg_l with (IZR factor); [exact P | lra].
+Qed.
 
 Lemma all_exceed_sound n nodes x : all_exceed n nodes = true ->
   norm2 n x <= IZR factor * largest (map form nodes) x.
 Proof.
   unfold all_exceed. rewrite !andb_true_iff. intros [[N P] H].
   destruct nodes as [| b nodes]; [discriminate |]. cbn [forallb map] in *.
-  apply andb_true_iff in H. destruct H as [H _]. apply Z.leb_le, (IZR_le 0) in P.
-  apply Rle_trans with (1 := exceeds_sound n _ x H). apply Rmult_le_compat_l; [exact P |].
+  rewrite !andb_true_iff in H. destruct H as [[[[H _] _] _] _]. apply Z.ltb_lt, (IZR_lt 0) in P.
+  apply Rle_trans with (1 := exceeds_sound n _ x H). apply Rmult_le_compat_l; [lra |].
   apply Rmax_l.
-Qed.
-
-Lemma all_shaped n nodes b : all_exceed n nodes = true -> In b nodes -> shaped n (form b) = true.
-Proof.
-  unfold all_exceed. rewrite !andb_true_iff. intros [_ H] I.
-  apply (proj1 (forallb_forall _ _) H) in I. unfold exceeds in I. rewrite andb_true_iff in I.
-  apply I.
 Qed.
 
 (* Every mode falls from some node to all nodes of its target. *)
@@ -110,7 +122,9 @@ Section Kept.
 Variables (n : nat) (modes : list mode) (nodes : list node) (sources : list nat).
 
 Definition step (x y : vec) : Prop :=
-  exists m e, In m modes /\ allowed n m x e /\ forall k, (k < n)%nat -> y k = after n m x e k.
+  exists e v b, average n modes x e v b
+  /\ (forall i, (i < rounded)%nat -> Rabs (e i) <= Rabs (b i))
+  /\ forall k, (k < n)%nat -> y k = v k.
 
 Definition kept : bool :=
   is_slow && all_exceed n nodes
@@ -122,33 +136,42 @@ Theorem kept_sound : kept = true ->
 Proof.
   unfold kept. rewrite !andb_true_iff. intros [[S N] H]. destruct (slow S) as [S0 Q].
   apply decays_from_step; [exact S0 | | intro x; exact (all_exceed_sound n nodes x N)].
-  intros x y (m & e & I & A & E). destruct (from_source_sound _ _ _ _ _ I H) as (s & Is & C).
-  rewrite <- Rsqr_pow2. unfold Rsqr.
-  apply largest_below.
-  - apply Rmult_le_pos; [nra | apply largest_nonnegative].
-  - intros G K. apply in_map_iff in K. destruct K as (b & <- & Ib).
-    rewrite (quad_ext_below n _ _ _ (all_shaped _ _ _ N Ib) E).
-    apply (proj1 (forallb_forall _ _) C) in Ib.
-    apply Rle_trans with (1 := falls_sound p q Q _ _ _ _ _ _ x e Ib A).
-    apply Rmult_le_compat_l; [nra |]. apply largest_above, in_map, Is.
+  intros x y (e & v & b & A & E & Y).
+  rewrite <- Rsqr_pow2. unfold Rsqr. set (top := rho * rho * largest (map form nodes) x).
+  apply largest_below; [apply Rmult_le_pos; [nra | apply largest_nonnegative] |].
+  intros G K. apply in_map_iff in K. destruct K as (t & <- & It).
+  destruct (all_exceed_each _ _ _ N It) as (Sh & L & P & Lo & Pos).
+  rewrite (quad_ext_below n _ _ _ Sh Y).
+  assert (B : quad (form t) v <= top + dot (errors t) (fun i => squared e i - squared b i)).
+  { apply (average_below n modes x e (errors t) top (quad (form t)) v b); auto.
+    - intros. apply quad_convex; assumption.
+    - intros m I. destruct (from_source_sound _ _ _ _ _ I H) as (s & Is & C).
+      apply (proj1 (forallb_forall _ _) C) in It.
+      apply Rle_trans with (1 := falls_sound p q Q _ _ _ _ _ _ x e It).
+      apply Rplus_le_compat_r, Rmult_le_compat_l; [nra |]. apply largest_above, in_map, Is. }
+  assert (D : dot (errors t) (fun i => squared e i - squared b i) <= 0)
+    by (apply known_errors; [exact P | rewrite L; exact E]).
+  lra.
 Qed.
 End Kept.
 
 (** *** Contact that is lost and made again *)
 
-(* The first state is the deflection. While it is positive, a mode in contact is in force. While it
-   is not, a mode of free motion moves the others, and the deflection gets no deeper than the motion
+(* The first state is the deflection. While it is positive, a mode in contact is in force, or an
+   average of some. While it is not, one of free motion moves the others, and the deflection gets no deeper than the motion
    leads from the surface, the first entry of that mode's columns. *)
 Section Losable.
 Variables (n : nat) (modes free : list mode) (nodes free_nodes : list node)
   (sources free_sources : list nat).
 
 Inductive losable_step (x y : vec) : Prop :=
-  | touching m e : 0 < x 0%nat -> In m modes -> allowed n m x e ->
-      (forall k, (k < n)%nat -> y k = after n m x e k) -> losable_step x y
-  | flying m e : x 0%nat <= 0 -> In m free -> allowed (n - 1) m (tail x) e ->
-      (forall k, (k < n - 1)%nat -> y (S k) = after (n - 1) m (tail x) e (S k)) ->
-      y 0%nat <= Rmax 0 (after (n - 1) m (tail x) e 0%nat) -> losable_step x y.
+  | touching e v b : 0 < x 0%nat -> average n modes x e v b ->
+      (forall i, (i < rounded)%nat -> Rabs (e i) <= Rabs (b i)) ->
+      (forall k, (k < n)%nat -> y k = v k) -> losable_step x y
+  | flying e v b : x 0%nat <= 0 -> average (n - 1) free (tail x) e v b ->
+      (forall i, (i < rounded)%nat -> Rabs (e i) <= Rabs (b i)) ->
+      (forall k, (k < n - 1)%nat -> y (S k) = v (S k)) ->
+      y 0%nat <= Rmax 0 (v 0%nat) -> losable_step x y.
 
 Definition conewise (x : vec) : R :=
   if Rlt_dec 0 (x 0%nat) then largest (map form nodes) x
@@ -167,10 +190,9 @@ Definition at_surface (columns : list (list Z)) : list (list Z) :=
   map (fun c => 0%Z :: tl c) columns.
 
 Definition lands (F : sym) (m : mode) (b : node) : bool :=
-  (0 <=? fst (hd (0%Z, []) (form b)))%Z
-  && falls p q (n - 1) m (errors b) F (form b) (columns m)
-  && (is_one_of (tl (form b)) free_nodes
-      || falls p q (n - 1) m (errors b) F (form b) (at_surface (columns m))).
+  falls p q (n - 1) m (errors b) F (form b) (columns m)
+  && (if is_one_of (tl (form b)) free_nodes then true
+      else falls p q (n - 1) m (errors b) F (form b) (at_surface (columns m))).
 
 Definition losable : bool :=
   is_slow && (0 <? n)%nat && all_exceed n nodes && all_exceed (n - 1) free_nodes
@@ -219,6 +241,20 @@ Proof.
   destruct (list_eq_dec row_eq F (form b)) as [-> |]; [apply in_map, I | discriminate].
 Qed.
 
+Lemma tail_convex (f : vec -> R) : (forall a v u, 0 <= a <= 1 ->
+    f (mix a v u) <= (1 - a) * f v + a * f u) ->
+  forall a v u, 0 <= a <= 1 -> f (tail (mix a v u)) <= (1 - a) * f (tail v) + a * f (tail u).
+Proof. intros C a v u A. exact (C a (tail v) (tail u) A). Qed.
+
+(* Where the deflection is zero. *)
+Definition grounded (v : vec) : vec := fun k => match k with O => 0 | S j => v (S j) end.
+
+Lemma quad_grounded T v : quad T (grounded v) = quad (tl T) (tail v).
+Proof.
+  destruct T as [| [c r] T]; [reflexivity |]. cbn [quad tl]. change (grounded v 0%nat) with 0.
+  change (tail (grounded v)) with (tail v). ring.
+Qed.
+
 Theorem losable_sound : losable = true ->
   decays losable_step conewise conewise_size rho (IZR factor).
 Proof.
@@ -230,63 +266,105 @@ Proof.
   2: { intro x. unfold conewise, conewise_size.
        destruct (Rlt_dec 0 (x 0%nat)); apply all_exceed_sound; assumption. }
   intros x y H. rewrite <- Rsqr_pow2. unfold Rsqr, conewise.
-  destruct H as [m e X I A E | m e X I A E D].
+  destruct H as [e v b X A E Y | e v b X A E Y D].
   - destruct (Rlt_dec 0 (x 0%nat)) as [_ |]; [| lra].
-    destruct (from_source_sound _ _ _ _ _ I Touch) as (s & Is & C).
-    apply andb_true_iff in C. destruct C as [C L].
-    assert (V : rho * rho * quad (form s) x <= rho * rho * largest (map form nodes) x)
-      by (apply Rmult_le_compat_l; [exact R0 |]; apply largest_above, in_map, Is).
-    assert (V0 : 0 <= rho * rho * largest (map form nodes) x)
-      by (apply Rmult_le_pos; [exact R0 | apply largest_nonnegative]).
-    destruct (Rlt_dec 0 (y 0%nat)) as [Y | Y]; apply largest_below; try exact V0;
-      intros G K; apply in_map_iff in K; destruct K as (b & <- & Ib).
-    + rewrite (quad_ext_below n _ _ _ (all_shaped _ _ _ N Ib) E).
-      apply (proj1 (forallb_forall _ _) C) in Ib.
-      apply Rle_trans with (1 := Sound _ _ _ _ _ _ x e Ib A). exact V.
-    + rewrite (quad_ext_below (n - 1) _ _ (tail (after n m x e)) (all_shaped _ _ _ M Ib))
-        by (intros k K; apply E; lia).
-      apply (proj1 (forallb_forall _ _) L) in Ib.
-      apply Rle_trans with (2 := V).
-      apply (falls_lost_sound p q Q _ _ _ _ _ _ _ x e Ib A); [lra |].
-      rewrite (E 0%nat N0) in Y. unfold after in Y. lra.
+    set (top := rho * rho * largest (map form nodes) x).
+    assert (Top : 0 <= top) by (apply Rmult_le_pos; [exact R0 | apply largest_nonnegative]).
+    assert (Up : forall s, In s nodes -> rho * rho * quad (form s) x <= top)
+      by (intros s Is; apply Rmult_le_compat_l; [exact R0 |]; apply largest_above, in_map, Is).
+    destruct (Rlt_dec 0 (y 0%nat)) as [Y0 | Y0]; apply largest_below; try exact Top;
+      intros G K; apply in_map_iff in K; destruct K as (t & <- & It).
+    + destruct (all_exceed_each _ _ _ N It) as (Sh & L & P & Lo & Pos).
+      rewrite (quad_ext_below n _ _ _ Sh Y).
+      assert (B : quad (form t) v <= top + dot (errors t) (fun i => squared e i - squared b i)).
+      { apply (average_below n modes x e (errors t) top (quad (form t)) v b); auto.
+        - intros. apply quad_convex; assumption.
+        - intros m I. destruct (from_source_sound _ _ _ _ _ I Touch) as (s & Is & C).
+          apply andb_true_iff in C. destruct C as [C _]. apply (proj1 (forallb_forall _ _) C) in It.
+          apply Rle_trans with (1 := Sound _ _ _ _ _ _ x e It).
+          apply Rplus_le_compat_r, Up, Is. }
+      pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))). lra.
+    + destruct (all_exceed_each _ _ _ M It) as (Sh & L & P & Lo & Pos).
+      rewrite (quad_ext_below (n - 1) _ _ (tail v) Sh) by (intros k K; apply Y; lia).
+      set (f := fun u : vec => quad (form t) (tail u) - 2 * IZR (lost t) * x 0%nat * u 0%nat).
+      assert (B : f v <= top + dot (errors t) (fun i => squared e i - squared b i)).
+      { apply (average_below n modes x e (errors t) top f v b); auto.
+        - intros a w u Ha. unfold f.
+          pose proof (tail_convex (quad (form t)) (fun a v u H => quad_convex _ a v u Pos H) a w u Ha).
+          unfold mix at 2. lra.
+        - intros m I. destruct (from_source_sound _ _ _ _ _ I Touch) as (s & Is & C).
+          apply andb_true_iff in C. destruct C as [_ C]. apply (proj1 (forallb_forall _ _) C) in It.
+          apply Rle_trans with (1 := falls_lost_sound p q Q _ _ _ _ _ _ _ x e It).
+          apply Rplus_le_compat_r, Up, Is. }
+      pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))).
+      rewrite (Y 0%nat N0) in Y0.
+      assert (0 <= - (IZR (lost t) * x 0%nat * v 0%nat)).
+      { rewrite Ropp_mult_distr_r. apply Rmult_le_pos; [apply Rmult_le_pos |]; lra. }
+      unfold f in B. lra.
   - destruct (Rlt_dec 0 (x 0%nat)) as [| _]; [lra |].
-    destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
-    apply andb_true_iff in C. destruct C as [C L].
-    set (v := rho * rho * largest (map form free_nodes) (tail x)).
-    assert (V : rho * rho * quad (form s) (tail x) <= v)
-      by (apply Rmult_le_compat_l; [exact R0 |]; apply largest_above, in_map, Is).
-    assert (V0 : 0 <= v) by (apply Rmult_le_pos; [exact R0 | apply largest_nonnegative]).
-    set (f := after (n - 1) m (tail x) e) in *.
-    assert (Free : forall G, In G (map form free_nodes) -> quad G (tail f) <= v).
-    { intros G K. apply in_map_iff in K. destruct K as (b & <- & Ib).
-      rewrite (quad_ext (form b) _ (image (map (@tl Z) (columns m)) (zeta (n - 1) m (tail x) e)))
-        by (intro k; symmetry; apply image_tail).
-      apply (proj1 (forallb_forall _ _) C) in Ib.
-      apply Rle_trans with (1 := Sound _ _ _ _ _ _ (tail x) e Ib A). exact V. }
-    destruct (Rlt_dec 0 (y 0%nat)) as [Y | Y]; apply largest_below; try exact V0;
-      intros G K; apply in_map_iff in K; destruct K as (b & <- & Ib).
-    + pose proof (all_shaped _ _ _ N Ib) as Sh.
-      apply (proj1 (forallb_forall _ _) L) in Ib. unfold lands in Ib.
-      rewrite !andb_true_iff in Ib. destruct Ib as [[P Deep] Surface]. apply Z.leb_le in P.
-      set (y' := fun k => match k with O => y 0%nat | S j => f (S j) end).
-      rewrite (quad_ext_below n _ y y' Sh)
-        by (intros [| k] K; [reflexivity | apply E; lia]).
-      set (z := fun k => match k with O => 0 | S j => f (S j) end).
-      apply (between (form b) y' f z v P); try reflexivity.
-      * unfold y'. split; [lra |]. destruct (Rle_dec 0 (f 0%nat)).
-        -- rewrite Rmax_right in D; assumption.
-        -- rewrite Rmax_left in D; lra.
-      * apply Rle_trans with (1 := Sound _ _ _ _ _ _ (tail x) e Deep A). exact V.
-      * apply orb_true_iff in Surface. destruct Surface as [One | Falls].
-        -- apply is_one_of_sound, Free in One.
-           destruct (form b) as [| [a r] T]; cbn [quad tl] in *; [lra |].
-           change (z 0%nat) with 0. change (tail z) with (tail f). lra.
-        -- rewrite (quad_ext _ z (image (at_surface (columns m)) (zeta (n - 1) m (tail x) e)))
-             by (intro k; rewrite image_surface; destruct k; reflexivity).
-           apply Rle_trans with (1 := Sound _ _ _ _ _ _ (tail x) e Falls A). exact V.
-    + rewrite (quad_ext_below (n - 1) _ _ (tail f) (all_shaped _ _ _ M Ib))
-        by (intros k K; apply E; lia).
-      apply Free, in_map, Ib.
+    set (top := rho * rho * largest (map form free_nodes) (tail x)).
+    assert (Top : 0 <= top) by (apply Rmult_le_pos; [exact R0 | apply largest_nonnegative]).
+    assert (Up : forall s, In s free_nodes -> rho * rho * quad (form s) (tail x) <= top)
+      by (intros s Is; apply Rmult_le_compat_l; [exact R0 |]; apply largest_above, in_map, Is).
+    assert (Free : forall t, In t free_nodes -> quad (form t) (tail v) <= top).
+    { intros t It. destruct (all_exceed_each _ _ _ M It) as (Sh & L & P & Lo & Pos).
+      assert (B : quad (form t) (tail v) <= top + dot (errors t) (fun i => squared e i - squared b i)).
+      { apply (average_below (n - 1) free (tail x) e (errors t) top (fun u => quad (form t) (tail u)) v b);
+          auto.
+        - apply (tail_convex (quad (form t))). intros. apply quad_convex; assumption.
+        - intros m I. destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
+          apply andb_true_iff in C. destruct C as [C _]. apply (proj1 (forallb_forall _ _) C) in It.
+          pose proof (Sound _ _ _ _ _ _ (tail x) e It) as K.
+          rewrite (quad_ext (form t) _ (tail (after (n - 1) m (tail x) e))) in K
+            by (intro; apply image_tail).
+          apply Rle_trans with (1 := K). apply Rplus_le_compat_r, Up, Is. }
+      pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))). lra. }
+    destruct (Rlt_dec 0 (y 0%nat)) as [Y0 | Y0]; apply largest_below; try exact Top;
+      intros G K; apply in_map_iff in K; destruct K as (t & <- & It).
+    + destruct (all_exceed_each _ _ _ N It) as (Sh & L & P & Lo & Pos).
+      assert (Known := known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))).
+      assert (Lands : forall m, In m free -> exists s, In s free_nodes /\ lands (form s) m t = true).
+      { intros m I. destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
+        apply andb_true_iff in C. destruct C as [_ C]. exists s. split; [exact Is |].
+        apply (proj1 (forallb_forall _ _) C), It. }
+      assert (Deep : quad (form t) v <= top).
+      { enough (B : quad (form t) v <= top + dot (errors t) (fun i => squared e i - squared b i)) by lra.
+        apply (average_below (n - 1) free (tail x) e (errors t) top (quad (form t)) v b); auto.
+        - intros. apply quad_convex; assumption.
+        - intros m I. destruct (Lands m I) as (s & Is & C). unfold lands in C.
+          rewrite !andb_true_iff in C. destruct C as [C _].
+          apply Rle_trans with (1 := Sound _ _ _ _ _ _ (tail x) e C).
+          apply Rplus_le_compat_r, Up, Is. }
+      assert (Ground : quad (form t) (grounded v) <= top).
+      { destruct (is_one_of (tl (form t)) free_nodes) eqn:One.
+        { rewrite quad_grounded. apply is_one_of_sound, in_map_iff in One.
+          destruct One as (r & <- & Ir). apply Free, Ir. }
+        enough (B : quad (form t) (grounded v)
+                    <= top + dot (errors t) (fun i => squared e i - squared b i)) by lra.
+        apply (average_below (n - 1) free (tail x) e (errors t) top
+                 (fun u => quad (form t) (grounded u)) v b); auto.
+        - intros a w u Ha. pose proof (quad_convex (form t) a (grounded w) (grounded u) Pos Ha) as C.
+          rewrite (quad_ext (form t) (grounded (mix a w u)) (mix a (grounded w) (grounded u)));
+            [exact C |]. intros [| k]; unfold mix, grounded; ring.
+        - intros m I. destruct (Lands m I) as (s & Is & C). unfold lands in C.
+          rewrite One, andb_true_iff in C. destruct C as [_ C].
+          pose proof (Sound _ _ _ _ _ _ (tail x) e C) as K.
+          rewrite (quad_ext _ _ (grounded (after (n - 1) m (tail x) e))) in K
+            by (intro k; rewrite image_surface; destruct k; reflexivity).
+          apply Rle_trans with (1 := K). apply Rplus_le_compat_r, Up, Is. }
+      set (y' := fun k => match k with O => y 0%nat | S j => v (S j) end).
+      rewrite (quad_ext_below n _ y y' Sh) by (intros [| k] K; [reflexivity | apply Y; lia]).
+      assert (Sign : (0 <= fst (hd (0%Z, []) (form t)))%Z).
+      { specialize (Pos (fun k => match k with O => 1 | S _ => 0 end)).
+        destruct (form t) as [| [c r] T]; simpl in *; [lia |]. apply le_IZR.
+        rewrite quad_zero, dot_zero in Pos by reflexivity. lra. }
+      apply (between (form t) y' v (grounded v) top Sign); try reflexivity; try assumption.
+      unfold y'. split; [lra |]. destruct (Rle_dec 0 (v 0%nat)).
+      * rewrite Rmax_right in D; assumption.
+      * rewrite Rmax_left in D; lra.
+    + destruct (all_exceed_each _ _ _ M It) as (Sh & _).
+      rewrite (quad_ext_below (n - 1) _ _ (tail v) Sh) by (intros k K; apply Y; lia).
+      apply Free, It.
 Qed.
 End Losable.
 End Loop.

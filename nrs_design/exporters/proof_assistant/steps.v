@@ -7,10 +7,45 @@ Record mode := Mode { units : list Z; columns : list (list Z); bounds : list (li
 
 Definition zeta (n : nat) (m : mode) (x e : vec) : vec :=
   fun k => joined n x e k / IZR (nth k (units m) 1%Z).
-Definition allowed (n : nat) (m : mode) (x e : vec) : Prop :=
-  forall i, (i < length (bounds m))%nat ->
-  Rabs (e i) <= Rabs (dot (nth i (bounds m) []) (zeta n m x e)).
+(* Bounds of the errors. *)
+Definition bound (n : nat) (m : mode) (x e : vec) : vec :=
+  fun i => dot (nth i (bounds m) []) (zeta n m x e).
 Definition after (n : nat) (m : mode) (x e : vec) : vec := image (columns m) (zeta n m x e).
+
+(* Next states and bounds of the modes, and any average of them. *)
+Inductive average (n : nat) (modes : list mode) (x e : vec) : vec -> vec -> Prop :=
+  | of_one m : In m modes -> average n modes x e (after n m x e) (bound n m x e)
+  | of_two a v b u c : 0 <= a <= 1 -> average n modes x e v b -> average n modes x e u c ->
+      average n modes x e (mix a v u) (mix a b c).
+
+(* What is at most some number in every mode, but for what is known of the errors, is so in any
+   average if it is convex. *)
+Lemma average_below n modes x e ms top (f : vec -> R) v b :
+  (forall a v u, 0 <= a <= 1 -> f (mix a v u) <= (1 - a) * f v + a * f u) ->
+  forallb (Z.leb 0) ms = true ->
+  (forall m, In m modes ->
+     f (after n m x e) <= top + dot ms (fun i => squared e i - squared (bound n m x e) i)) ->
+  average n modes x e v b -> f v <= top + dot ms (fun i => squared e i - squared b i).
+Proof.
+  intros C P One H. induction H as [m I | a v b u c A _ IHv _ IHu]; [exact (One m I) |].
+  pose proof (C a v u A) as K. pose proof (limits_convex ms a A P e b c) as L. unfold mix at 2.
+  assert ((1 - a) * f v <= (1 - a) * (top + dot ms (fun i => squared e i - squared b i)))
+    by (apply Rmult_le_compat_l; lra).
+  assert (a * f u <= a * (top + dot ms (fun i => squared e i - squared c i)))
+    by (apply Rmult_le_compat_l; lra).
+  lra.
+Qed.
+
+Lemma known_errors ms : forall e b, forallb (Z.leb 0) ms = true ->
+  (forall i, (i < length ms)%nat -> Rabs (e i) <= Rabs (b i)) ->
+  dot ms (fun i => squared e i - squared b i) <= 0.
+Proof.
+  induction ms as [| m ms IH]; intros e b P H; cbn [dot forallb length] in *; [lra |].
+  apply andb_true_iff in P. destruct P as [M P]. apply Z.leb_le, (IZR_le 0) in M.
+  pose proof (IH (tail e) (tail b) P (fun i I => H (S i) ltac:(lia))) as K.
+  pose proof (H 0%nat ltac:(lia)) as H0. apply Rsqr_le_abs_1 in H0. unfold Rsqr in H0.
+  unfold tail, squared in *. nra.
+Qed.
 
 (* The largest of some forms. *)
 Definition largest (forms : list sym) (x : vec) : R :=
@@ -64,20 +99,19 @@ Proof.
   rewrite IH. unfold tail. lra.
 Qed.
 
-Lemma slack_below us : forall k rows ms x,
-  (forall i, (i < length rows)%nat ->
-     Rabs (IZR (nth i us 0%Z) * x (k + i)%nat) <= Rabs (dot (nth i rows []) x)) ->
-  forallb (Z.leb 0) ms = true -> quad (slack k us rows ms) x <= 0.
+Lemma slack_quad us : forall k rows ms x, length us = length ms -> length rows = length ms ->
+  quad (slack k us rows ms) x
+  = dot ms (fun i => IZR (nth i us 1%Z) * x (k + i)%nat * (IZR (nth i us 1%Z) * x (k + i)%nat)
+                     - dot (nth i rows []) x * dot (nth i rows []) x).
 Proof.
-  induction us as [| u us IH]; intros k [| row rows] [| m ms] x H P; simpl in *; try lra.
-  apply andb_true_iff in P. destruct P as [P0 P]. apply Z.leb_le, (IZR_le 0) in P0.
-  rewrite !quad_lin, !quad_square, dot_unit, opp_IZR.
-  pose proof (H 0%nat ltac:(lia)) as H0. simpl in H0. rewrite Nat.add_0_r in H0.
-  apply Rsqr_le_abs_1 in H0. unfold Rsqr in H0.
-  assert (quad (slack (S k) us rows ms) x <= 0).
-  { apply IH; [| assumption]. intros i I. specialize (H (S i) ltac:(lia)).
-    rewrite Nat.add_succ_r in H. exact H. }
-  nra.
+  induction us as [| u us IH]; intros k [| row rows] [| m ms] x L K; simpl in L, K; try lia;
+    [reflexivity |].
+  cbn [slack dot]. rewrite !quad_lin, !quad_square, dot_unit, opp_IZR, (IH (S k) rows ms x) by lia.
+  rewrite Nat.add_0_r. cbn [nth].
+  rewrite (dot_ext ms (tail _) (fun i => IZR (nth i us 1%Z) * x (S k + i)%nat
+      * (IZR (nth i us 1%Z) * x (S k + i)%nat) - dot (nth i rows []) x * dot (nth i rows []) x)).
+  - simpl. ring.
+  - intro i. unfold tail. cbn [nth]. rewrite Nat.add_succ_r. reflexivity.
 Qed.
 
 Lemma quad_crossing m u c x : quad (crossing m u c) x = 2 * IZR m * (IZR u * x 0%nat) * dot c x.
@@ -93,7 +127,7 @@ Proof.
   apply IH; lia.
 Qed.
 
-Lemma nth_skipn n : forall us i, nth i (skipn n us) 0%Z = nth (n + i) us 0%Z.
+Lemma nth_skipn n : forall us i, nth i (skipn n us) 1%Z = nth (n + i) us 1%Z.
 Proof.
   induction n as [| n IH]; intros [| u us] i; simpl; try reflexivity; [destruct i; reflexivity |].
   apply IH.
@@ -101,14 +135,15 @@ Qed.
 
 Hypothesis q_positive : (0 < q)%Z.
 
-(* What is left of F over G after the step, but for what is known of the errors. *)
+(* What is left of F over G after the step, with what is known of the errors. *)
 Lemma decrease_quad n m ms F G cols x e :
-  fits n m ms = true -> shaped n F = true -> allowed n m x e ->
+  fits n m ms = true -> shaped n F = true ->
   quad (decrease n m ms F G cols) (zeta n m x e)
-  <= (IZR p / IZR q) * (IZR p / IZR q) * quad F x - quad G (image cols (zeta n m x e)).
+  = (IZR p / IZR q) * (IZR p / IZR q) * quad F x - quad G (image cols (zeta n m x e))
+    + dot ms (fun i => squared e i - squared (bound n m x e) i).
 Proof.
-  intros Fit S A. unfold fits in Fit. rewrite !andb_true_iff in Fit.
-  destruct Fit as [[[[U L] D] _] M]. apply Nat.eqb_eq in L.
+  intros Fit S. unfold fits in Fit. rewrite !andb_true_iff in Fit.
+  destruct Fit as [[[[U L] D] Lm] _]. apply Nat.eqb_eq in L, Lm.
   pose proof (IZR_lt 0 q q_positive) as Q.
   unfold decrease. rewrite !quad_lin, quad_congruence, quad_scaled.
   assert (P : forall k, (k < length (units m))%nat -> 0 < IZR (nth k (units m) 1%Z)).
@@ -131,14 +166,13 @@ Proof.
     replace (IZR q * (IZR p / IZR q * x k)) with (IZR p * u * (x k / u)) by (field; lra).
     rewrite <- C. ring. }
   rewrite E. clear E.
-  assert (K : quad (slack n (skipn n (units m)) (bounds m) ms) (zeta n m x e) <= 0).
-  { apply slack_below; [| exact M]. intros i I. rewrite nth_skipn.
-    specialize (A i I). specialize (P (n + i)%nat ltac:(lia)).
-    rewrite (nth_indep _ 0%Z 1%Z) by lia.
-    replace (IZR (nth (n + i) (units m) 1%Z) * zeta n m x e (n + i)%nat) with (e i); [exact A |].
-    unfold zeta, joined. rewrite (proj2 (Nat.ltb_ge (n + i) n)) by lia.
-    replace (n + i - n)%nat with i by lia. field. lra. }
-  lra.
+  rewrite slack_quad by (rewrite ?skipn_length; lia).
+  rewrite (dot_ext_below ms _ (fun i => squared e i - squared (bound n m x e) i)); [ring |].
+  intros i I. rewrite nth_skipn. unfold squared, bound.
+  replace (IZR (nth (n + i) (units m) 1%Z) * zeta n m x e (n + i)%nat) with (e i); [reflexivity |].
+  specialize (P (n + i)%nat ltac:(lia)). unfold zeta, joined.
+  rewrite (proj2 (Nat.ltb_ge (n + i) n)) by lia. replace (n + i - n)%nat with i by lia.
+  field. lra.
 Qed.
 
 Definition falls n m ms F G cols : bool :=
@@ -150,12 +184,12 @@ Definition falls_lost n m lost ms F G cols : bool :=
   && positive (slin 1 (decrease n m ms F G (map (@tl Z) cols)) 1
                  (crossing lost (nth 0 (units m) 1%Z) (map (hd 0%Z) cols))).
 
-Lemma falls_sound n m ms F G cols x e :
-  falls n m ms F G cols = true -> allowed n m x e ->
-  quad G (image cols (zeta n m x e)) <= (IZR p / IZR q) * (IZR p / IZR q) * quad F x.
+Lemma falls_sound n m ms F G cols x e : falls n m ms F G cols = true ->
+  quad G (image cols (zeta n m x e)) <= (IZR p / IZR q) * (IZR p / IZR q) * quad F x
+    + dot ms (fun i => squared e i - squared (bound n m x e) i).
 Proof.
-  unfold falls. rewrite !andb_true_iff. intros [[Fit S] P] A.
-  pose proof (decrease_quad _ _ _ _ G cols _ _ Fit S A).
+  unfold falls. rewrite !andb_true_iff. intros [[Fit S] P].
+  pose proof (decrease_quad _ _ _ _ G cols x e Fit S).
   pose proof (positive_sound _ P (zeta n m x e)). lra.
 Qed.
 
@@ -172,24 +206,23 @@ Proof.
 Qed.
 
 Lemma falls_lost_sound n m lost ms F G cols x e :
-  falls_lost n m lost ms F G cols = true -> allowed n m x e ->
-  0 <= x 0%nat -> image cols (zeta n m x e) 0%nat <= 0 ->
-  quad G (tail (image cols (zeta n m x e))) <= (IZR p / IZR q) * (IZR p / IZR q) * quad F x.
+  falls_lost n m lost ms F G cols = true ->
+  quad G (tail (image cols (zeta n m x e)))
+    - 2 * IZR lost * x 0%nat * image cols (zeta n m x e) 0%nat
+  <= (IZR p / IZR q) * (IZR p / IZR q) * quad F x
+    + dot ms (fun i => squared e i - squared (bound n m x e) i).
 Proof.
-  unfold falls_lost. rewrite !andb_true_iff. intros [[[[Fit S] L] N] P] A B C.
-  pose proof (decrease_quad _ _ _ _ G (map (@tl Z) cols) _ _ Fit S A) as D.
+  unfold falls_lost. rewrite !andb_true_iff. intros [[[[Fit S] L] N] P].
+  pose proof (decrease_quad _ _ _ _ G (map (@tl Z) cols) x e Fit S) as D.
   pose proof (positive_sound _ P (zeta n m x e)) as Q.
   rewrite quad_lin, quad_crossing, <- image_head in Q.
   rewrite (quad_ext G _ (tail (image cols (zeta n m x e)))) in D by (intro; apply image_tail).
-  apply Z.leb_le, (IZR_le 0) in L. apply Nat.ltb_lt in N.
+  apply Nat.ltb_lt in N.
   unfold fits in Fit. rewrite !andb_true_iff in Fit. destruct Fit as [[[[U Le] _] _] _].
   apply Nat.eqb_eq in Le.
   assert (E : IZR (nth 0 (units m) 1%Z) * zeta n m x e 0%nat = x 0%nat).
   { unfold zeta, joined. rewrite (proj2 (Nat.ltb_lt 0 n) N). field.
     apply Rgt_not_eq, (IZR_lt 0), Z.ltb_lt, (proj1 (forallb_forall _ _) U), nth_In. lia. }
-  rewrite E in Q.
-  assert (0 <= - (IZR lost * x 0%nat * image cols (zeta n m x e) 0%nat)).
-  { rewrite Ropp_mult_distr_r. apply Rmult_le_pos; [apply Rmult_le_pos |]; lra. }
-  lra.
+  rewrite E in Q. lra.
 Qed.
 End Edge.

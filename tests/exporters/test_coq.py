@@ -120,9 +120,7 @@ def test_long_integers_are_those_digits(number):
 
 def test_what_is_not_covered_is_refused_with_what_is():
     certificate = certificate_of("soft-tissue")
-    contact = replace(
-        certificate.system.contact, pulls=(replace(certificate.system.modes[0].A),)
-    )
+    contact = replace(certificate.system.contact, pulls=(replace(certificate.system.modes[0].A),))
     odd = replace(certificate, system=replace(certificate.system, contact=contact))
     with pytest.raises(DesignError, match="could pull") as caught:
         text_of(odd)

@@ -10,7 +10,7 @@ from nrs_design.exporters import Format
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.proof_assistant.choose import choose_theorem
-from nrs_design.exporters.proof_assistant.text import harmless
+from nrs_design.exporters.proof_assistant.text import in_comment
 from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.output import COQ
 
@@ -55,7 +55,9 @@ def render(export: Export) -> dict[str, bytes]:
 
 
 def _head(export: Export, certificate: Certificate, theorem: Theorem) -> str:
-    lines = "\n".join(f"   {harmless(line)}" for line in _head_lines(export, certificate, theorem))
+    lines = "\n".join(
+        f"   {in_comment(line)}" for line in _head_lines(export, certificate, theorem)
+    )
     return f"{COQ.decode()}\n{lines} *)\n"
 
 

@@ -29,7 +29,7 @@ LIBRARY = ("forms", "polynomials", "continuous")
 
 
 @dataclass(frozen=True)
-class Flows:
+class FlowStatement:
     """A system and its form; the first state is the deflection where contact is lost."""
 
     system: SwitchedSystem
@@ -107,7 +107,7 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     evidence : FormsOnGraph
         That holds for it.
     """
-    flows, definitions = Flows(system, evidence), Definitions()
+    flows, definitions = FlowStatement(system, evidence), Definitions()
     free = system.free if flows.lost else ()
     names = identifiers(mode.name for mode in (*system.modes, *free))
     for k, mode in enumerate((*system.modes, *free)):

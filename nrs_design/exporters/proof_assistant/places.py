@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil
 
-from nrs_design.exporters.proof_assistant.flows import Flows
+from nrs_design.exporters.proof_assistant.flows import FlowStatement
 from nrs_design.exporters.proof_assistant.text import (
     Definitions,
     factor_of,
@@ -24,8 +24,8 @@ from nrs_design.proof.system import SwitchedSystem
 
 STAYS = ("forms", "jumps", "stays")
 SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches")
-# Of what follows a form through a stay: terms of a series for each piece, what is added for the rest
-# of it, and for rounding, and the scale of both.
+# How a form is followed through a stay: terms of a series in each piece, what is added for its rest
+# and for rounding, and the scale of both.
 TERMS, MORE, SCALE = 16, 2**40, 2**60
 INSIDE = "what happens within a stay of a mode that must be left, between its switches"
 MIXED = "averages of modes, such as values between the corners of ranges"
@@ -93,7 +93,7 @@ def _flowing(
     system: SwitchedSystem, evidence: FormsOnGraph, definitions: Definitions
 ) -> dict[str, str]:
     """Return the modes in continuous time, with the inequality of each."""
-    forms, stays, flows = dict(evidence.nodes), system.stays(), Flows(system, evidence)
+    forms, stays, flows = dict(evidence.nodes), system.stays(), FlowStatement(system, evidence)
     grams = {place: (gram, factor) for place, gram, factor in flows.witnesses()}
     found = {}
     for k, mode in enumerate(system.modes):

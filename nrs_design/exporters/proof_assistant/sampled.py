@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 
@@ -15,7 +16,9 @@ from nrs_design.exporters.proof_assistant.text import (
     symmetric,
 )
 from nrs_design.exporters.proof_assistant.theorem import Theorem
+from nrs_design.proof.channels import Rounding
 from nrs_design.proof.evidence.graph import FormsOnGraph
+from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.steps import FREE, LOST, ROUNDING
 from nrs_design.proof.system import SwitchedSystem
@@ -24,7 +27,7 @@ LIBRARY = ("forms", "steps", "sampled")
 
 
 @dataclass(frozen=True)
-class Sampled:
+class SampledStatement:
     """A system and its forms; the first state is the deflection where contact is lost."""
 
     system: SwitchedSystem
@@ -122,7 +125,7 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     evidence : FormsOnGraph
         That holds for it.
     """
-    sampled, definitions = Sampled(system, evidence), Definitions()
+    sampled, definitions = SampledStatement(system, evidence), Definitions()
     free = system.free if sampled.lost else ()
     every = (*system.modes, *free)
     names = identifiers(mode.name for mode in every)
@@ -163,9 +166,9 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     )
 
 
-def _columns(rounded, k):
+def _columns(rounded: Sequence[Rounding], k: int) -> list[RationalMatrix]:
     return [item.columns[k] for item in rounded]
 
 
-def _naturals(numbers) -> str:
+def _naturals(numbers: Iterable[int]) -> str:
     return f"{listed(map(str, numbers))}%nat"

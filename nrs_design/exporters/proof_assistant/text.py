@@ -36,7 +36,7 @@ class Definitions:
 
     def define(self, name: str, text: str, remark: str = "") -> str:
         """Define a name, with what is said of it, and return it."""
-        said = f"(* {harmless(remark)} *)\n" if remark else ""
+        said = f"(* {in_comment(remark)} *)\n" if remark else ""
         self.texts.append(f"{said}Definition {name} := {text}.\n")
         return name
 
@@ -82,7 +82,7 @@ def identifiers(names: Iterable[str]) -> dict[str, str]:
     return found
 
 
-def harmless(text: str) -> str:
+def in_comment(text: str) -> str:
     """Return text that ends no comment and begins no string."""
     return text.replace('"', "'").replace("(*", "( *").replace("*)", "* )")
 

@@ -62,7 +62,17 @@ class FlowStatement:
         return f"{listed(listed(map(str, term)) for term in terms)}%nat"
 
     def flow(self, k: int, mode: Mode, definitions: Definitions) -> str:
-        """Return the k-th mode of all, those of free motion after those in contact."""
+        """Return the text of a mode.
+
+        Parameters
+        ----------
+        k : int
+            Its number; modes of free motion come after those in contact.
+        mode : Mode
+            The mode.
+        definitions : Definitions
+            Where its rows are defined.
+        """
         couplings = self.system.couplings[: self.acting]
         parts = [(mode.A.numerators, mode.A.denominator)]
         parts += [(item.columns[k].numerators, item.columns[k].denominator) for item in couplings]

@@ -49,6 +49,17 @@ class SampledStatement:
 
         The unit of a state is the least multiple of the denominator of the rate in which its column
         and the bounds are integers.
+
+        Parameters
+        ----------
+        k : int
+            Its number; modes of free motion come after those in contact.
+        mode : Mode
+            The mode.
+        definitions : Definitions
+            Where its columns and rows are defined.
+        free : bool
+            Whether it is one of free motion.
         """
         before = self.order[1:] if free else self.order
         rounded = self.system.roundings if self.evidence.covers_rounding else ()

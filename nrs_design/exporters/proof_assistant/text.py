@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
+from nrs_design.printable import printable
 from nrs_design.proof.exact import IntegerMatrix, is_positive_definite
 
 WIDTH = 100
@@ -35,7 +36,17 @@ class Definitions:
         return self.names[text]
 
     def define(self, name: str, text: str, remark: str = "") -> str:
-        """Define a name, with what is said of it, and return it."""
+        """Define a name, and return it.
+
+        Parameters
+        ----------
+        name : str
+            That is new.
+        text : str
+            The term.
+        remark : str
+            What is said of it.
+        """
         said = f"(* {in_comment(remark)} *)\n" if remark else ""
         self.texts.append(f"{said}Definition {name} := {text}.\n")
         return name
@@ -83,8 +94,9 @@ def identifiers(names: Iterable[str]) -> dict[str, str]:
 
 
 def in_comment(text: str) -> str:
-    """Return text that ends no comment and begins no string."""
-    return text.replace('"', "'").replace("(*", "( *").replace("*)", "* )")
+    """Return a line that ends no comment and begins none, and no string either."""
+    plain = printable(" ".join(text.split())).replace('"', "'")
+    return plain.replace("(*", "( *").replace("*)", "* )")
 
 
 def factor_of(form: IntegerMatrix) -> int:

@@ -65,7 +65,7 @@ Qed.
 
 Definition all_exceed (n : nat) (nodes : list node) : bool :=
   negb (match nodes with [] => true | _ => false end) && (0 <? factor)%Z
-  && forallb (fun b => exceeds n (form b) && (length (errors b) =? rounded)%nat
+  && every (fun b => exceeds n (form b) && (length (errors b) =? rounded)%nat
                        && forallb (Z.leb 0) (errors b) && (0 <=? lost b)%Z) nodes.
 
 Lemma norm2_nonnegative n : forall x, 0 <= norm2 n x.
@@ -79,7 +79,7 @@ Lemma all_exceed_each n nodes b : all_exceed n nodes = true -> In b nodes ->
   /\ 0 <= IZR (lost b) /\ forall x, 0 <= quad (form b) x.
 Proof.
   unfold all_exceed. rewrite !andb_true_iff, Z.ltb_lt. intros [[_ P] H] I.
-  apply (proj1 (forallb_forall _ _) H) in I. rewrite !andb_true_iff, Nat.eqb_eq, Z.leb_le in I.
+  apply (every_sound _ _ H) in I. rewrite !andb_true_iff, Nat.eqb_eq, Z.leb_le in I.
   destruct I as [[[E L] M] Lo]. split; [unfold exceeds in E; apply andb_true_iff in E; apply E |].
   repeat split; auto; [apply (IZR_le 0), Lo |]. intro x. pose proof (exceeds_sound n _ x E). pose proof (norm2_nonnegative n x).
   apply (IZR_lt 0) in P. apply Rmult_le_reg_l with (IZR factor); [exact P | lra].
@@ -89,9 +89,10 @@ Lemma all_exceed_sound n nodes x : all_exceed n nodes = true ->
   norm2 n x <= IZR factor * largest (map form nodes) x.
 Proof.
   unfold all_exceed. rewrite !andb_true_iff. intros [[N P] H].
-  destruct nodes as [| b nodes]; [discriminate |]. cbn [forallb map] in *.
-  rewrite !andb_true_iff in H. destruct H as [[[[H _] _] _] _]. apply Z.ltb_lt, (IZR_lt 0) in P.
-  apply Rle_trans with (1 := exceeds_sound n _ x H). apply Rmult_le_compat_l; [lra |].
+  destruct nodes as [| b nodes]; [discriminate |].
+  pose proof (every_sound _ _ H b ltac:(left; reflexivity)) as E. cbv beta in E.
+  rewrite !andb_true_iff in E. destruct E as [[[E _] _] _]. apply Z.ltb_lt, (IZR_lt 0) in P.
+  apply Rle_trans with (1 := exceeds_sound n _ x E). apply Rmult_le_compat_l; [lra |].
   apply Rmax_l.
 Qed.
 
@@ -99,7 +100,7 @@ Qed.
 Definition from_source (nodes : list node) (modes : list mode) (sources : list nat)
     (check : sym -> mode -> bool) : bool :=
   (length modes =? length sources)%nat
-  && forallb (fun '(m, a) => match nth_error nodes a with
+  && every (fun '(m, a) => match nth_error nodes a with
                              | Some s => check (form s) m | None => false end)
        (combine modes sources).
 
@@ -110,9 +111,9 @@ Proof.
   unfold from_source. rewrite andb_true_iff, Nat.eqb_eq. intros I [L H].
   revert sources L H. induction modes as [| m0 modes IH]; [destruct I |].
   intros [| a sources] L H; [discriminate |]. simpl in *.
-  apply andb_true_iff in H. destruct H as [H0 H]. destruct I as [-> | I].
-  - destruct (nth_error nodes a) as [s |] eqn:E; [| discriminate].
-    exists s. split; [exact (nth_error_In _ _ E) | exact H0].
+  destruct (nth_error nodes a) as [s |] eqn:E; [| discriminate].
+  destruct (check (form s) m0) eqn:H0; [| discriminate]. destruct I as [-> | I].
+  - exists s. split; [exact (nth_error_In _ _ E) | exact H0].
   - apply (IH I sources); [lia | exact H].
 Qed.
 
@@ -129,7 +130,7 @@ Definition step (x y : vec) : Prop :=
 Definition kept : bool :=
   is_slow && all_exceed n nodes
   && from_source nodes modes sources
-       (fun F m => forallb (fun b => falls p q n m (errors b) F (form b) (columns m)) nodes).
+       (fun F m => every (fun b => falls p q n m (errors b) F (form b) (columns m)) nodes).
 
 Theorem kept_sound : kept = true ->
   decays step (largest (map form nodes)) (norm2 n) rho (IZR factor).
@@ -146,7 +147,7 @@ Proof.
   { apply (average_below n modes x e (errors t) top (quad (form t)) v b); auto.
     - intros. apply quad_convex; assumption.
     - intros m I. destruct (from_source_sound _ _ _ _ _ I H) as (s & Is & C).
-      apply (proj1 (forallb_forall _ _) C) in It.
+      apply (every_sound _ _ C) in It.
       apply Rle_trans with (1 := falls_sound p q Q _ _ _ _ _ _ x e It).
       apply Rplus_le_compat_r, Rmult_le_compat_l; [nra |]. apply largest_above, in_map, Is. }
   assert (D : dot (errors t) (fun i => squared e i - squared b i) <= 0)
@@ -197,13 +198,13 @@ Definition lands (F : sym) (m : mode) (b : node) : bool :=
 Definition losable : bool :=
   is_slow && (0 <? n)%nat && all_exceed n nodes && all_exceed (n - 1) free_nodes
   && from_source nodes modes sources (fun F m =>
-       forallb (fun b => falls p q n m (errors b) F (form b) (columns m)) nodes
-       && forallb (fun b => falls_lost p q n m (lost b) (errors b) F (form b) (columns m))
+       every (fun b => falls p q n m (errors b) F (form b) (columns m)) nodes
+       && every (fun b => falls_lost p q n m (lost b) (errors b) F (form b) (columns m))
             free_nodes)
   && from_source free_nodes free free_sources (fun F m =>
-       forallb (fun b => falls p q (n - 1) m (errors b) F (form b) (map (@tl Z) (columns m)))
+       every (fun b => falls p q (n - 1) m (errors b) F (form b) (map (@tl Z) (columns m)))
          free_nodes
-       && forallb (lands F m) nodes).
+       && every (lands F m) nodes).
 
 Lemma image_surface cols : forall x k,
   image (at_surface cols) x k = match k with O => 0 | S j => image cols x (S j) end.
@@ -280,7 +281,7 @@ Proof.
       { apply (average_below n modes x e (errors t) top (quad (form t)) v b); auto.
         - intros. apply quad_convex; assumption.
         - intros m I. destruct (from_source_sound _ _ _ _ _ I Touch) as (s & Is & C).
-          apply andb_true_iff in C. destruct C as [C _]. apply (proj1 (forallb_forall _ _) C) in It.
+          apply andb_true_iff in C. destruct C as [C _]. apply (every_sound _ _ C) in It.
           apply Rle_trans with (1 := Sound _ _ _ _ _ _ x e It).
           apply Rplus_le_compat_r, Up, Is. }
       pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))). lra.
@@ -293,7 +294,7 @@ Proof.
           pose proof (tail_convex (quad (form t)) (fun a v u H => quad_convex _ a v u Pos H) a w u Ha).
           unfold mix at 2. lra.
         - intros m I. destruct (from_source_sound _ _ _ _ _ I Touch) as (s & Is & C).
-          apply andb_true_iff in C. destruct C as [_ C]. apply (proj1 (forallb_forall _ _) C) in It.
+          apply andb_true_iff in C. destruct C as [_ C]. apply (every_sound _ _ C) in It.
           apply Rle_trans with (1 := falls_lost_sound p q Q _ _ _ _ _ _ _ x e It).
           apply Rplus_le_compat_r, Up, Is. }
       pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))).
@@ -313,7 +314,7 @@ Proof.
           auto.
         - apply (tail_convex (quad (form t))). intros. apply quad_convex; assumption.
         - intros m I. destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
-          apply andb_true_iff in C. destruct C as [C _]. apply (proj1 (forallb_forall _ _) C) in It.
+          apply andb_true_iff in C. destruct C as [C _]. apply (every_sound _ _ C) in It.
           pose proof (Sound _ _ _ _ _ _ (tail x) e It) as K.
           rewrite (quad_ext (form t) _ (tail (after (n - 1) m (tail x) e))) in K
             by (intro; apply image_tail).
@@ -326,7 +327,7 @@ Proof.
       assert (Lands : forall m, In m free -> exists s, In s free_nodes /\ lands (form s) m t = true).
       { intros m I. destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
         apply andb_true_iff in C. destruct C as [_ C]. exists s. split; [exact Is |].
-        apply (proj1 (forallb_forall _ _) C), It. }
+        apply (every_sound _ _ C), It. }
       assert (Deep : quad (form t) v <= top).
       { enough (B : quad (form t) v <= top + dot (errors t) (fun i => squared e i - squared b i)) by lra.
         apply (average_below (n - 1) free (tail x) e (errors t) top (quad (form t)) v b); auto.

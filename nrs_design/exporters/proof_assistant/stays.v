@@ -46,13 +46,13 @@ Definition place_falls (m : place) : bool :=
 Definition switch_falls (s : switch) : bool :=
   match nth_error places (from s), nth_error places (to s) with
   | Some m, Some l =>
-      forallb (fun c => leads (p ^ Z.of_nat c) (q ^ Z.of_nat c) (form m) (form l)
+      every (fun c => leads (p ^ Z.of_nat c) (q ^ Z.of_nat c) (form m) (form l)
                           (following (reset s) (power (motion m) c))) (counts m)
   | _, _ => false
   end.
 
 Definition stays_fall : bool :=
-  (0 <=? p)%Z && (p <? q)%Z && forallb place_falls places && forallb switch_falls switches.
+  (0 <=? p)%Z && (p <? q)%Z && every place_falls places && every switch_falls switches.
 
 Notation rho := (IZR p / IZR q).
 
@@ -75,7 +75,7 @@ Proof.
     apply Rmult_lt_reg_r with (IZR q); [lra |]. unfold Rdiv. rewrite Rmult_assoc, Rinv_l; lra. }
   split; [exact R |].
   assert (Each : forall a m, nth_error places a = Some m -> place_falls m = true).
-  { intros a m E. apply (proj1 (forallb_forall _ _) Pl). exact (nth_error_In _ _ E). }
+  { intros a m E. apply (every_sound _ _ Pl). exact (nth_error_In _ _ E). }
   assert (On : forall a m, nth_error places a = Some m -> must_be_left m = false ->
     forall c y, quad (form m) (repeated (motion m) c y) <= rho ^ (2 * c) * quad (form m) y).
   { intros a m E L c y. specialize (Each a m E). unfold place_falls in Each. rewrite L in Each.
@@ -90,12 +90,12 @@ Proof.
   { revert l Ej. induction H as [| steps count s m' y z H IH I Es C Z]; intros l Ej.
     - rewrite Ei in Ej. injection Ej as <-. simpl. lra.
     - specialize (IH m' Es).
-      apply (proj1 (forallb_forall _ _) Sw) in I. unfold switch_falls in I. rewrite Es, Ej in I.
+      apply (every_sound _ _ Sw) in I. unfold switch_falls in I. rewrite Es, Ej in I.
       rewrite (quad_ext _ _ _ Z). destruct C as [C1 C2].
       assert (Last : forall c y', In c (counts m') ->
         quad (form l) (moved (reset s) (repeated (motion m') c y'))
         <= rho ^ (2 * c) * quad (form m') y').
-      { intros c y' K. apply (proj1 (forallb_forall _ _) I) in K.
+      { intros c y' K. apply (every_sound _ _ I) in K.
         pose proof (leads_sound _ _ _ _ _ y' K) as D. rewrite rho_power in D.
         rewrite (quad_ext _ _ (moved (reset s) (repeated (motion m') c y'))) in D; [exact D |].
         intro k. rewrite moved_following. destruct (reset s); [| apply moved_power].

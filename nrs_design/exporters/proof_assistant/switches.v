@@ -63,7 +63,7 @@ Definition switch_falls (s : switch) : bool :=
   | _, _ => false
   end.
 
-Definition switches_fall : bool := forallb place_falls places && forallb switch_falls switches.
+Definition switches_fall : bool := every place_falls places && every switch_falls switches.
 
 Lemma stays_falls m w span : place_falls m = true -> 0 <= span -> stays m w span ->
   quad (form m) (w span) <= exp (- (2 * alpha) * span) * quad (form m) (w 0).
@@ -136,7 +136,7 @@ Theorem switches_sound : switches_fall = true -> decays_by_mode.
 Proof.
   unfold switches_fall. rewrite andb_true_iff. intros [Pl Sw].
   assert (Each : forall a m, nth_error places a = Some m -> place_falls m = true).
-  { intros a m E. apply (proj1 (forallb_forall _ _) Pl). exact (nth_error_In _ _ E). }
+  { intros a m E. apply (every_sound _ _ Pl). exact (nth_error_In _ _ E). }
   intros i j x time m l w span Ei Ej H T St.
   assert (Main : forall j y t, reaches i x t j y -> forall l, nth_error places j = Some l ->
     quad (form l) y <= exp (- (2 * alpha) * t) * quad (form m) x).
@@ -144,7 +144,7 @@ Proof.
       intros l Ej.
     - rewrite Ei in Ej. injection Ej as <-. rewrite Rmult_0_r, exp_0. lra.
     - specialize (IH m' Es). pose proof (stays_falls m' w span (Each _ _ Es) T St) as K.
-      apply (proj1 (forallb_forall _ _) Sw) in I. unfold switch_falls in I. rewrite Es, Ej in I.
+      apply (every_sound _ _ Sw) in I. unfold switch_falls in I. rewrite Es, Ej in I.
       rewrite !andb_true_iff, Z.ltb_lt in I. destruct I as [[_ Dp] I].
       rewrite (quad_ext _ _ _ Z), exp_sum, Rmult_assoc.
       apply Rle_trans with (exp (- (2 * alpha) * span) * quad (form m') (w 0));

@@ -27,6 +27,8 @@ SHAPES = [
     "force-limit-offset",
     "failing-controller",
 ]
+# Ten seconds of one core, were it not for what else a machine does.
+HANG = 60
 # Those of the real numbers of Coq's library.
 STANDARD = {
     "ClassicalDedekindReals.sig_not_dec",
@@ -133,15 +135,15 @@ def test_coq_accepts_every_shipped_proof(name, tmp_path):
     code, output, taken = told(text_of(certificate_of(name)), tmp_path)
     assert code == 0, output
     assert set(re.findall(r"^([A-Z]\w+\.\w+)", output, re.MULTILINE)) <= STANDARD
-    assert taken < 10
+    assert taken < HANG
 
 
 def better(certificate):
     """A certificate of a rate that the exact check refuses, and not by much."""
     evidence, system = certificate.evidence, certificate.system
     share = Fraction(1, 4096)
+    rate = evidence.rate
     while True:
-        rate = evidence.rate
         faster = rate * (1 + share) if system.time is Time.CONTINUOUS else rate - share * (1 - rate)
         changed = with_evidence(certificate, rate=faster)
         if changed.statements[0].find_fault(system) is not None:
@@ -160,16 +162,13 @@ def test_coq_refuses_a_better_rate(name, tmp_path):
 def test_coq_refuses_numbers_that_are_altered(name, tmp_path):
     """A form of another sign, and a mode that is another."""
     certificate = certificate_of(name)
-    node = certificate.evidence.nodes[0]
-    form = [list(row) for row in node.form]
-    form[0][0] = -form[0][0]
-    nodes = (node._replace(form=tuple(map(tuple, form))), *certificate.evidence.nodes[1:])
-    assert refused(text_of(with_evidence(certificate, nodes=nodes)), tmp_path)
+    text = text_of(certificate)
+    begin = re.compile(r"(Definition form := |Node |Place .*\n +)\[\((?=\d)")
+    assert refused(begin.sub(r"\1[(-", text, count=1), tmp_path)
     first, *others = certificate.system.modes
     numerators = [[2 * entry for entry in row] for row in first.A.numerators]
     A = replace(first.A, numerators=tuple(map(tuple, numerators)))
     system = replace(certificate.system, modes=(replace(first, A=A), *others))
-    text = text_of(certificate)
     odd = text_of(replace(certificate, system=system))
     # The witnesses stay those of the certificate.
     witnesses = re.compile(r"^Definition witness.*?\.\n", re.MULTILINE | re.DOTALL)
@@ -178,11 +177,11 @@ def test_coq_refuses_numbers_that_are_altered(name, tmp_path):
 
 
 @pytest.mark.nightly
-def test_coq_refuses_every_altered_witness(tmp_path):
+def test_coq_refuses_an_altered_witness(tmp_path):
+    """One digit of the middle of each."""
     text = text_of(certificate_of("dayawansa-martin-6"))
-    begin = text.index("Definition witness1")
-    for found in re.finditer(r"\(h[0-9A-F] ", text[begin:]):
-        at = begin + found.start() + 2
-        changed = f"{text[:at]}{'1' if text[at] == '0' else '0'}{text[at + 1 :]}"
-        if changed != text and found.start() % 7 == 0:
-            assert refused(changed, tmp_path)
+    for witness in re.finditer(r"^Definition witness.*?\.\n", text, re.MULTILINE | re.DOTALL):
+        digits = list(re.finditer(r"\(h([0-9A-F]) ", witness[0]))
+        at = witness.start() + digits[len(digits) // 2].start(1)
+        other = "1" if text[at] == "0" else "0"
+        assert refused(f"{text[:at]}{other}{text[at + 1 :]}", tmp_path)

@@ -100,7 +100,15 @@ def in_comment(text: str) -> str:
 
 
 def factor_of(form: IntegerMatrix) -> int:
-    """Return a power of two with which a positive definite form exceeds the sum of squares."""
+    """Return a power of two with which a positive definite form exceeds the sum of squares.
+
+    Raises
+    ------
+    ValueError
+        If the form is not positive definite.
+    """
+    if not is_positive_definite(form):
+        raise ValueError("no multiple of a form that is not positive definite exceeds it")
     power = 1
     while not is_positive_definite(
         [[power * e - (i == j) for j, e in enumerate(row)] for i, row in enumerate(form)]

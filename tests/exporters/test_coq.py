@@ -3,17 +3,24 @@
 import re
 import resource
 import subprocess
+import sys
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 
 import pytest
 
 from nrs_design.certificates.verify import verify
+from nrs_design.cli import main
 from nrs_design.errors import DesignError
-from nrs_design.exporters import rendered
+from nrs_design.exporters import format_of, rendered
 from nrs_design.exporters.export import Export
+from nrs_design.exporters.write import places
+from nrs_design.proof.evidence.graph import Arc
 from nrs_design.proof.mode import Time
+from nrs_design.search.certify import Limits, certify
+from tests.search.support import thesis_robot
 from tests.support import ROOT, program_named
 
 SHIPPED = sorted(path.name.removesuffix(".cert.json") for path in ROOT.glob("reports/*.cert.json"))
@@ -89,6 +96,52 @@ def test_the_theorem_names_every_mode(name):
     assert text == text_of(certificate)
 
 
+def lists_of(text, name):
+    """The lists of a definition, each a list of integers; names of lists are looked up."""
+    rows = dict(re.findall(r"^Definition (v\d+) := \[(.*?)\]\.$", text, re.MULTILINE))
+    body = re.search(rf"^Definition {name} := (.*?)\.$", text, re.MULTILINE)[1]
+    found = re.sub(r"v\d+", lambda match: f"[{rows[match[0]]}]", body)
+    return [list(map(int, row.split("; "))) for row in re.findall(r"\[(-?\d[^][]*)\]", found)], body
+
+
+def test_the_modes_are_those_of_the_certificate():
+    """Coq cannot tell; the deflection, which is the last state, comes first."""
+    certificate = certificate_of("soft-tissue")
+    text, system = text_of(certificate), certificate.system
+    names = re.findall(r"^Definition (mode_\w+)", text, re.MULTILINE)
+    for name, mode in zip(names, [*system.modes, *system.free], strict=True):
+        rows, body = lists_of(text, name)
+        over = int(re.search(r"\] (\d+) \[", body)[1])
+        found = [[Fraction(entry, over) for entry in row] for row in rows]
+        A = mode.A.fractions()
+        assert found == [[A[i][j] for j in (3, 0, 1, 2)] for i in (3, 0, 1, 2)]
+
+
+def test_the_modes_of_a_sampled_loop_are_those_of_the_certificate():
+    certificate = certificate_of("soft-tissue-sampled")
+    text, system = text_of(certificate), certificate.system
+    names = re.findall(r"^Definition (mode_\w+)", text, re.MULTILINE)
+    n, errors = system.order, system.roundings
+    order = [n - 1, *range(n - 1)]
+    for k, (name, mode) in enumerate(zip(names, [*system.modes, *system.free], strict=True)):
+        before = order if k < len(system.modes) else order[1:]
+        (units, *columns), _ = lists_of(text, name)
+        columns, bounds = columns[: len(units)], columns[len(units) :]
+        A = mode.A.fractions()
+        expected = [[A[i][j] for i in order] for j in before]
+        expected += [[item.columns[k].fractions()[i][0] for i in order] for item in errors]
+        found = [
+            [Fraction(entry, unit) for entry in column]
+            for unit, column in zip(units, columns, strict=True)
+        ]
+        assert found == expected
+        rows = [item.rows[k].fractions()[0] for item in errors]
+        assert [
+            [Fraction(entry, unit) for entry, unit in zip(bound, units, strict=False)]
+            for bound in bounds
+        ] == [[row[j] for j in before] for row in rows]
+
+
 def test_a_comment_ends_where_it_should():
     certificate = certificate_of("commuting")
     odd = replace(certificate, spec_name='a*) Axiom b : False. (* "c')
@@ -96,6 +149,38 @@ def test_a_comment_ends_where_it_should():
     head = text[: text.index("From Coq")]
     assert head.count("*)") == head.count("(*") == 1
     assert '"' not in head
+
+
+def test_kinds_and_shapes_without_a_theorem_are_refused():
+    certificate = certificate_of("dayawansa-martin-6")
+    refuted = replace(certificate, statements=certificate.statements[1:])
+    with pytest.raises(DesignError, match="shown by nothing"):
+        text_of(refuted)
+    certificate = certificate_of("force-limit-sampled")
+    arcs = (Arc(target=0), Arc(source=0))
+    with pytest.raises(DesignError, match="some of the forms"):
+        text_of(with_evidence(certificate, edges=arcs))
+
+
+def test_matrices_are_exported_as_typed(tmp_path, monkeypatch, capsys):
+    spec = ROOT / "specs/examples/failing-controller.nrs.yaml"
+    command = ["nrs-design", "export", str(spec), "--format", "coq", "--out", str(tmp_path)]
+    monkeypatch.setattr(sys, "argv", command)
+    with pytest.raises(SystemExit) as caught:
+        main()
+    assert not caught.value.code
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "failing-controller.cert.json",
+        "failing_controller.v",
+    ]
+    assert "PROVED, exported" in capsys.readouterr().out
+    text = (tmp_path / "failing_controller.v").read_text()
+    assert "not in the theorem: what happens within a stay of a mode that must be left" in text
+
+
+def test_a_name_is_one_of_coq():
+    (path,) = places(format_of("coq"), "3-axes.b", Path()).values()
+    assert path.name == "_3_axes_b.v"
 
 
 def test_names_of_modes_that_are_alike_stay_apart():
@@ -136,6 +221,22 @@ def test_coq_accepts_every_shipped_proof(name, tmp_path):
     assert code == 0, output
     assert set(re.findall(r"^([A-Z]\w+\.\w+)", output, re.MULTILINE)) <= STANDARD
     assert taken < HANG
+
+
+@pytest.mark.nightly
+def test_coq_accepts_one_function_for_each_mode(tmp_path):
+    """Contact is lost, and the forms in contact and free are several."""
+    sampling = "{period: 2 ms, delay: 2}"
+    system = thesis_robot(
+        ("20", "42.5"), ("2.15", "1.04"), "0.01", sampling=sampling, contact="losable"
+    )
+    evidence = certify(system, limits=Limits(optimize_rate=False)).evidence
+    assert len(evidence.nodes) > 2
+    one = certificate_of("soft-tissue-sampled")
+    certificate = replace(one, system=system, statements=(evidence,))
+    code, output, _ = told(text_of(certificate), tmp_path)
+    assert code == 0, output
+    assert refused(text_of(better(certificate)), tmp_path)
 
 
 def better(certificate):

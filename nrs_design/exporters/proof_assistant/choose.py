@@ -15,8 +15,9 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
 COVERED = (
-    "forms for all modes (lmi, gradient, polynomial in continuous time, conewise-quadratic, "
-    "conewise-polynomial, conewise-mode-quadratic, coupled-axes in continuous time)"
+    "lmi, gradient, conewise-quadratic, parameter-quadratic and mode-quadratic; "
+    "conewise-mode-quadratic in discrete time; polynomial, conewise-polynomial and "
+    "coupled-axes in continuous time"
 )
 
 
@@ -49,6 +50,8 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
         return "its environment could pull where contact is lost"
     if system.clock is not None:
         return "its modes take turns"
+    if evidence.stays is None and not evidence.bounds_at_once:
+        return "its steps lead to some of the forms at a place only"
     if system.time is Time.CONTINUOUS:
         left = evidence.stays is not None and evidence.stays.leaving
         return "some of its modes must be left, in continuous time" if left else None
@@ -62,5 +65,5 @@ def _find_uncovered(system: SwitchedSystem, evidence: FormsOnGraph) -> str | Non
 def _refused(reason: str) -> DesignError:
     return DesignError(
         f"there is no theorem for Coq of this certificate: {reason}",
-        remedy=f"those are covered that have {COVERED}",
+        remedy=f"there is one for {COVERED}",
     )

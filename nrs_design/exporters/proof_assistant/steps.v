@@ -133,6 +133,12 @@ Proof.
   apply IH.
 Qed.
 
+Lemma length_first n : forall us : list Z, (n <= length us)%nat -> length (firstn n us) = n.
+Proof. induction n as [| n IH]; intros [| u us] H; simpl in *; try lia. rewrite IH; lia. Qed.
+
+Lemma length_rest n : forall us : list Z, length (skipn n us) = (length us - n)%nat.
+Proof. induction n as [| n IH]; intros [| u us]; simpl; auto; lia. Qed.
+
 Hypothesis q_positive : (0 < q)%Z.
 
 (* What is left of F over G after the step, with what is known of the errors. *)
@@ -158,15 +164,15 @@ Proof.
     assert (C : (q * (nth k (units m) 1 * p / q) = p * nth k (units m) 1)%Z).
     { apply Z.eqb_eq. apply (proj1 (forallb_forall _ _) D).
       rewrite <- (firstn_skipn n (units m)) at 1. rewrite app_nth1.
-      - apply nth_In. rewrite firstn_length. lia.
-      - rewrite firstn_length. lia. }
+      - apply nth_In. rewrite length_first; lia.
+      - rewrite length_first; lia. }
     apply (f_equal IZR) in C. rewrite !mult_IZR in C.
     specialize (P k ltac:(lia)). set (u := IZR (nth k (units m) 1%Z)) in *.
     apply Rmult_eq_reg_l with (IZR q); [| lra].
     replace (IZR q * (IZR p / IZR q * x k)) with (IZR p * u * (x k / u)) by (field; lra).
     rewrite <- C. ring. }
   rewrite E. clear E.
-  rewrite slack_quad by (rewrite ?skipn_length; lia).
+  rewrite slack_quad by (rewrite ?length_rest; lia).
   rewrite (dot_ext_below ms _ (fun i => squared e i - squared (bound n m x e) i)); [ring |].
   intros i I. rewrite nth_skipn. unfold squared, bound.
   replace (IZR (nth (n + i) (units m) 1%Z) * zeta n m x e (n + i)%nat) with (e i); [reflexivity |].

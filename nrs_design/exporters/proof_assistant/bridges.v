@@ -80,7 +80,8 @@ Definition piece (count : nat) (more : Z) (P : poly) : list poly :=
 Definition piece_falls (cs : list poly) : bool :=
   forallb (within n) cs
   && sums_nowhere_negative n []
-       (both (map (pscale (hd * over f * q)) (derivative cs)) (map (fun c => pscale (-1) (lie c)) cs)).
+       (both (map (pscale (hd * over f * q)) (derivative cs)) (map (fun c => pscale (-1) (lie c))
+         cs)).
 
 Fixpoint pieces (number count : nat) (more : Z) (P : poly) : option poly :=
   match number with
@@ -112,7 +113,8 @@ Lemma series_lie cs s x :
 Proof.
   apply (IZR_lt 0) in over_positive.
   induction cs as [| c cs IH]; simpl; [ring |].
-  rewrite IH, peval_scale. unfold lie. rewrite peval_collected, peval_app, !peval_scale, peval_along.
+  rewrite IH, peval_scale. unfold lie. rewrite peval_collected, peval_app, !peval_scale,
+    peval_along.
   unfold field at 2. rewrite slope_times, !mult_IZR. field. lra.
 Qed.
 
@@ -134,7 +136,8 @@ Proof.
         + (- / h * series cs ((last - t) / h) (w t) + (last - t) / h
            * (series_slope cs ((last - t) / h) (w t) v
               - / h * series (derivative cs) ((last - t) / h) (w t)))) by ring.
-    apply (right_add (fun r => peval c (w r)) (fun r => (last - r) / h * series cs ((last - r) / h) (w r))).
+    apply (right_add (fun r => peval c (w r)) (fun r => (last - r) / h * series cs ((last - r) /
+      h) (w r))).
     + apply right_peval. intros k m J i I. exact (H c (or_introl eq_refl) k m J i I).
     + apply (right_times (fun r => (last - r) / h) (fun r => series cs ((last - r) / h) (w r))).
       * apply right_derivative.
@@ -154,7 +157,8 @@ Proof.
     [apply continuity_pt_const; intros ? ?; reflexivity |].
   apply (continuity_pt_plus (fun r => peval c (w r))).
   - apply continuous_peval. intros k m J i I. exact (H c (or_introl eq_refl) k m J i I).
-  - apply (continuity_pt_mult (fun r => (last - r) / h) (fun r => series cs ((last - r) / h) (w r))).
+  - apply (continuity_pt_mult (fun r => (last - r) / h) (fun r => series cs ((last - r) / h) (w
+    r))).
     + unfold Rdiv. apply (continuity_pt_mult (fun r => last - r) (fun _ => / h));
         [| apply continuity_pt_const; intros ? ?; reflexivity].
       apply (continuity_pt_minus (fun _ => last) (fun r => r));
@@ -206,7 +210,8 @@ Proof.
   { intros c I. apply within_sound, (proj1 (forallb_forall _ _) W), I. }
   pose proof (falls_exponentially
     (fun t => series cs ((a + h - (a + t)) / h) (y (a + t))) (2 * rate) h) as K.
-  cbv beta in K. rewrite (share_at_end a h H0), (share_at_begin a h H0), Rplus_0_r in K. apply K; [lra | |].
+  cbv beta in K. rewrite (share_at_end a h H0), (share_at_begin a h H0), Rplus_0_r in K. apply K;
+    [lra | |].
   - intros t T.
     exists (series_slope cs ((a + h - (a + t)) / h) (y (a + t)) (field f (y (a + t)))
             - / h * series (derivative cs) ((a + h - (a + t)) / h) (y (a + t))).
@@ -231,7 +236,8 @@ Proof.
       apply Rmult_le_reg_l with (IZR hn * IZR (over f) * IZR q);
         [repeat apply Rmult_lt_0_compat; assumption |].
       replace (IZR hn * IZR (over f) * IZR q * (A - / h * B))
-        with (IZR hn * IZR (over f) * IZR q * A - IZR hd * IZR (over f) * IZR q * B) by (field; lra).
+        with (IZR hn * IZR (over f) * IZR q * A - IZR hd * IZR (over f) * IZR q * B) by (field;
+          lra).
       replace (IZR hn * IZR (over f) * IZR q * (- (2 * rate) * U))
         with (- (2 * IZR p * IZR hn * IZR (over f) * U)) by (field; lra).
       lra.

@@ -103,12 +103,14 @@ Lemma falling surface f w others x e : (0 < q)%Z ->
   <= - (2 * INR d * alpha) * V z
      + dot multipliers (fun i => squared (fun j => z (n + j)%nat) i - squared (limit f z) i).
 Proof.
-  intro q_positive. cbn zeta. set (z := joined n x e). unfold is_falling. cbv zeta. rewrite !andb_true_iff, !Z.ltb_lt.
+  intro q_positive. cbn zeta. set (z := joined n x e). unfold is_falling. cbv zeta. rewrite
+    !andb_true_iff, !Z.ltb_lt.
   intros [[[[C O] L] E] G] Surface.
   pose proof (positive_sound _ G (monomials others z)) as P.
   match type of E with vanishes (if _ then _ else ?Q) = true => assert (Z : peval Q z = 0) end.
   { destruct surface; [rewrite <- peval_no_first by auto |]; apply vanishes_sound, E. }
-  clear E. rewrite !peval_app, !peval_scale, peval_expanded, peval_along, peval_given in Z by exact L.
+  clear E. rewrite !peval_app, !peval_scale, peval_expanded, peval_along, peval_given in Z by
+    exact L.
   unfold field. rewrite slope_times. unfold alpha, squared, limit. rewrite V_polynomial.
   rewrite !opp_IZR, !mult_IZR, <- INR_IZR_INZ in Z.
   set (s := slope VP z _) in *. set (v := peval VP z) in *. set (m := dot multipliers _) in *.
@@ -218,7 +220,8 @@ Lemma slope_ext P x v w : (forall c m, In (c, m) P -> forall i, In i m -> v i = 
   slope P x v = slope P x w.
 Proof.
   induction P as [| [c m] P IH]; intro H; simpl; [reflexivity |]. f_equal.
-  - f_equal. specialize (H c m (or_introl eq_refl)). induction m as [| i m IHm]; simpl; [reflexivity |].
+  - f_equal. specialize (H c m (or_introl eq_refl)). induction m as [| i m IHm]; simpl;
+    [reflexivity |].
     rewrite (H i), IHm; [reflexivity | | left; reflexivity]. intros j J. apply H. right. exact J.
   - apply IH. intros d' k K. apply (H d' k). right. exact K.
 Qed.
@@ -227,7 +230,8 @@ Lemma peval_ext P x y : (forall c m, In (c, m) P -> forall i, In i m -> x i = y 
   peval P x = peval P y.
 Proof.
   induction P as [| [c m] P IH]; intro H; simpl; [reflexivity |]. f_equal.
-  - f_equal. specialize (H c m (or_introl eq_refl)). induction m as [| i m IHm]; simpl; [reflexivity |].
+  - f_equal. specialize (H c m (or_introl eq_refl)). induction m as [| i m IHm]; simpl;
+    [reflexivity |].
     rewrite (H i), IHm; [reflexivity | | left; reflexivity]. intros j J. apply H. right. exact J.
   - apply IH. intros d' k K. apply (H d' k). right. exact K.
 Qed.
@@ -281,9 +285,11 @@ Proof.
     + rewrite (slope_ext VP z _ (field (if surface then unpushed f else f) z)); [exact K |].
       intros c m _ i _. destruct surface; destruct i; try reflexivity.
       * unfold kept_zero, field. simpl. ring.
-      * unfold kept_zero, field. simpl. do 2 f_equal. destruct (rows f); [destruct i |]; reflexivity.
+      * unfold kept_zero, field. simpl. do 2 f_equal. destruct (rows f); [destruct i |];
+        reflexivity.
     + intro i. unfold squared, z. rewrite joined_after. destruct surface; reflexivity.
-  - rewrite (slope_ext VP z _ (fun k => (1 - a) * kept_zero surface v k + a * kept_zero surface u k))
+  - rewrite (slope_ext VP z _ (fun k => (1 - a) * kept_zero surface v k + a * kept_zero surface u
+    k))
       by (intros c k _ i _; destruct i, surface; simpl; ring).
     rewrite slope_mix. pose proof (limits_convex multipliers a Ha P e l m) as C.
     assert ((1 - a) * slope VP z (kept_zero surface v) <= (1 - a)
@@ -298,7 +304,8 @@ Qed.
 Lemma average_ext fs y z v l : (forall k, y k = z k) -> average fs y v l ->
   exists u m, average fs z u m /\ (forall k, v k = u k) /\ (forall i, l i = m i).
 Proof.
-  intros E H. induction H as [f I | a v l u m A _ (v' & l' & Hv & Ev & El) _ (u' & m' & Hu & Eu & Em)].
+  intros E H. induction H as [f I | a v l u m A _ (v' & l' & Hv & Ev & El) _ (u' & m' & Hu & Eu &
+    Em)].
   - exists (field f z), (limit f z). split; [constructor; exact I |].
     split; intro k; [unfold field | unfold limit]; rewrite (dot_ext _ y z E); reflexivity.
   - exists (fun k => (1 - a) * v' k + a * u' k), (fun i => (1 - a) * l' i + a * m' i).
@@ -339,7 +346,8 @@ Proof.
     apply (Goal false modes gives others u m T Au); [discriminate | exact El |].
     intros k K. replace (kept_zero false u k) with (v k) by (rewrite Ev; destruct k; reflexivity).
     specialize (D k K). unfold seen. destruct cut; [| exact D].
-    destruct (S eq_refl) as (h & Hh & B). apply (right_ext (fun s => x s k) _ _ _ h Hh); [| exact D].
+    destruct (S eq_refl) as (h & Hh & B). apply (right_ext (fun s => x s k) _ _ _ h Hh); [| exact
+      D].
     intros s Bs. destruct k; [| reflexivity]. symmetry. apply Rmax_right, B, Bs.
   - destruct S as (h & Hh & B).
     assert (Z : forall s, t <= s < t + h -> seen (x s) 0%nat = 0).
@@ -393,7 +401,8 @@ Proof.
     pose proof (H 0%nat ltac:(lia)) as H0.
     rewrite total_linear.
     assert (E : total axes (fun a => squared (e a) 0%nat - squared (l a) 0%nat)
-              = total axes (fun a => squared (e a) 0%nat) - total axes (fun a => squared (l a) 0%nat)).
+              = total axes (fun a => squared (e a) 0%nat) - total axes (fun a => squared (l a)
+                0%nat)).
     { clear. induction axes as [| a IH]; simpl; [ring |]. rewrite IH. ring. }
     rewrite E. unfold tail, squared in *. nra.
 Qed.
@@ -414,7 +423,8 @@ Lemma continuous_total axes (f : nat -> R -> R) t :
   (forall a, (a < axes)%nat -> continuity_pt (f a) t) ->
   continuity_pt (fun s => total axes (fun a => f a s)) t.
 Proof.
-  induction axes as [| a IH]; intro H; simpl; [apply continuity_pt_const; intros ? ?; reflexivity |].
+  induction axes as [| a IH]; intro H; simpl; [apply continuity_pt_const; intros ? ?; reflexivity
+    |].
   apply (continuity_pt_plus (fun s => total a (fun b => f b s)) (f a));
     [apply IH; intros; apply H; lia | apply H; lia].
 Qed.

@@ -146,7 +146,8 @@ Qed.
 Lemma quad_ext_below n : forall F x y, shaped n F = true ->
   (forall k, (k < n)%nat -> x k = y k) -> quad F x = quad F y.
 Proof.
-  induction n as [| n IH]; intros [| [c r] F] x y S H; simpl in *; try discriminate; [reflexivity |].
+  induction n as [| n IH]; intros [| [c r] F] x y S H; simpl in *; try discriminate; [reflexivity
+    |].
   apply andb_true_iff in S. destruct S as [L S]. apply Nat.eqb_eq in L.
   rewrite (H 0%nat), (IH F (tail x) (tail y)), (dot_ext_below r (tail x) (tail y)); auto; try lia;
     intros k K; apply H; lia.
@@ -212,6 +213,14 @@ Lemma quad_square r : forall x, quad (square r) x = dot r x * dot r x.
 Proof.
   induction r as [| c r IH]; intro x; simpl; [lra |].
   rewrite IH, dot_scale, mult_IZR. ring.
+Qed.
+
+Lemma quad_times T : forall t x, quad T (fun k => t * x k) = t * t * quad T x.
+Proof.
+  induction T as [| [c r] T IH]; intros t x; simpl; [ring |].
+  change (tail (fun k => t * x k)) with (fun k => t * tail x k). rewrite IH.
+  rewrite (dot_ext r _ (fun k => t * tail x k + 0)) by (intro; ring).
+  rewrite (dot_add r (tail x) (fun _ => 0)), (dot_zero r (fun _ => 0)) by reflexivity. ring.
 Qed.
 
 Lemma dot_pair r : forall d x, dot (zpair r d) x = dot r (fun k => IZR (nth k d 0%Z) * x k).
@@ -311,7 +320,8 @@ Lemma quad_convex T a v u : (forall x, 0 <= quad T x) -> 0 <= a <= 1 ->
   quad T (mix a v u) <= (1 - a) * quad T v + a * quad T u.
 Proof.
   intros P A. set (w := fun k => u k - v k).
-  assert (E : forall t, quad T (fun k => t * w k + v k) = t * t * quad T w + 2 * t * bilin T w v + quad T v).
+  assert (E : forall t, quad T (fun k => t * w k + v k) = t * t * quad T w + 2 * t * bilin T w v +
+    quad T v).
   { intro t. rewrite <- bilin_self, bilin_add, (bilin_comm T w), (bilin_comm T v), !bilin_add,
       !bilin_self, (bilin_comm T v w). ring. }
   rewrite (quad_ext T (mix a v u) (fun k => a * w k + v k)) by (intro; unfold mix, w; ring).
@@ -322,7 +332,8 @@ Proof.
 Qed.
 
 Lemma limits_convex ms a : 0 <= a <= 1 -> forallb (Z.leb 0) ms = true -> forall e l m : vec,
-  (1 - a) * dot ms (fun i => squared e i - squared l i) + a * dot ms (fun i => squared e i - squared m i)
+  (1 - a) * dot ms (fun i => squared e i - squared l i) + a * dot ms (fun i => squared e i -
+    squared m i)
   <= dot ms (fun i => squared e i - squared (fun j => (1 - a) * l j + a * m j) i).
 Proof.
   intro A. induction ms as [| c ms IH]; intros P e l m; cbn [dot forallb] in *; [lra |].
@@ -436,7 +447,8 @@ Proof.
     specialize (IH (tl ss) (tail x) x0 (natural_tl ss N)). cbn zeta in IH.
     rewrite (dot_ext _ _ _ (counted_tail ss x)) in IH.
     rewrite (norm2_ext _ _ _ (counted_tail ss x)) in IH. rewrite counted_head.
-    pose proof (natural_hd ss N) as Hh. pose proof (shiftr_bounds c (s + hd 0%Z ss) ltac:(lia)) as B.
+    pose proof (natural_hd ss N) as Hh. pose proof (shiftr_bounds c (s + hd 0%Z ss) ltac:(lia)) as
+      B.
     rewrite two_plus in B by assumption.
     set (a := two s * x0) in *. set (b := two (hd 0%Z ss) * x 0%nat).
     set (v := IZR (Z.shiftr c (s + hd 0%Z ss))) in *.

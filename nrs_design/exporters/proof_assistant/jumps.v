@@ -69,7 +69,8 @@ Proof.
   rewrite (H 0%nat), IH; [ring | intro j; apply H].
 Qed.
 
-Lemma image_of_Z columns : forall c k, image columns (of_Z c) k = IZR (nth k (zimage columns c) 0%Z).
+Lemma image_of_Z columns : forall c k, image columns (of_Z c) k = IZR (nth k (zimage columns c)
+  0%Z).
 Proof.
   induction columns as [| col rest IH]; intros c k; simpl; [destruct k; reflexivity |].
   destruct c as [| x c].
@@ -84,7 +85,8 @@ Proof.
   unfold tail at 1. rewrite (IH (fun j => x (S j)) (fun j => y (S j))). unfold tail. ring.
 Qed.
 
-Lemma image_ext columns : forall x y k, (forall j, x j = y j) -> image columns x k = image columns y k.
+Lemma image_ext columns : forall x y k, (forall j, x j = y j) -> image columns x k = image columns
+  y k.
 Proof.
   induction columns as [| c rest IH]; intros x y k H; simpl; [reflexivity |].
   rewrite (H 0%nat), (IH (tail x) (tail y)); [reflexivity | intro j; apply H].
@@ -145,14 +147,6 @@ Qed.
 
 Lemma repeated_add m a b x : repeated m (a + b) x = repeated m a (repeated m b x).
 Proof. induction a as [| a IH]; simpl; [reflexivity |]. rewrite IH. reflexivity. Qed.
-
-Lemma quad_times T : forall t x, quad T (fun k => t * x k) = t * t * quad T x.
-Proof.
-  induction T as [| [c r] T IH]; intros t x; simpl; [ring |].
-  change (tail (fun k => t * x k)) with (fun k => t * tail x k). rewrite IH.
-  rewrite (dot_ext r _ (fun k => t * tail x k + 0)) by (intro; ring).
-  rewrite (dot_add r (tail x) (fun _ => 0)), (dot_zero r (fun _ => 0)) by reflexivity. ring.
-Qed.
 
 Lemma quad_moved G m x : (0 < under m)%Z ->
   quad (pulled_back G m) x = IZR (under m) * IZR (under m) * quad G (moved m x).

@@ -60,7 +60,8 @@ Proof.
   set (s := slope high_p z _) in *. set (r := slope low_p z _) in *.
   set (h := peval high_p z) in *. set (v := peval low_p z) in *. set (t := quad (gram w) _) in *.
   apply (IZR_lt 0) in C, O, U, Q.
-  set (c := IZR (times_decrease w)) in *. set (o := IZR (over f)) in *. set (u := IZR (over g)) in *.
+  set (c := IZR (times_decrease w)) in *. set (o := IZR (over f)) in *. set (u := IZR (over g)) in
+    *.
   apply Rmult_le_reg_l with (c * IZR q * o * u); [repeat apply Rmult_lt_0_compat; assumption |].
   replace (c * IZR q * o * u * (/ o * s + / u * r)) with (c * IZR q * u * s + c * IZR q * o * r)
     by (field; lra).
@@ -115,13 +116,16 @@ Proof.
             intros [| [[a b] m] ws] H I; simpl in *; try tauto; try discriminate.
           rewrite !andb_true_iff in H. destruct H as [[[A B] X] H].
           destruct I as [E | I]; [injection E as -> -> | exact (IH ws H I)].
-          pose proof (falling n 1 p q basis low [] false f a basis (x s) none Q A ltac:(discriminate))
+          pose proof (falling n 1 p q basis low [] false f a basis (x s) none Q A
+            ltac:(discriminate))
             as Ka.
-          pose proof (falling n 1 p q basis high [] false g b basis (x s) none Q B ltac:(discriminate))
+          pose proof (falling n 1 p q basis high [] false g b basis (x s) none Q B
+            ltac:(discriminate))
             as Kb.
           pose proof (mixed_falling f g m (y s) Q X) as Kc. cbv zeta in Ka, Kb.
           rewrite V_polynomial in Ka, Kb. simpl dot in Ka, Kb.
-          unfold alpha in Ka, Kb. replace (2 * INR 1 * (IZR p / IZR q)) with (2 * (IZR p / IZR q)) in Ka, Kb by (simpl; ring).
+          unfold alpha in Ka, Kb. replace (2 * INR 1 * (IZR p / IZR q)) with (2 * (IZR p / IZR q))
+            in Ka, Kb by (simpl; ring).
           fold low_p in Ka. fold high_p in Kb. fold (y s) in Ka, Kb.
           repeat split; lra. }
         destruct K as (Ka & Kb & Kc).
@@ -137,7 +141,8 @@ Proof.
         assert ((1 - l) * l * (d + c) <= (1 - l) * l * (r * (h + e)))
           by (apply Rmult_le_compat_l; [nra | exact Kc]).
         replace (r * ((1 - l) * e + l * h))
-          with ((1 - l) * (1 - l) * (r * e) + l * l * (r * h) + (1 - l) * l * (r * (h + e))) by ring.
+          with ((1 - l) * (1 - l) * (r * e) + l * l * (r * h) + (1 - l) * l * (r * (h + e))) by
+            ring.
         lra.
     + intros s S.
       assert (Cy : forall k, (k < n)%nat -> continuity_pt (fun r => y r k) s).

@@ -81,7 +81,8 @@ Proof.
   unfold all_exceed. rewrite !andb_true_iff, Z.ltb_lt. intros [[_ P] H] I.
   apply (every_sound _ _ H) in I. rewrite !andb_true_iff, Nat.eqb_eq, Z.leb_le in I.
   destruct I as [[[E L] M] Lo]. split; [unfold exceeds in E; apply andb_true_iff in E; apply E |].
-  repeat split; auto; [apply (IZR_le 0), Lo |]. intro x. pose proof (exceeds_sound n _ x E). pose proof (norm2_nonnegative n x).
+  repeat split; auto; [apply (IZR_le 0), Lo |]. intro x. pose proof (exceeds_sound n _ x E). pose
+    proof (norm2_nonnegative n x).
   apply (IZR_lt 0) in P. apply Rmult_le_reg_l with (IZR factor); [exact P | lra].
 Qed.
 
@@ -159,7 +160,8 @@ End Kept.
 (** *** Contact that is lost and made again *)
 
 (* The first state is the deflection. While it is positive, a mode in contact is in force, or an
-   average of some. While it is not, one of free motion moves the others, and the deflection gets no deeper than the motion
+   average of some. While it is not, one of free motion moves the others, and the deflection gets
+     no deeper than the motion
    leads from the surface, the first entry of that mode's columns. *)
 Section Losable.
 Variables (n : nat) (modes free : list mode) (nodes free_nodes : list node)
@@ -291,7 +293,8 @@ Proof.
       assert (B : f v <= top + dot (errors t) (fun i => squared e i - squared b i)).
       { apply (average_below n modes x e (errors t) top f v b); auto.
         - intros a w u Ha. unfold f.
-          pose proof (tail_convex (quad (form t)) (fun a v u H => quad_convex _ a v u Pos H) a w u Ha).
+          pose proof (tail_convex (quad (form t)) (fun a v u H => quad_convex _ a v u Pos H) a w u
+            Ha).
           unfold mix at 2. lra.
         - intros m I. destruct (from_source_sound _ _ _ _ _ I Touch) as (s & Is & C).
           apply andb_true_iff in C. destruct C as [_ C]. apply (every_sound _ _ C) in It.
@@ -309,8 +312,10 @@ Proof.
       by (intros s Is; apply Rmult_le_compat_l; [exact R0 |]; apply largest_above, in_map, Is).
     assert (Free : forall t, In t free_nodes -> quad (form t) (tail v) <= top).
     { intros t It. destruct (all_exceed_each _ _ _ M It) as (Sh & L & P & Lo & Pos).
-      assert (B : quad (form t) (tail v) <= top + dot (errors t) (fun i => squared e i - squared b i)).
-      { apply (average_below (n - 1) free (tail x) e (errors t) top (fun u => quad (form t) (tail u)) v b);
+      assert (B : quad (form t) (tail v) <= top + dot (errors t) (fun i => squared e i - squared b
+        i)).
+      { apply (average_below (n - 1) free (tail x) e (errors t) top (fun u => quad (form t) (tail
+        u)) v b);
           auto.
         - apply (tail_convex (quad (form t))). intros. apply quad_convex; assumption.
         - intros m I. destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
@@ -319,17 +324,20 @@ Proof.
           rewrite (quad_ext (form t) _ (tail (after (n - 1) m (tail x) e))) in K
             by (intro; apply image_tail).
           apply Rle_trans with (1 := K). apply Rplus_le_compat_r, Up, Is. }
-      pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))). lra. }
+      pose proof (known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))).
+        lra. }
     destruct (Rlt_dec 0 (y 0%nat)) as [Y0 | Y0]; apply largest_below; try exact Top;
       intros G K; apply in_map_iff in K; destruct K as (t & <- & It).
     + destruct (all_exceed_each _ _ _ N It) as (Sh & L & P & Lo & Pos).
       assert (Known := known_errors (errors t) e b P (fun i I => E i ltac:(rewrite <- L; exact I))).
-      assert (Lands : forall m, In m free -> exists s, In s free_nodes /\ lands (form s) m t = true).
+      assert (Lands : forall m, In m free -> exists s, In s free_nodes /\ lands (form s) m t =
+        true).
       { intros m I. destruct (from_source_sound _ _ _ _ _ I Fly) as (s & Is & C).
         apply andb_true_iff in C. destruct C as [_ C]. exists s. split; [exact Is |].
         apply (every_sound _ _ C), It. }
       assert (Deep : quad (form t) v <= top).
-      { enough (B : quad (form t) v <= top + dot (errors t) (fun i => squared e i - squared b i)) by lra.
+      { enough (B : quad (form t) v <= top + dot (errors t) (fun i => squared e i - squared b i))
+        by lra.
         apply (average_below (n - 1) free (tail x) e (errors t) top (quad (form t)) v b); auto.
         - intros. apply quad_convex; assumption.
         - intros m I. destruct (Lands m I) as (s & Is & C). unfold lands in C.
@@ -344,7 +352,8 @@ Proof.
                     <= top + dot (errors t) (fun i => squared e i - squared b i)) by lra.
         apply (average_below (n - 1) free (tail x) e (errors t) top
                  (fun u => quad (form t) (grounded u)) v b); auto.
-        - intros a w u Ha. pose proof (quad_convex (form t) a (grounded w) (grounded u) Pos Ha) as C.
+        - intros a w u Ha. pose proof (quad_convex (form t) a (grounded w) (grounded u) Pos Ha) as
+          C.
           rewrite (quad_ext (form t) (grounded (mix a w u)) (mix a (grounded w) (grounded u)));
             [exact C |]. intros [| k]; unfold mix, grounded; ring.
         - intros m I. destruct (Lands m I) as (s & Is & C). unfold lands in C.

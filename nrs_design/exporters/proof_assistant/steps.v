@@ -79,19 +79,6 @@ Definition decrease (n : nat) (m : mode) (ms : list Z) (F G : sym) (cols : list 
   slin 1 (scaled (map (fun u => u * p / q)%Z (firstn n (units m))) F) 1
     (slin (-1) (congruence G cols) 1 (slack n (skipn n (units m)) (bounds m) ms)).
 
-Lemma dot_times_real r : forall t x, dot r (fun k => t * x k) = t * dot r x.
-Proof.
-  intros t x. rewrite <- (Rplus_0_r (t * dot r x)), <- (dot_zero r (fun _ => 0)) by reflexivity.
-  rewrite <- dot_add. apply dot_ext. intro; lra.
-Qed.
-
-Lemma quad_times T : forall t x, quad T (fun k => t * x k) = t * t * quad T x.
-Proof.
-  induction T as [| [c r] T IH]; intros t x; simpl; [lra |].
-  change (tail (fun k => t * x k)) with (fun k => t * tail x k).
-  rewrite IH, dot_times_real. ring.
-Qed.
-
 Lemma dot_unit k : forall u x, dot (unit_row k u) x = IZR u * x k.
 Proof.
   induction k as [| k IH]; intros u x; [simpl; lra |].

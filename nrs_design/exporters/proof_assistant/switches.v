@@ -48,7 +48,8 @@ Definition bridged (m l : place) (s : switch) : bool :=
   let u := under (reset s) in
   (0 <? fst (dwell m))%Z && (0 <? scale b)%Z && (0 <? u)%Z && (0 <? over (law m))%Z && (0 <? q)%Z
   && forallb (fun r => length r <=? n)%nat (rows (law m)) && shaped n T
-  && match pieces n p q (fst (dwell m)) (snd (dwell m) * k) (law m) (Pos.to_nat (number b)) (terms b)
+  && match pieces n p q (fst (dwell m)) (snd (dwell m) * k) (law m) (Pos.to_nat (number b)) (terms
+    b)
              (more b) (collected (expanded T (singles n))) with
      | Some P => nowhere_negative n (collected
          (pscale (scale b * u * u) (expanded (form m) (singles n)) ++ pscale (-1) P))
@@ -115,7 +116,8 @@ Proof.
   rewrite Time in K. specialize (K F).
   replace (span - time + time) with span in K by ring.
   rewrite peval_collected, peval_expanded in K.
-  change (quad T (monomials (singles (size m)) (w span))) with (V (singles (size m)) T (w span)) in K.
+  change (quad T (monomials (singles (size m)) (w span))) with (V (singles (size m)) T (w span))
+    in K.
   rewrite V_singles in K by exact Sh. unfold T in K. rewrite quad_scale, quad_moved in K by exact U.
   apply (nowhere_negative_sound _ _ (w (span - time))) in B.
   rewrite peval_collected, peval_app, !peval_scale, peval_expanded in B.
@@ -123,7 +125,8 @@ Proof.
     with (V (singles (size m)) (form m) (w (span - time))) in B.
   unfold place_falls in Pm. rewrite !andb_true_iff in Pm. destruct Pm as [[Sm _] _].
   rewrite V_singles, !mult_IZR in B by exact Sm.
-  apply (IZR_lt 0) in Sc, U. set (sc := IZR (scale (through s))) in *. set (u := IZR (under _)) in *.
+  apply (IZR_lt 0) in Sc, U. set (sc := IZR (scale (through s))) in *. set (u := IZR (under _)) in
+    *.
   set (e := exp _) in *. assert (0 < e) by apply exp_pos.
   set (v := quad (form m) _) in *. set (x := quad (form l) _) in *. set (y := peval P0 _) in *.
   apply Rmult_le_reg_l with (sc * u * u); [repeat apply Rmult_lt_0_compat; assumption |].

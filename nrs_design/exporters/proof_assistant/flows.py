@@ -22,7 +22,7 @@ from nrs_design.proof.evidence.graph import FormsOnGraph
 from nrs_design.proof.exact import IntegerMatrix, add
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.steps import Step
+from nrs_design.proof.steps import COUPLING, FREE, Step
 from nrs_design.proof.system import SwitchedSystem
 
 LIBRARY = ("forms", "polynomials", "continuous")
@@ -118,48 +118,54 @@ def flows_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         That holds for it.
     """
     flows, definitions = FlowStatement(system, evidence), Definitions()
+    modes, others = _define_modes(flows, definitions)
+    _define_form(flows, definitions)
+    gives, free_gives = _define_witnesses(flows, definitions)
+    rate, factor = evidence.rate, factor_of(evidence.nodes[0].form)
+    shape = f"{system.order} {evidence.degree} {rate.numerator} {rate.denominator} basis form"
+    cut = f"{str(flows.lost).lower()}\n    {modes}\n    {others}"
+    claim, sound, last = f"decays {shape}", "decays_sound", "checked eq_refl"
+    if flows.acting:
+        claim, sound, last = f"all_axes_decay {shape} multipliers", "all_axes_sound", "checked"
+    rest = "_ " * 15
+    return Theorem(
+        LIBRARY,
+        definitions.texts,
+        f"flows_fall {shape} multipliers {factor} {cut}\n"
+        f"    all_terms free_terms {gives} {free_gives}",
+        f"{claim} {cut}\n  /\\ is_definite basis form {factor}",
+        f"conj ({sound} {rest}{last}) (definite_sound {rest}checked)",
+        tuple(system.states[i] for i in flows.order),
+    )
+
+
+def _define_modes(flows: FlowStatement, definitions: Definitions) -> tuple[str, str]:
+    """Define every mode; return those in contact, and those of free motion."""
+    system = flows.system
     free = system.free if flows.lost else ()
     names = identifiers(mode.name for mode in (*system.modes, *free))
     for k, mode in enumerate((*system.modes, *free)):
         definitions.define(names[mode.name], flows.flow(k, mode, definitions), mode.name)
-    form = evidence.nodes[0].form
-    n, states = system.order, system.order - 1
-    multipliers = [
-        next(m.value for m in evidence.multipliers if m.fact == f"coupling {k}")
-        for k in range(1, flows.acting + 1)
-    ]
+    touching, flying = (listed(names[mode.name] for mode in part) for part in (system.modes, free))
+    return touching, flying
+
+
+def _define_form(flows: FlowStatement, definitions: Definitions) -> None:
+    """Define the form with its monomials, and the multipliers of what other axes do."""
+    n, given = flows.system.order, {item.fact: item.value for item in flows.evidence.multipliers}
+    multipliers = (str(given.get(f"{COUPLING} {k}", 0)) for k in range(1, flows.acting + 1))
     definitions.define("basis", flows.basis(n))
-    definitions.define("form", symmetric(form))
-    definitions.define("multipliers", f"{listed(map(str, multipliers))} : list Z")
+    definitions.define("form", symmetric(flows.evidence.nodes[0].form))
+    definitions.define("multipliers", f"{listed(multipliers)} : list Z")
     definitions.define("all_terms", flows.basis(n, flows.acting))
-    terms = flows.basis(states, flows.acting) if flows.lost else "[]"
+    terms = flows.basis(n - 1, flows.acting) if flows.lost else "[]"
     definitions.define("free_terms", f"{terms} : list mono")
-    found: dict[bool, list[str]] = {True: [], False: []}
+
+
+def _define_witnesses(flows: FlowStatement, definitions: Definitions) -> tuple[str, str]:
+    """Define the inequality of every flow; return those in contact, and those of free motion."""
+    found: dict[bool, list[str]] = {False: [], True: []}
     for k, (place, gram, factor) in enumerate(flows.witnesses(), 1):
         text = f"Witness {symmetric(gram, long_integer)} {factor}"
-        found[place.startswith("free")].append(definitions.define(f"witness{k}", text))
-    rate = evidence.rate
-    shape = f"{n} {evidence.degree} {rate.numerator} {rate.denominator} basis form"
-    modes = listed(names[mode.name] for mode in system.modes)
-    others = listed(names[mode.name] for mode in free)
-    cut = "true" if flows.lost else "false"
-    factor = factor_of(form)
-    check = (
-        f"flows_fall {shape} multipliers {factor} {cut}\n    {modes}\n    {others}\n"
-        f"    all_terms free_terms {listed(found[False])} {listed(found[True])}"
-    )
-    sound, claim = (
-        ("all_axes_sound", f"all_axes_decay {shape} multipliers")
-        if flows.acting
-        else ("decays_sound", f"decays {shape}")
-    )
-    last = "checked" if flows.acting else "checked eq_refl"
-    return Theorem(
-        LIBRARY,
-        definitions.texts,
-        check,
-        f"{claim} {cut}\n    {modes}\n    {others}\n  /\\ is_definite basis form {factor}",
-        f"conj ({sound} _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ {last})"
-        " (definite_sound _ _ _ _ _ _ _ _ _ _ _ _ _ _ _ checked)",
-        tuple(system.states[i] for i in flows.order),
-    )
+        found[place.startswith(FREE)].append(definitions.define(f"witness{k}", text))
+    return listed(found[False]), listed(found[True])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import gcd, lcm
 
@@ -110,20 +110,18 @@ class SampledStatement:
             f"{listed(map(str, errors))}"
         )
 
-    def source(self, mode: str, nodes: list[int]) -> int:
-        """Return the place among some nodes of one from which a mode leads to every node.
-
-        Raises
-        ------
-        StopIteration
-            If there is none.
-        """
+    def sources(self, modes: Sequence[Mode], nodes: list[int]) -> str:
+        """Return for each mode the place among some nodes of one from which it leads to all."""
         ways = {(edge.source, edge.mode) for edge in self.evidence.edges}
-        return next(
-            place
-            for place, a in enumerate(nodes)
-            if not ways.isdisjoint({(None, None), (a, None), (None, mode), (a, mode)})
+        found = (
+            next(
+                place
+                for place, a in enumerate(nodes)
+                if not ways.isdisjoint({(None, None), (a, None), (None, mode.name), (a, mode.name)})
+            )
+            for mode in modes
         )
+        return f"{listed(map(str, found))}%nat"
 
 
 def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
@@ -137,49 +135,48 @@ def sampled_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
         That holds for it.
     """
     sampled, definitions = SampledStatement(system, evidence), Definitions()
-    free = system.free if sampled.lost else ()
-    every = (*system.modes, *free)
-    names = identifiers(mode.name for mode in every)
-    for k, mode in enumerate(every):
-        text = sampled.mode(k, mode, definitions, free=k >= len(system.modes))
-        definitions.define(names[mode.name], text, mode.name)
+    modes, flying = _define_modes(sampled, definitions)
     nodes, free_nodes = sampled.nodes(free=False), sampled.nodes(free=True)
     definitions.define("nodes", listed(map(sampled.node, nodes)))
     definitions.define("free_nodes", f"{listed(map(sampled.node, free_nodes))} : list node")
-    factor = max(factor_of(node.form) for node in evidence.nodes)
-    rounded = len(system.roundings) if evidence.covers_rounding else 0
-    size = f"{rounded} {system.order}"
-    rate = f"{evidence.rate.numerator} {evidence.rate.denominator}"
-    modes = listed(names[mode.name] for mode in system.modes)
-    sources = _naturals(sampled.source(mode.name, nodes) for mode in system.modes)
-    real = f"({evidence.rate.numerator} / {evidence.rate.denominator})"
+    rate, factor = evidence.rate, max(factor_of(node.form) for node in evidence.nodes)
+    size = f"{len(system.roundings) if evidence.covers_rounding else 0} {system.order}"
+    computed = f"{rate.numerator} {rate.denominator} {factor} {size}\n    {modes}"
+    bound = f"({rate.numerator} / {rate.denominator})%R {factor}%R"
+    sources = sampled.sources(system.modes, nodes)
     if not sampled.lost:
         return Theorem(
             LIBRARY,
             definitions.texts,
-            f"kept {rate} {factor} {size}\n    {modes}\n    nodes {sources}",
+            f"kept {computed}\n    nodes {sources}",
             f"decays (step {size}\n    {modes})\n"
-            f"    (largest (map form nodes)) (norm2 {system.order}) {real}%R {factor}%R",
+            f"    (largest (map form nodes)) (norm2 {system.order}) {bound}",
             "kept_sound _ _ _ _ _ _ _ _ checked",
             system.states,
         )
-    flying = listed(names[mode.name] for mode in free)
-    free_sources = _naturals(sampled.source(mode.name, free_nodes) for mode in free)
     return Theorem(
         LIBRARY,
         definitions.texts,
-        f"losable {rate} {factor} {size}\n    {modes}\n    {flying}\n"
-        f"    nodes free_nodes {sources} {free_sources}",
+        f"losable {computed}\n    {flying}\n"
+        f"    nodes free_nodes {sources} {sampled.sources(system.free, free_nodes)}",
         f"decays (losable_step {size}\n    {modes}\n    {flying})\n"
-        f"    (conewise nodes free_nodes) (conewise_size {system.order}) {real}%R {factor}%R",
+        f"    (conewise nodes free_nodes) (conewise_size {system.order}) {bound}",
         "losable_sound _ _ _ _ _ _ _ _ _ _ _ checked",
         tuple(system.states[i] for i in sampled.order),
     )
 
 
+def _define_modes(sampled: SampledStatement, definitions: Definitions) -> tuple[str, str]:
+    """Define every mode; return those in contact, and those of free motion."""
+    system = sampled.system
+    free = system.free if sampled.lost else ()
+    names = identifiers(mode.name for mode in (*system.modes, *free))
+    for k, mode in enumerate((*system.modes, *free)):
+        text = sampled.mode(k, mode, definitions, free=k >= len(system.modes))
+        definitions.define(names[mode.name], text, mode.name)
+    touching, flying = (listed(names[mode.name] for mode in part) for part in (system.modes, free))
+    return touching, flying
+
+
 def _columns(rounded: Sequence[Rounding], k: int) -> list[RationalMatrix]:
     return [item.columns[k] for item in rounded]
-
-
-def _naturals(numbers: Iterable[int]) -> str:
-    return f"{listed(map(str, numbers))}%nat"

@@ -28,6 +28,10 @@ class Format:
     files: Mapping[str, bytes]
     # Whether a processor runs it, so that the proof must be about the sampled loop.
     executable: bool = False
+    # Whether the name of a file must be one of a program, such as `soft_tissue` for `soft-tissue`.
+    identifier: bool = False
+    # Whether a certificate is enough, so that matrices have one, too.
+    alone: bool = False
 
 
 @cache

@@ -53,7 +53,8 @@ def render_html(report: Report, origin: str | None = None) -> str:
         keep_trailing_newline=True,
     )
     sections = [_section(section, f"section-{n}") for n, section in enumerate(report.sections, 1)]
-    script = "\n".join(map(_script, ["report.js", *["check.js"] * bool(report.certificate)]))
+    checking = ("check.js", "check_page.js") if report.certificate else ()
+    script = "\n".join(map(_script, ["report.js", *checking]))
     return environment.get_template("report.html.j2").render(
         report=report,
         sections=sections,

@@ -20,9 +20,9 @@ NAMED = {word for code in re.findall(r"`([^`]+)`", PAGE) for word in re.findall(
 
 def names(kind):
     """Yield the fields of a class, and of those within."""
-    if is_dataclass(kind) or hasattr(kind, "_fields"):
-        own = [field.name for field in fields(kind)] if is_dataclass(kind) else kind._fields
-        hints = get_type_hints(kind)
+    if is_dataclass(kind) or (isinstance(kind, type) and issubclass(kind, tuple)):
+        hints = get_type_hints(kind)  # Those of a named tuple are its fields
+        own = [field.name for field in fields(kind)] if is_dataclass(kind) else [*hints]
         for name in own:
             if hints[name] is not RationalMatrix:
                 yield name

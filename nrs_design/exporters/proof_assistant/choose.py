@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from typing import Any
+
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.errors import DesignError
 from nrs_design.exporters.proof_assistant.flows import flows_theorem
@@ -10,7 +13,6 @@ from nrs_design.exporters.proof_assistant.places import places_theorem
 from nrs_design.exporters.proof_assistant.sampled import sampled_theorem
 from nrs_design.exporters.proof_assistant.theorem import Theorem
 from nrs_design.proof.evidence.graph import FormsOnGraph
-from nrs_design.proof.evidence.parameter_quadratic import ParameterQuadratic
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
 
@@ -30,11 +32,13 @@ def choose_theorem(certificate: Certificate) -> Theorem:
         If the library for Coq has none of its kind, or of its shape.
     """
     system, evidence = certificate.system, certificate.evidence
-    if isinstance(evidence, ParameterQuadratic):
-        return parameter_theorem(system, evidence)
-    if not isinstance(evidence, FormsOnGraph):
-        kind = "nothing" if evidence is None else f"kind {evidence.kind}"
-        raise _refused(f"stability is shown by {kind}")
+    kind = "nothing" if evidence is None else evidence.kind
+    if kind not in _BY_KIND:
+        raise _refused(f"stability is shown by {kind if evidence is None else f'kind {kind}'}")
+    return _BY_KIND[kind](system, evidence)
+
+
+def _graph_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
     if (odd := _find_uncovered(system, evidence)) is not None:
         raise _refused(odd)
     if evidence.stays is not None:
@@ -67,3 +71,10 @@ def _refused(reason: str) -> DesignError:
         f"there is no theorem for Coq of this certificate: {reason}",
         remedy=f"there is one for {COVERED}",
     )
+
+
+# What is written for a kind of evidence; others are refused.
+_BY_KIND: Mapping[str, Callable[[SwitchedSystem, Any], Theorem]] = {
+    "graph": _graph_theorem,
+    "parameter-quadratic": parameter_theorem,
+}

@@ -67,6 +67,8 @@ def test_larger_limits_hold_and_a_larger_reach_needs_them():
         ({"torque": Fraction(51, 100)}, "limit of torque"),
         ({"energy": Fraction(1)}, "limit of lost"),
         ({"command": Fraction(1, 4)}, "may saturate"),
+        ({"tick": Fraction(1, 101)}, "holds is another one"),
+        ({"tick": Fraction(1, 99)}, "holds is another one"),
         ({"Kp": Fraction(61, 3)}, "not of binary digits"),
         ({"D": Fraction(16, 3)}, "not of binary digits"),
         ({"Kp": Fraction(0)}, "a number that no layer has"),

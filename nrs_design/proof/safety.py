@@ -78,6 +78,8 @@ class Governed:
         kept = (self.speed, self.torque, self.energy, self.angle)
         disturbing = (self.encoder, self.sensor, self.friction, self.damping)
         borne = (self.D, self.refill, *disturbing, self.command or ONE)
+        if any(n.denominator & (n.denominator - 1) for n in (self.Kp, self.D)):
+            return "a number of its motion loop is not of binary digits"
         if min(*least, *kept) <= 0 or min(borne) < 0 or any(low > high for low, high in ranges):
             return "the safety layer has a number that no layer has"
         if self.tick * self.speed > self.angle:
@@ -339,13 +341,16 @@ def limits_of(
     # A retreat hides as much of the torque of the spring.
     seen = loop.torque * (1 + OF_TERMS) + loop.sensor + damped
     pressed = (seen + k * depth for k in (low, high))
+    most = high * (seen / low + depth) + damped
+    # The reference goes on by more, or goes back by less, than the step that is booked.
+    unbooked = (most + loop.sensor) * (1 + OF_TERMS) * loop.angle * OF_ANGLES
     return SafetyBounds(
         velocity,
         reach.error + loop.noise,
         reach.command + _roundings(loop, reach),
         depth,
-        high * (seen / low + depth) + damped,
+        most,
         seen + high * depth + damped,
         max(torque**2 / (2 * k) for torque, k in zip(pressed, (low, high), strict=True)),
-        2 * OF_TERMS * (loop.energy + loop.refill) + LOST,
+        2 * OF_TERMS * (loop.energy + loop.refill) + unbooked + LOST,
     )

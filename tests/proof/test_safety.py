@@ -316,7 +316,9 @@ def test_the_limits_follow_from_the_reach():
     assert most.steady == seen + high * depth + damped
     ends = [(seen + k * depth) ** 2 / (2 * k) for k in (low, high)]
     assert most.stored == max(ends)
-    assert most.lost == 2 * TINY * (LOOP.energy + LOOP.refill) + F(1, 2**100)
+    # Where the reference is rounded, it goes on by more than what is booked.
+    unbooked = (most.torque + LOOP.sensor) * (1 + TINY) * LOOP.angle * TINY
+    assert most.lost == 2 * TINY * (LOOP.energy + LOOP.refill) + unbooked + F(1, 2**100)
     soft = replace(LOOP, stiffness=(F(1, 10**6), high))
     assert limits_of(soft, PERIOD, MOTOR, FOUND, REACH).stored > 10**3 * most.stored / 10**6
 

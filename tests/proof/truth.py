@@ -240,7 +240,8 @@ def _safety_layer(system: SwitchedSystem, item: SafetyLayer) -> bool:
         "torque": most * (seen / least + depth) + damped,
         "steady": seen + most * depth + damped,
         "stored": max((seen + k * depth) ** 2 / (2 * k) for k in (least, most)),
-        "lost": 2**-22 * float(loop.energy),
+        "lost": 2**-22
+        * float(loop.energy + loop.angle * (Fraction(most * (seen / least + depth)) + loop.sensor)),
     }
     kept = all(
         getattr(item.limits, key) >= Fraction(float(value) * (1 - 1e-9))

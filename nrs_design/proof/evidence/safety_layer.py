@@ -11,6 +11,7 @@ from nrs_design.proof.bounds import lower, rounded_down, rounded_up, upper
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.safety import (
+    OF_TERMS,
     Reach,
     SafetyBounds,
     SampledMotor,
@@ -65,6 +66,8 @@ class SafetyLayer(AbstractEvidence):
             return "the system has no safety layer"
         if (odd := loop.find_odd()) is not None:
             return odd
+        if abs(loop.tick - period) > OF_TERMS * period:
+            return "the period that its processor holds is another one"
         if not 1 <= self.horizon <= LONGEST:
             return f"its horizon is not from 1 to {LONGEST} samples"
         motor = SampledMotor.of(loop, period)

@@ -12,7 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import CoordinatesOption
 from nrs_design.cli.printing import is_quiet, progress, say
-from nrs_design.errors import CertificateError
+from nrs_design.errors import CertificateError, NrsDesignError
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -177,6 +177,12 @@ def _check_arguments(
         raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
+    if deployed is not None and not deployed.exists():
+        raise NrsDesignError(
+            "there is no such file or folder",
+            path=deployed,
+            remedy="--deployed names what `nrs-design export` has written",
+        )
     if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
         raise CertificateError(
             "the arguments are swapped",

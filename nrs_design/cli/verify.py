@@ -177,12 +177,6 @@ def _check_arguments(
         raise typer.BadParameter("needs a SPEC to compare with", param_hint="--coordinates")
     if spec is None and deployed is not None:
         raise typer.BadParameter("needs a SPEC, whose law it is", param_hint="--deployed")
-    if deployed is not None and not deployed.exists():
-        raise NrsDesignError(
-            "there is no such file or folder",
-            path=deployed,
-            remedy="--deployed names what `nrs-design export` has written",
-        )
     if spec is not None and spec.suffix == ".json" and certificate.suffix in (".yaml", ".yml"):
         raise CertificateError(
             "the arguments are swapped",
@@ -264,7 +258,7 @@ def _lines(
     for option in lines:
         if "--compile" not in lines:
             raise typer.BadParameter("needs --compile, whose program it is for", param_hint=option)
-        if deployed is None or not deployed.is_dir():
+        if deployed is None or (deployed.exists() and not deployed.is_dir()):
             raise typer.BadParameter("needs --deployed with a folder", param_hint=option)
     return lines
 
@@ -285,6 +279,12 @@ def _deployed(
     if not isinstance(loaded.spec, InteractionDesignSpec):
         what = f"a spec of kind {loaded.spec.kind} has no gains that could be deployed"
         raise wrong_kind(loaded, what, "leave --deployed out")
+    if not deployed.exists():
+        raise NrsDesignError(
+            "there is no such file or folder",
+            path=deployed,
+            remedy="--deployed names what `nrs-design export` has written",
+        )
     return deployed_answer(deployed, lines, loaded.spec, checked)
 
 

@@ -40,7 +40,10 @@ class DeployedAnswer:
     def show(self) -> None:
         """Print it, the worst first."""
         if self.differences:
-            say(f"REJECTED: {self.place} is not what the certificate is about", verdict="rejected")
+            fault = f"{self.place} is not what the certificate is about"
+            if not self.comparison.differences:
+                fault = f"what is compiled of {self.place} is not shown to be the law"
+            say(f"REJECTED: {fault}", verdict="rejected")
             for line in self.differences:
                 say(f"  {line}")
         said = "" if self.binary is None else self.binary.said

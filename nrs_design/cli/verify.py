@@ -12,7 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import CoordinatesOption
 from nrs_design.cli.printing import is_quiet, progress, say
-from nrs_design.errors import CertificateError
+from nrs_design.errors import CertificateError, NrsDesignError
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -258,7 +258,7 @@ def _lines(
     for option in lines:
         if "--compile" not in lines:
             raise typer.BadParameter("needs --compile, whose program it is for", param_hint=option)
-        if deployed is None or not deployed.is_dir():
+        if deployed is None or (deployed.exists() and not deployed.is_dir()):
             raise typer.BadParameter("needs --deployed with a folder", param_hint=option)
     return lines
 
@@ -279,6 +279,12 @@ def _deployed(
     if not isinstance(loaded.spec, InteractionDesignSpec):
         what = f"a spec of kind {loaded.spec.kind} has no gains that could be deployed"
         raise wrong_kind(loaded, what, "leave --deployed out")
+    if not deployed.exists():
+        raise NrsDesignError(
+            "there is no such file or folder",
+            path=deployed,
+            remedy="--deployed names what `nrs-design export` has written",
+        )
     return deployed_answer(deployed, lines, loaded.spec, checked)
 
 

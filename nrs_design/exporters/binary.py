@@ -130,6 +130,8 @@ class _Bench:
         done = self._command("--compile", *self.tools.compile, *objects, *link, "-o", "program")
         if done.code:
             return self._failed(made, "the self-test does not link", done)
+        if not (self.here / "program").is_file():
+            return self._failed(made, "linking made no program: leave -c, -S and -E out", done)
         kept = [name for name in objects if name != f"{self.names.spec}_test.o"]
         made = replace(made, objects=self._hashes([*kept, "program"]))
         done = self._run(run)
@@ -161,7 +163,7 @@ class _Bench:
         if (done := self._compile(START, "-w")).code:
             raise NrsDesignError(
                 f"the start of an emulated Cortex-M4F does not compile with these flags: "
-                f"{_end_of(done)}",
+                f"{_first_error(done)}",
                 remedy="add -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard; for "
                 "another processor, --link and --run say how to link and run",
             )
@@ -192,5 +194,8 @@ def _object(source: str) -> str:
     return f"{source.removesuffix('.c')}.o"
 
 
-def _end_of(done: Done) -> str:
-    return " ".join(done.said.split())[-300:]
+def _first_error(done: Done) -> str:
+    """Return the first line that names an error; what follows it is often a list of choices."""
+    lines = [line.strip() for line in done.said.splitlines() if line.strip()]
+    errors = [line for line in lines if "error: " in line.lower()]
+    return " ".join([*errors, *lines][:1])[:300]

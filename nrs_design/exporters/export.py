@@ -164,7 +164,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     progress("re-check")
     checked = verify(file, designed.loaded, plant=designed.plant)
     if checked.certificate is None or checked.fault is not None:
-        return Export("rejected", None, None, f"{file} is rejected: {checked.fault}")
+        remedy = "leave --certificate out to prove anew"
+        return Export("rejected", None, None, f"{file} is rejected: {checked.fault} ({remedy})")
     found, design = checked.certificate, designed.design
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)

@@ -251,6 +251,7 @@ def test_a_binary_is_compiled_run_and_recorded(deployed):
     shown = run(*build, "gcc -O2 -DX", cwd=deployed, code=0).stdout
     assert "changed since the record before: compile\n" in shown
     shown = run(*build, "gcc -ffast-math", cwd=deployed, code=1).stdout
+    assert shown.startswith("REJECTED: what is compiled of x is not shown to be the law\n")
     assert "  the compiler refuses x.c\n" in shown
     assert "compile without -ffast-math" in shown
     # What was refused is in no record.
@@ -266,8 +267,9 @@ def test_a_binary_is_compiled_run_and_recorded(deployed):
         (("--deployed", "x", "--link", "-lm"), "needs --compile"),
         (("--deployed", "x", "--compile", "gcc 'x"), "close every quote"),
         (("--deployed", "x", "--compile", "no-such-compiler -O2"), "there is no program"),
-        (("--deployed", "x/nothing.h"), "cannot be read"),
-        (("--deployed", "nothing"), "none of the files that are compared"),
+        (("--deployed", "x.nrs.yaml"), "none of the files that are compared"),
+        (("--deployed", "x/nothing.h"), "x/nothing.h: there is no such file"),
+        (("--deployed", "nothing", "--compile", "gcc"), "nothing: there is no such file or folder"),
     ],
 )
 def test_lines_that_cannot_be_meant(firmware, arguments, said):

@@ -123,6 +123,9 @@ def test_what_does_not_fit_is_an_error(built, exported, tmp_path):
     with pytest.raises(NrsDesignError, match="does not compile with these flags") as caught:
         built(cc="arm-none-eabi-gcc")
     assert "-mcpu=cortex-m4" in caught.value.remedy
+    with pytest.raises(NrsDesignError, match=r"error: .* target: cortex-m44 "):
+        built("-mcpu=cortex-m44", cc="arm-none-eabi-gcc")
+    assert built("-O2", "-c").fault == "linking made no program: leave -c, -S and -E out"
     with pytest.raises(NrsDesignError, match="cannot be run here") as caught:
         built(*CORTEX, cc="arm-none-eabi-gcc", link=("--specs=nosys.specs",), run=("{program}",))
     assert built("-O2", link=("-lnothing",)).fault == "the self-test does not link"

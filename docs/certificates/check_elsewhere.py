@@ -170,13 +170,14 @@ def check_graph(told):
         more = values or required or "couplings" in o or "fixed_ends" in rules
     need(not more, "contact, axes, or what is between the ends of a range is not covered")
     sizes, facts = {s.source: s.n for s in steps}, {fact for s in steps for fact, *_ in s.facts}
-    need({*sizes} == {p for _, p, _ in nodes} >= {s.target for s in steps}, "a place has no form")
+    wanted = {s.target for s in steps} | ({*sizes} if stays is None else names)
+    need({*sizes} == {p for _, p, _ in nodes} >= wanted, "a place has no form, or no step")
     need(len(nodes) == len(sizes) or not (flow or "coupling" in covered), "there are more forms")
     odd = [m for m in multipliers if m["value"] < 0 or m["fact"] not in facts - {"error"} or d > 1]
     odd += [m for m in multipliers if "target" in m and m["fact"].startswith("coupling")]
     need(not odd and len(values) == len(multipliers), "a multiplier is odd")
-    positive = [definite(own(form(rows, sizes[place], d))) for _, place, rows in nodes]
-    need(all(positive), "a form is not positive definite")
+    for _, place, rows in nodes:
+        need(definite(own(form(rows, sizes[place], d))), "a form is not positive definite")
     flat = [form(rows, sizes[place], d, n - 1) for _, place, rows in nodes if lost and flow]
     need(flat[:1] == flat[1:], "it jumps where contact is lost")
     for s, (_, source, rows), (b, target, others) in product(steps, nodes, nodes):
@@ -218,13 +219,12 @@ def check_parameter_quadratic(told):
             need(definite(terms), f"it rises between {a} and {b}")
 
 
+sys.tracebacklimit = 0  # What is wrong is said in one line
 with open(sys.argv[1], encoding="utf-8") as file:
-    o = json.load(file)
+    o = json.load(file, parse_float=int)  # Refuses fractions
 signed = {key: o[key] for key in o.keys() - {"id", "origin"}}
 text = json.dumps(signed, sort_keys=True, separators=(",", ":"))
-if hashlib.sha256(text.encode()).hexdigest() != o["id"]:
-    sys.exit("it was altered")
-sys.tracebacklimit = 0  # What is wrong is said in one line
+need(hashlib.sha256(text.encode()).hexdigest() == o["id"], "it was altered")
 need(o["schema"][-2:] == "/8" and o["time"] in ("continuous", "discrete"), "another schema")
 n, contact, flow = len(o["states"]), o.get("contact", {}), o["time"] == "continuous"
 rules, required = {} if o["switching"] == "arbitrary" else o["switching"], contact.get("required")
@@ -237,8 +237,8 @@ for statement in o["statements"]:
     kind, code, words = statement["kind"], 0, "holds"
     try:
         check = globals().get(f"check_{kind}".replace("-", "_"))
-        check = check if not {"clock", "pulls"} & {*o, *contact} else None
-        need(check, "this kind, turns or pulls", NotImplementedError)
+        known = check and not {"clock", "pulls"} & {*o, *contact}
+        need(known, "this kind, turns or pulls", NotImplementedError)
         check(statement)
         verdict = verdict if kind.startswith("no-") else "proved"
     except NotImplementedError as error:

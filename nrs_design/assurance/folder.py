@@ -69,6 +69,8 @@ def hash_faults(files: Mapping[str, bytes]) -> tuple[str, ...]:
     if not all(found):
         return (f"{SUMS} has a line that is no hash and name",)
     listed = {match[2]: match[1] for match in found if match is not None}
+    if len(listed) < len(lines):
+        return (f"{SUMS} names a file twice",)
     return tuple(_differences(files, listed))
 
 

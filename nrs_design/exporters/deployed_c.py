@@ -17,6 +17,7 @@ _WORD = re.compile(
     r"\d[\w.]*(?:(?<=[pPeE])[+-]\w+)?|\w+|->|\+\+|--|&&|\|\||<<|>>|##|[-+*/%&|^<>=!]=|\S",
     re.ASCII,
 )
+_PARAMETERS = re.compile(r"\s*#\s*define\s+\w+\(", re.ASCII)
 # The line that names the release which wrote a file.
 _RELEASE = re.compile(r"^# nrs-design \d[\w.+]{0,40}(?=, nrs-design/export/1$)", re.MULTILINE)
 _END = "\n"
@@ -73,7 +74,7 @@ def _said(one: str, other: str) -> str:
 
 
 def _shown(text: str) -> str:
-    named = {"": "nothing", _END: "the end of a line"}
+    named = {"": "nothing", _END: "the end of a line", f"{_END}(": "a macro with parameters"}
     return named.get(text, f"`{text.strip()[:_LONGEST]}`")
 
 
@@ -84,7 +85,8 @@ def _tokens(text: str) -> Iterator[tuple[int, str]]:
     for line in code.split("\n"):
         yield from ((number, word) for word in _WORD.findall(line))
         if line.lstrip().startswith("#"):
-            yield number, _END
+            # The one place where a space counts: with it, what follows is no list of parameters.
+            yield number, f"{_END}(" if _PARAMETERS.match(line) else _END
         number += 1 + line.count(_BREAK)
 
 

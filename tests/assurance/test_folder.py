@@ -100,3 +100,12 @@ def test_a_folder_of_more_than_evidence_is_refused(folder):
         file.truncate(2**28 + 1)
     with pytest.raises(CertificateError, match="holds more than evidence does"):
         read_folder(folder)
+
+
+def test_a_file_has_one_hash_alone():
+    """The first of two would be told as wrong by sha256sum, and nobody looked at it."""
+    digest = "2d711642b726b04401627ca9fbac32f5c8530fb1903cc4db02258717921a4881"  # Of x
+    right, wrong = f"{digest}  a\n", f"{'0' * 64}  a\n"
+    assert hash_faults({"a": b"x", "SHA256SUMS": right.encode()}) == ()
+    twice = {"a": b"x", "SHA256SUMS": f"{wrong}{right}".encode()}
+    assert hash_faults(twice) == ("SHA256SUMS names a file twice",)

@@ -18,6 +18,7 @@ RULED, DWELL, RESETS, CONSTANT = (
     "force-limit-offset",
     "unknown-constant",
 )
+POLYNOMIALS = ("degree", "vanishing")  # Fields of theirs alone
 Document = dict[str, Any]
 
 
@@ -226,6 +227,24 @@ def unpair(document):
     document["switching"]["fixed_ends"] = []
 
 
+def follow_nobody(document):
+    """One unstable mode, which is said to be left: there is no switch, and so no step."""
+    states, document["modes"] = len(document["states"]), document["modes"][:1]
+    mode = document["modes"][0]
+    mode["numerators"] = [[5 * (i == j) for j in range(states)] for i in range(states)]
+    mode["denominator"] = 1
+    statement = {**first(document), "nodes": [], "stays": {"leaving": [mode["name"]]}}
+    document["statements"] = [{k: statement[k] for k in statement if k not in POLYNOMIALS}]
+
+
+def leave_by_no_switch(document):
+    """Beside the others an unstable mode that no switch leads to or from."""
+    alone = {**document["modes"][0], "name": "alone"}
+    alone["numerators"] = [[5 * entry for entry in row] for row in alone["numerators"]]
+    document["modes"].append(alone)
+    first(document)["stays"] = {"leaving": ["alone"]}
+
+
 Change = Callable[[Document], object]
 EVERYWHERE: tuple[Change, ...] = (
     flip_sign,
@@ -244,6 +263,7 @@ EVERYWHERE: tuple[Change, ...] = (
     change_schema,
     refute,
     leave_out_the_proof,
+    follow_nobody,
 )
 ELSEWHERE: dict[str, tuple[Change, ...]] = {
     POLYNOMIAL: (
@@ -263,7 +283,7 @@ ELSEWHERE: dict[str, tuple[Change, ...]] = {
         aim_coupling,
         claim_a_little_more,
     ),
-    RULED: (stay_for_good, stay_longer, swap_forms, claim_a_little_more),
+    RULED: (stay_for_good, stay_longer, swap_forms, claim_a_little_more, leave_by_no_switch),
     DWELL: (switch_sooner, swap_forms, coarsen),
     RESETS: (stretch_reset, reset_nobody, swap_forms),
     CONSTANT: (lower_high_end, unpair, claim_more, claim_a_little_more),

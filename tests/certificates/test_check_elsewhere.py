@@ -158,6 +158,16 @@ def test_dwell_times(judge, dwell, code):
     assert judge(document) == code
 
 
+def test_numbers_that_are_no_integers_are_refused(judge):
+    """A product of them would be rounded, and to the wrong side."""
+    document = shipped(QUADRATIC)
+    document["statements"] = document["statements"][:1]
+    node = document["statements"][0]["nodes"][0]
+    assert judge(document) == 0
+    node["form"] = [[float(entry) for entry in row] for row in node["form"]]
+    assert judge(document) == 1
+
+
 def test_nothing_said_is_nothing_shown(judge):
     assert judge({**shipped(QUADRATIC), "statements": [], "verdict": "inconclusive"}) == 1
 

@@ -78,3 +78,10 @@ def test_every_line_counts_but_the_release():
         "",
     ):
         assert len([*line_differences(other, wanted)]) == 1
+
+
+@pytest.mark.parametrize("text", ["#define X (a)\nint y;\n", "#define X(a)\nint y;\n"])
+def test_a_space_before_parameters_of_a_macro_counts(text):
+    other = text.replace("X (", "X(") if "X (" in text else text.replace("X(", "X (")
+    assert [*code_differences(text, text)] == []
+    assert len([*code_differences(text, other)]) == 1

@@ -185,7 +185,7 @@ const check = (() => {
     const lost = !stays && nodes.some(({ place }) => place.startsWith("free")), active = ["rounding", "coupling"].filter(has).flatMap(S.named);
     const steps = stays ? stepsByMode(S, stays.leaving ?? [], rate) : stepsInContact(S, lost, active);
     const sizes = Object.fromEntries(steps.map((s) => [s.source, s.n])), places = new Set(nodes.map(({ place }) => place));
-    need(places.size === Object.keys(sizes).length && steps.every((s) => places.has(s.source) && places.has(s.target)), "a place has no form");
+    need(places.size === Object.keys(sizes).length && [...steps.flatMap((s) => [s.source, s.target]), ...(stays ? S.names.slice(0, S.count) : [])].every((place) => places.has(place)), "a place has no form, or no step");
     need(nodes.length === places.size || !(S.flow || coupled), "there are more forms than places");
     const whole = stays ? !(S.required || couplings || clock || S.rules.fixed_ends || multipliers.length || (S.flow && d > 1)) : !S.rules.resets && (lost || !S.required) && (coupled ? !clock : !couplings);
     need(whole && (d === 1 || !(multipliers.length || (lost && !S.flow))), "contact, turns, axes, resets or what is between the ends of a range is not covered");

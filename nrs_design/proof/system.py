@@ -9,8 +9,7 @@ from nrs_design.proof.channels import Channel, Coupling, Output, Rounding
 from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.matrix import RationalMatrix, leading
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.safety import Governed
-from nrs_design.proof.saturation import Saturation
+from nrs_design.proof.saturation import Governed, Saturation
 from nrs_design.proof.switching import ARBITRARY, Clock, Edge, Stay, Switching
 
 

@@ -6,7 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from nrs_design.proof.safety import Governed, SampledMotor
+from nrs_design.proof.safety import SampledMotor
+from nrs_design.proof.saturation import Governed
 from nrs_design.simulation.switched import SwitchedRun
 
 # Behind them, nothing is left of a response.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.safety import Governed
+from nrs_design.proof.saturation import Governed
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.units import THESIS_COMMAND

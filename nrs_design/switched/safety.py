@@ -9,7 +9,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above, to_float32
 from nrs_design.controllers.safety import SafetyLimits
 from nrs_design.models.plant import Plant
-from nrs_design.proof.safety import Governed
+from nrs_design.proof.saturation import Governed
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.spec.operating import OperatingConditions
 

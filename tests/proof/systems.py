@@ -13,8 +13,7 @@ from nrs_design.proof.contact import Contact, Flights
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
-from nrs_design.proof.safety import Governed
-from nrs_design.proof.saturation import CutOff, Saturation, Start
+from nrs_design.proof.saturation import CutOff, Governed, Saturation, Start
 from nrs_design.proof.switching import ARBITRARY, Clock, Reset, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.certify import Limits, certify

@@ -10,7 +10,7 @@ from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.replica import step
 from nrs_design.controllers.safety import SafetyLimits, add_safety
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
-from nrs_design.proof.safety import Governed
+from nrs_design.proof.saturation import Governed
 
 PERIOD = Fraction(1, 500)
 T = float(PERIOD)

@@ -11,7 +11,6 @@ from nrs_design.proof.bounds import lower, rounded_down, rounded_up, upper
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.exact import IntegerMatrix
 from nrs_design.proof.safety import (
-    OF_TERMS,
     Reach,
     SafetyBounds,
     SampledMotor,
@@ -19,6 +18,7 @@ from nrs_design.proof.safety import (
     reach_of,
     respond,
 )
+from nrs_design.proof.saturation import OF_TERMS
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.system import SwitchedSystem
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from unicorn import arm_const as arm
 
 HERE = Path(__file__).parent
-M4F = HERE.parent / "tests/exporters/m4f"
+M4F = HERE.parent / "nrs_design/exporters/board"
 GCC, PREFIX = "arm-none-eabi-gcc", "arm-none-eabi-"
 CORTEX = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 FLAGS = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off", "-fno-math-errno")
@@ -158,7 +158,7 @@ def measure(folder: Path, law: Compiled) -> Counts:
     (folder / "law.c").write_text(law.source)
     (folder / "law.h").write_text(_renamed(law))
     _run(GCC, *FLAGS, "-c", folder / "law.c", "-o", folder / "law.o")
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    start = (M4F / "startup.c", "-T", M4F / "memory.ld", "--specs=nosys.specs", "-nostartfiles")
     sources = (HERE / "cortex.c", folder / "law.o", *start)
     _run(GCC, *FLAGS, "-I", folder, *sources, "-lm", "-o", folder / "law.elf")
     paths, stack = _traced(folder, law)

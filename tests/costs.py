@@ -17,7 +17,7 @@ import pytest
 
 COSTS = Path(__file__).with_name("costs.tsv")
 # Processor seconds. The default session has thousands of tests; CI has all but studies.
-SLOW, NIGHTLY = 0.15, 2.5
+SLOW, NIGHTLY = 0.1, 2.0
 # What is published: every page prints what it shows, and every example of the literature.
 IN_CI = ("tests/docs/", "tests/literature/")
 

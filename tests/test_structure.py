@@ -55,6 +55,7 @@ PRINTED = {
     "nrs_design.design.analysis",
     "nrs_design.design.goals",
     "nrs_design.design.linear_parts",
+    "nrs_design.design.open_loops",
     "nrs_design.design.sampled_passivity",
     "nrs_design.search.loop_margin",
     "nrs_design.search.method_run",
@@ -316,7 +317,7 @@ def test_only_the_pipeline_calls_the_stages():
 # Functions that do one thing in several modules; a command is named like what it calls.
 SHARED = {
     # Modules of a table offer them all.
-    *("render", "header_text", "source_text"),
+    *("render", "header_text", "source_text", "remarks"),
     *("results", "choose", "analyze"),
     # The library at the door, and the stage behind it.
     *("certify", "verify"),

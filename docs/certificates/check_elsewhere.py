@@ -1,124 +1,250 @@
-"""Re-check a certificate of nrs-design, schema 8, with nothing but Python's own fractions.
+"""Re-check a certificate of nrs-design, schema 8, with nothing but Python's own integers.
 
 Usage: python check_elsewhere.py CERTIFICATE.json. Exit code: 0 if every statement holds, 1 if one
-does not, 3 if one is not checked here. Whose modes the file holds is what `nrs-design verify` adds.
+does not, 3 if one is not checked here. format.md says what each number means and what must hold.
+The sentences are not read; whose modes the file holds is what `nrs-design verify` adds.
 """
 
 import hashlib
 import json
 import sys
-from collections import Counter
+from collections import Counter, namedtuple
 from fractions import Fraction as F
-from itertools import combinations_with_replacement
+from itertools import combinations_with_replacement, product
+from math import lcm
+
+# Vectors have entries by key: monomials of the states, as (2,) for the third, and what acts beside.
+# M z comes after z, of which n entries are the state, or is its derivative in a flow. Facts are
+# (name, a, b): of each name, all (a z)(b z) add up to nothing positive.
+Step = namedtuple("Step", "mode source target n M flow facts over time")
+ACTS = ("channel", "rounding", "coupling")
 
 
-def positive_definite(M):
-    if not M or transposed(M) != M:
+def need(truth, words, error=ValueError):
+    if not truth:
+        raise error(words)
+
+
+def definite(terms, semi=False):
+    """Tell whether the sum of w a'b over terms (w, a, b) is positive (semi)definite."""
+    units, factor, whole = {}, lcm(*(F(w).denominator for w, *_ in terms)), Counter()
+    for key, x in (entry for _, *pair in terms for v in pair for entry in v.items()):
+        units[key] = lcm(units.get(key, 1), F(x).denominator)
+    for w, *pair in terms:
+        a, b = ([(key, int(x * units[key])) for key, x in v.items() if x] for v in pair)
+        for (i, x), (j, y) in product(a, b):
+            whole[i, j] += int(w * factor) * x * y
+    M, q = [[whole[i, j] for j in units] for i in units], 1
+    if not M or [list(column) for column in zip(*M, strict=True)] != M:
         return False
-    while M:
-        (pivot, *row), *below = M
-        if pivot <= 0:
-            return False
-        M = [[a - F(c) / pivot * b for a, b in zip(r, row, strict=True)] for c, *r in below]
+    while M:  # Elimination without fractions (Bareiss)
+        k = (max if semi else min)(range(len(M)), key=lambda i: M[i][i])
+        p, rest = M[k][k], [i for i in range(len(M)) if i != k]
+        if p <= 0:
+            return semi and not any(map(any, M))
+        M, q = [[(p * M[i][j] - M[i][k] * M[k][j]) // q for j in rest] for i in rest], p
     return True
 
 
-def transposed(A):
-    return [list(column) for column in zip(*A, strict=True)]
-
-
-def times(A, B):
-    return [[sum(a * b for a, b in zip(r, c, strict=True)) for c in transposed(B)] for r in A]
-
-
-def plus(A, B, weight=1):
-    return [[a + weight * b for a, b in zip(*rows, strict=True)] for rows in zip(A, B, strict=True)]
-
-
-def decrease(A, Q, rate, discrete):
-    minus_QA = [[-entry for entry in row] for row in times(Q, A)]
-    if discrete:
-        return plus(times(transposed(A), minus_QA), Q, rate**2)
-    return plus(plus(minus_QA, transposed(minus_QA)), Q, -2 * rate)
-
-
-def grown(polynomial, row):
-    """Multiply a polynomial (coefficients by sorted indices) by the linear form of a row."""
+def combined(row, vectors):
     result = Counter()
-    for term, value in polynomial.items():
-        for j, entry in enumerate(row):
-            result[tuple(sorted((*term, j)))] += value * entry
+    for key, weight in row.items():
+        for other, entry in vectors[key].items():
+            result[other] += weight * entry
     return result
 
 
-def lift(A, basis, discrete):
-    """Return L with z+ = L z, or by the product rule z' = L z, for the monomials z of a basis."""
-    rows = []
-    for monomial in basis:
-        image, slope = Counter({(): 1}), Counter()
-        for k, i in enumerate(monomial):
-            image = grown(image, A[i])
-            slope.update(grown({monomial[:k] + monomial[k + 1 :]: 1}, A[i]))
-        rows.append([(image if discrete else slope)[term] for term in basis])
-    return rows
+def table(o, rows, columns):
+    N, q = o["numerators"], o["denominator"]
+    need(q > 0 and len(N) == rows and {*map(len, N)} == {columns}, "a matrix is of another shape")
+    return {(i,): {(j,): F(x, q) for j, x in enumerate(row)} for i, row in enumerate(N)}
 
 
-def falls(A, q, N, Q, d, rate, discrete):
-    """Tell whether z' Q z decreases in the mode A, with a form z' N z added that must be zero."""
-    basis, form = list(combinations_with_replacement(range(len(A)), d)), Counter()
-    for a, row in zip(basis, N, strict=True):
-        for b, entry in zip(basis, row, strict=True):
-            form[tuple(sorted(a + b))] += entry
-    speed = rate**d if discrete else d * rate
-    # N is stored times the number that clears the denominators of the decrease.
-    factor = (q**d * speed.denominator) ** 2 if discrete else q * (2 * speed * q).denominator
-    total = plus(N, decrease(lift(A, basis, discrete), Q, speed, discrete), factor)
-    return not any(form.values()) and positive_definite(total)
+def form(rows, n, d=1, kept=64):  # On the monomials of n states; those of the first are kept
+    basis = list(combinations_with_replacement(range(n), d))
+    full = {a: dict(zip(basis, row, strict=True)) for a, row in zip(basis, rows, strict=True)}
+    return {a: {b: full[a][b] for b in basis if max(b) < kept} for a in basis if max(a) < kept}
 
 
-def holds(statement, modes, free, discrete):
-    """Tell whether a statement is true of the modes; None if that is not checked here."""
-    if statement["kind"] == "no-common-quadratic":
-        total = []
-        for name, L in statement["factors"]:
-            A, X = modes[name][0], times(L, transposed(L))
-            AX = times(A, X)
-            term = plus(times(AX, transposed(A)), X, -1) if discrete else plus(AX, transposed(AX))
-            total = plus(total, term) if total else term
-        return positive_definite(total)
-    # Graphs of one form for all modes; those of several, and what holds on their steps, are not.
-    others = {"multipliers", "edges", "stays"} & statement.keys()
-    if not free or statement["kind"] != "graph" or others or len(statement["nodes"]) != 1:
-        return None
-    Q, d = statement["nodes"][0]["form"], statement.get("degree", 1)
-    rate = F(statement["rate"])
-    decays = 0 < rate < 1 if discrete else rate > 0
-    if not modes or d < 1 or not decays or not positive_definite(Q):
-        return False
-    forms = statement.get("vanishing", [[[0] * len(Q)] * len(Q)] * len(modes))
-    pairs = zip(modes.values(), forms, strict=True)
-    return all(falls(*mode, N, Q, d, rate, discrete) for mode, N in pairs)
+def own(form, weight=1):
+    return [(weight, {a: 1}, row) for a, row in form.items()]
 
 
+def left(s, before, after, keeps):
+    """Return the terms of what is left of a form before a step without that after it."""
+    if not s.flow:
+        return own(before, keeps) + [(-1, s.M[a], combined(after[a], s.M)) for a in after]
+    moved = {a: Counter() for a in before}
+    for a, vector in moved.items():
+        for k, i in enumerate(a):
+            for key, x in s.M[i,].items():
+                vector[tuple(sorted((*a[:k], *a[k + 1 :], *key))) if a[1:] else key] += x
+    images = {a: combined(row, moved) for a, row in before.items()}
+    return own(before, -keeps) + own(images, -1) + [(-1, b, a) for _, a, b in own(images)]
+
+
+def exponential(A, t):
+    size, k, bound = t * max(sum(map(abs, row.values())) for row in A.values()), 0, F(1)
+    E = term = {i: {i: F(1)} for i in A}
+    while k < 2 * size or bound > F(1, 2**300):
+        k, bound = k + 1, bound * size / (k + 1)
+        term = {i: combined({j: x * t / k for j, x in A[i].items()}, term) for i in A}
+        E = {i: combined({0: 1, 1: 1}, [E[i], term[i]]) for i in A}
+    return E, bound  # Of a row's error: of the terms left, each is at most half of the one before
+
+
+def acting(k, active):
+    mode, facts, M = every[k], [], {i: {**row} for i, row in A[every[k]["name"]].items()}
+    acts = {kind: [f"{kind} {i + 1}" for i, _ in enumerate(o.get(f"{kind}s", []))] for kind in ACTS}
+    for act in (act for kind in active for act in acts[kind]):
+        item = o[f"{act[:8]}s"][int(act[9:]) - 1]
+        need(len(item["columns"]) == len(item["rows"]) == len(every), "a mode has no column or row")
+        keys = [*M, *acts["channel"], *(acts["rounding"] if act in acts["coupling"] else [])]
+        q = dict(zip(keys, table(item["rows"][k], 1, len(keys))[0,].values(), strict=True))
+        q = {key: x for key, x in q.items() if key in M or key[:8] in active}
+        for i, entry in table(item["columns"][k], n, 1).items():
+            M[i][act] = entry[0,]
+        facts += [(act, {act: 1}, {act: 1}), (act, {key: -x for key, x in q.items()}, q)]
+    for row in [*M.values(), *(v for _, *pair in facts for v in pair)] * (k >= count):
+        need(row.pop((n - 1,), 0) == (row is M[n - 1,] and not flow), "free, but pushed")
+    return Step(mode["name"], "modes", "modes", n, M, flow, facts, mode["denominator"], 1)
+
+
+def steps_in_contact(lost, active):
+    """Yield every step under arbitrary switching, between contact and flight if it is lost."""
+    need(uniform and not rules.get("resets"), "resets, or modes of unlike size, are not covered")
+    for k in range(len(every) if lost else count):
+        s, last = acting(k, active), (n - 1,)
+        rows = {i: row for i, row in s.M.items() if i != last}
+        if k >= count:
+            s = s._replace(n=n - 1, source="free")
+            yield from [s._replace(M=rows, target="free"), s, s._replace(M=rows)][: 3 - 2 * flow]
+            continue
+        facts = [*s.facts, ("lost", {last: 1}, s.M[last]), ("lost", s.M[last], {last: 1})]
+        yield from [s, s._replace(M=rows, target="free", facts=facts)][: 1 + (lost and not flow)]
+
+
+def steps_by_mode(leaving, rate):
+    """Yield every step of a system that keeps rules of switching; its places are the modes."""
+    need({r[k] for r in rules.get("resets", []) for k in ("source", "target")} <= names, "a reset")
+    for a in names - leaving:
+        yield Step(a, a, a, len(A[a]), A[a], flow, [], 1, 1)
+    for a, b in product(names, names):
+        if a == b or [a, b] not in rules.get("transitions", [[a, b]]):
+            continue
+        stay = dict(rules.get("stays", [])).get(a, {"shortest": rules.get("dwell_time", 0)})
+        first = max(F(stay.get("shortest", 0)), not flow)
+        last = F(stay["longest"]) if a in leaving else first
+        need(0 <= first <= last and (flow or first % 1 == last % 1 == 0), "a stay is odd")
+        need(not (flow and a in leaving), "stays of any length", NotImplementedError)
+        resets = [r for r in rules.get("resets", []) if (r["source"], r["target"]) == (a, b)]
+        for reset in resets or [None]:
+            jump = table(reset, len(A[b]), len(A[a])) if reset else {i: {i: F(1)} for i in A[a]}
+            need(jump.keys() == A[b].keys(), "a switch has no reset that fits")
+            if flow:
+                E, e = exponential({i: {**A[a][i], i: A[a][i][i] + rate} for i in A[a]}, first)
+                e *= max(sum(map(abs, row.values())) for row in jump.values())
+                jump = {i: combined(row, E) for i, row in jump.items()}
+                facts = [("error", {i: -e * (1 + e)}, {i: 1}) for i in E]
+                yield Step(a, a, b, len(E), jump, False, facts, 1, 0)
+            for stay in range(1, 1 + int(last) * (not flow)):
+                jump = {i: combined(row, A[a]) for i, row in jump.items()}
+                if stay >= first:
+                    yield Step(a, a, b, len(A[a]), jump, False, [], 1, stay)
+
+
+def check_graph(told):
+    stays, d, rate = told.get("stays"), told.get("degree", 1), F(told["rate"])
+    nodes = [(k, *map(node.get, ("place", "form"))) for k, node in enumerate(told["nodes"])]
+    multipliers, added = told.get("multipliers", []), told.get("vanishing", [])
+    values = {(m["fact"], m.get("target")): m["value"] for m in multipliers}
+    covered = {fact.split()[0] for fact, _ in values}
+    lost = stays is None and "free" in [place for _, place, _ in nodes]
+    need("edges" not in told and (d == 1 or (flow and stays is None)), "shape", NotImplementedError)
+    need(d >= 1 and rate > 0 and (flow or rate < 1), "the rate is none of decay")
+    if stays is None:
+        steps = list(steps_in_contact(lost, [kind for kind in ACTS[1:] if kind in covered]))
+        more = (required and not lost) or ("couplings" in o and "coupling" not in covered)
+    else:
+        steps = list(steps_by_mode({*stays.get("leaving", [])}, rate))
+        more = values or required or "couplings" in o or "fixed_ends" in rules
+    need(not more, "contact, axes, or what is between the ends of a range is not covered")
+    sizes, facts = {s.source: s.n for s in steps}, {fact for s in steps for fact, *_ in s.facts}
+    wanted = {s.target for s in steps} | ({*sizes} if stays is None else names)
+    need({*sizes} == {p for _, p, _ in nodes} >= wanted, "a place has no form, or no step")
+    need(len(nodes) == len(sizes) or not (flow or "coupling" in covered), "there are more forms")
+    odd = [m for m in multipliers if m["value"] < 0 or m["fact"] not in facts - {"error"} or d > 1]
+    odd += [m for m in multipliers if "target" in m and m["fact"].startswith("coupling")]
+    need(not odd and len(values) == len(multipliers), "a multiplier is odd")
+    for _, place, rows in nodes:
+        need(definite(own(form(rows, sizes[place], d))), "a form is not positive definite")
+    flat = [form(rows, sizes[place], d, n - 1) for _, place, rows in nodes if lost and flow]
+    need(flat[:1] == flat[1:], "it jumps where contact is lost")
+    for s, (_, source, rows), (b, target, others) in product(steps, nodes, nodes):
+        if (source, target) == (s.source, s.target):
+            keeps = 2 * d * rate if s.flow else rate ** (2 * s.time)
+            after = form(others, sizes[target], d, len(s.M))
+            terms = left(s, form(rows, sizes[source], d), after, keeps)
+            G, M = (max(abs(x) for v in Q.values() for x in v.values()) for Q in (after, s.M))
+            values["error", None] = max(s.n, len(s.M)) ** 3 * G * (2 * M + 1)  # Its effect, at most
+            terms += [(values.get((f, b), values.get((f, None), 0)), *pair) for f, *pair in s.facts]
+            if d > 1:
+                N, total = form(added.pop(0), s.n, d), Counter()
+                for u, v in product(N, N):
+                    total[tuple(sorted(u + v))] += N[u][v]
+                need(not any(total.values()), "a form does not vanish")
+                terms += own(N, F(1, (keeps * s.over).denominator * s.over))
+            need(definite(terms, semi=not s.time), f"it rises in mode {s.mode}")
+    need(not added, "more forms vanish than there are steps")
+
+
+def check_no_common_quadratic(told):
+    terms = []
+    for name, L in told["factors"]:
+        for column in zip(*L, strict=True):
+            x = dict(zip(A[name], column, strict=True))
+            y = {i: sum(a * x[j] for j, a in row.items()) for i, row in A[name].items()}
+            terms += [(1, y, x), (1, x, y)] if flow else [(1, y, y), (-1, x, x)]
+    need(uniform and {f[0] for f in told["factors"]} <= names and definite(terms), "the sum")
+
+
+def check_parameter_quadratic(told):
+    Q, rate = [form(told[end], n) for end in ("low", "high")], F(told["rate"])
+    steps, ends = {s.mode: s for s in steps_in_contact(False, [])}, rules["fixed_ends"]
+    need(sorted(end for pair in ends for end in pair) == sorted(names), "the modes are not ends")
+    need(flow and rate > 0 and not (required or "couplings" in o), "the rate, contact or axes")
+    for a, b in ends:
+        low, high = ([left(steps[end], q, q, 2 * rate) for q in Q] for end in (a, b))
+        for terms in (*map(own, Q), low[0], high[1], low[1] + high[0]):
+            need(definite(terms), f"it rises between {a} and {b}")
+
+
+sys.tracebacklimit = 0  # What is wrong is said in one line
 with open(sys.argv[1], encoding="utf-8") as file:
-    certificate = json.load(file)
-signed = {key: certificate[key] for key in certificate.keys() - {"id", "origin"}}
+    o = json.load(file, parse_float=int)  # Refuses fractions
+signed = {key: o[key] for key in o.keys() - {"id", "origin"}}
 text = json.dumps(signed, sort_keys=True, separators=(",", ":"))
-if hashlib.sha256(text.encode()).hexdigest() != certificate["id"]:
-    sys.exit("it was altered")
-modes = {}
-for mode in certificate["modes"]:
-    q, rows = mode["denominator"], mode["numerators"]
-    if mode["name"] in modes or q <= 0 or any(len(row) != len(rows) for row in rows):
-        sys.exit("two modes have one name, or one is not square")
-    modes[mode["name"]] = [[F(entry, q) for entry in row] for row in rows], q
-free, discrete = certificate["switching"] == "arbitrary", certificate["time"] == "discrete"
-free &= not certificate.get("contact", {}).get("required")
-free &= not {"couplings", "clock"} & certificate.keys()
-results, verdict = [], "inconclusive"
-for statement in certificate["statements"]:
-    results.append(holds(statement, modes, free, discrete))
-    words = {True: "holds", False: "DOES NOT HOLD", None: "not checked here"}
-    print(f"{statement['kind']}: {words[results[-1]]}")
-    verdict = verdict if statement["kind"].startswith("no-") else "proved"
-sys.exit(1 if False in results else 3 if None in results else certificate["verdict"] != verdict)
+need(hashlib.sha256(text.encode()).hexdigest() == o["id"], "it was altered")
+need(o["schema"][-2:] == "/8" and o["time"] in ("continuous", "discrete"), "another schema")
+n, contact, flow = len(o["states"]), o.get("contact", {}), o["time"] == "continuous"
+rules, required = {} if o["switching"] == "arbitrary" else o["switching"], contact.get("required")
+count, every = len(o["modes"]), o["modes"] + contact.get("free", [])
+A = {m["name"]: table(m, k, k) for m in every for k in [len(m["numerators"])]}
+uniform, names = {len(rows) for rows in A.values()} == {n}, {*[*A][:count]}
+need(count and len(A) == len(every) and (len(every) > count or "contact" not in o), "odd modes")
+codes, verdict = set(), "inconclusive"
+for statement in o["statements"]:
+    kind, code, words = statement["kind"], 0, "holds"
+    try:
+        check = globals().get(f"check_{kind}".replace("-", "_"))
+        known = check and not {"clock", "pulls"} & {*o, *contact}
+        need(known, "this kind, turns or pulls", NotImplementedError)
+        check(statement)
+        verdict = verdict if kind.startswith("no-") else "proved"
+    except NotImplementedError as error:
+        code, words = 3, f"not checked here ({error})"
+    except (ArithmeticError, LookupError, TypeError, ValueError) as error:
+        code, words = 1, f"DOES NOT HOLD: {error}"
+    print(f"{kind}: {words}")
+    codes.add(code)
+sys.exit(1 if 1 in codes or not codes else 3 if 3 in codes else o["verdict"] != verdict)

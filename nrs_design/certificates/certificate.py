@@ -168,11 +168,15 @@ def to_document(certificate: Certificate) -> dict[str, Any]:
     }
 
 
-def content_id(document: Mapping[str, Any]) -> str:
-    """Return the SHA-256 over a document in canonical form, its ``id`` and origin left out."""
+def canonical(document: Mapping[str, Any]) -> str:
+    """Return a document in canonical form, its ``id`` and origin left out."""
     content = {key: value for key, value in document.items() if key not in UNSIGNED}
-    canonical = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(canonical.encode()).hexdigest()
+    return json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+
+
+def content_id(document: Mapping[str, Any]) -> str:
+    """Return the SHA-256 over the canonical form of a document."""
+    return hashlib.sha256(canonical(document).encode()).hexdigest()
 
 
 def dump(certificate: Certificate, origin: str | None = None) -> str:

@@ -39,6 +39,7 @@ COMMANDS = (
     "report",
     "reproduce",
     "export",
+    "evidence",
     "gate",
     "explain",
     "robot",

@@ -211,7 +211,9 @@ def _print(result: Result, *, verbose: bool) -> None:
     everything = verbose or certification.evidence is None
     for attempt in certification.attempts:
         # A bound that was wanted and not found must be visible.
-        sought = attempt.step.startswith(("bound on ", "constant force", "decay under"))
+        sought = attempt.step.startswith(
+            ("bound on ", "constant force", "decay under", "limits of")
+        )
         missing = sought and attempt.outcome != "found"
         if everything or missing:
             # Steps that were skipped took no time.

@@ -148,7 +148,7 @@ def _export_design(
     out: Path,
     execution: Execution | None,
 ) -> Answer:
-    from nrs_design.exporters.export import export_design
+    from nrs_design.exporters.export import export_design, export_proof
     from nrs_design.exporters.write import check_places, places
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import placed
@@ -165,27 +165,30 @@ def _export_design(
     check_places(chosen, files, name)
     check_certificate(spec, beside)
     with progress(f"exporting {name}") as step:
-        result = export_design(loaded, certificate, step, execution)
+        if chosen.alone:
+            result = export_proof(loaded, certificate, step)
+        else:
+            result = export_design(loaded, certificate, step, execution)
     remarks: tuple[str, ...] = ()
-    if result.record is not None:
+    if result.may_be_written:
         # A design of which there is no program is told at its place in the spec.
         with placed(loaded):
             remarks = _write(result, format_, files, None if certificate else proof, spec)
-    written = list(files.values()) if result.record else []
+    written = list(files.values()) if result.may_be_written else []
     summary = _summary(name, result, written, proof)
     return Answer(
         lambda: summary | {"remarks": remarks},
         lambda: _show(name, result, written, proof, remarks),
         exit_codes.OF_VERDICT.get(result.verdict, exit_codes.REFUTED),
         # Nothing was written, which is an error of its own.
-        loud=result.record is None,
+        loud=not result.may_be_written,
     )
 
 
 def _show(
     name: str, result: Export, written: list[Path], proof: Path, remarks: tuple[str, ...]
 ) -> None:
-    if result.record is None:
+    if not result.may_be_written:
         note(f"{name}: not exported: {result.reason}")
         return
     where = ", ".join(map(str, written))
@@ -219,7 +222,7 @@ def _write(
 
 def _summary(name: str, result: Export, written: list[Path], proof: Path) -> dict[str, Any]:
     record = result.record
-    certified = record is not None and result.certificate is not None
+    certified = result.may_be_written and result.certificate is not None
     return {
         "spec": name,
         "verdict": result.verdict,

@@ -12,13 +12,14 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import CoordinatesOption
 from nrs_design.cli.printing import is_quiet, progress, say
-from nrs_design.errors import CertificateError
+from nrs_design.errors import CertificateError, NrsDesignError
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
     from nrs_design.certificates.certificate import Certificate
     from nrs_design.certificates.verify import Verification
+    from nrs_design.cli.deployed import DeployedAnswer
     from nrs_design.spec import LoadedSpec, Spec
 
 # Work for each of the bounds of a robot.
@@ -43,9 +44,36 @@ def verify(
     deployed: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE",
-            help="Exported C header, monitor, FMU or JSON record whose numbers must be those of "
-            "the certificate, bit for bit.",
+            metavar="PLACE",
+            help="Folder of exported files, or one of them (C, tests, vectors, monitor, CMake, "
+            "FMU, record): they must be what is exported with the certificate.",
+        ),
+    ] = None,
+    compile_line: Annotated[
+        str | None,
+        typer.Option(
+            "--compile",
+            metavar="'CC FLAGS'",
+            help="Your compiler and flags: compiles the deployed law, runs its self-test, and "
+            "writes NAME.binary.json.",
+        ),
+    ] = None,
+    link_line: Annotated[
+        str | None,
+        typer.Option(
+            "--link",
+            metavar="'WORDS'",
+            help="What links the self-test, with start and memory of your board; by default those "
+            "of an emulated Cortex-M4F for arm-none-eabi, and nothing otherwise.",
+        ),
+    ] = None,
+    run_line: Annotated[
+        str | None,
+        typer.Option(
+            "--run",
+            metavar="'COMMAND'",
+            help="What runs the self-test, at its end or at {program}; by default QEMU for "
+            "arm-none-eabi, and the program itself otherwise.",
         ),
     ] = None,
     bounds: Annotated[
@@ -63,21 +91,28 @@ def verify(
     and the answer says so: whose modes they are is then not known, and gains, coordinates and
     assumptions, which nothing holds against anything, are not printed.
 
-    With --deployed, the numbers in an exported file are compared with the certificate: the gains of
-    a record; coefficients, limits and modes of a header; limits, ranges and code of a monitor; all
-    sources and variables of an FMU, and its library with what the compiler here makes of them. The
-    answer says first what was compared and what was not, such as the code beside a header.
+    With --deployed, every exported file of a folder is compared with what is exported with the
+    certificate: code token by token, in its order; a record field by field; an FMU by what it
+    holds, its library with what the compiler here makes of it. Comments do not count. The answer
+    says first what was compared and what was not.
+
+    With --compile, the law is then compiled by your own line, its self-test of 1,000 cases runs on
+    an emulator or here, and a record names compiler, flags and the hash of the object that passed.
+    The lines run without a shell, two minutes each at most, in a copy of the folder: files
+    elsewhere need their whole path.
 
     Where the spec names a robot, the bounds on its links are taken on trust from the file beside
     it, and the answer says so; a file that a pose contradicts is rejected. --bounds computes them
     again, from the spec of the robot.
 
     Exit code 0: the proof holds. 1: the certificate is rejected, or it holds and refutes, or the
-    deployed numbers or the bounds of the robot are others. 3: it holds, but decides nothing.
+    deployed files, the binary or the bounds of the robot are others. 3: it holds, but decides
+    nothing.
 
     Example: nrs-design verify reports/soft-tissue.cert.json specs/neuroboscope/soft-tissue.nrs.yaml
     """
     _check_arguments(certificate, spec, coordinates, deployed)
+    lines = _lines(deployed, compile_line, link_line, run_line)
     outcome, loaded = _verify(certificate, spec, None if coordinates is None else str(coordinates))
     robot = None if loaded is None else loaded.robot
     if bounds and robot is None:
@@ -85,7 +120,8 @@ def verify(
     faults = None if robot is None else _bounds_faults(robot, again=bounds)
     on_trust = None if robot is None or bounds else _file_of(robot)
     checked = outcome.certificate if outcome.fault is None else None
-    differences = _differences(deployed, loaded, checked)
+    place = _deployed(deployed, lines, loaded, checked)
+    differences = None if place is None else place.differences
     rejected = checked is None or bool(differences) or bool(faults)
     verdict = "rejected" if checked is None or rejected else checked.verdict
     brief = is_quiet()
@@ -95,8 +131,8 @@ def verify(
             say(f"REJECTED: {outcome.fault}", verdict="rejected")
             return
         # What was deployed comes first: a proof of other numbers is no good news.
-        if differences is not None:
-            _print_deployed(deployed, differences)
+        if place is not None:
+            place.show()
         _print_faults(faults or [])
         if not (faults or brief):
             _print(checked, None if loaded is None else loaded.spec, on_trust)
@@ -105,7 +141,7 @@ def verify(
 
     given = {"certificate": certificate, "spec": spec, "deployed": deployed, "robot": robot}
     return Answer(
-        lambda: _facts(outcome, given, differences, faults, on_trust),
+        lambda: _facts(outcome, given, place, faults, on_trust),
         show,
         exit_codes.OF_VERDICT.get(verdict, exit_codes.REFUTED),
         loud=rejected,
@@ -151,7 +187,7 @@ def _check_arguments(
 def _facts(
     outcome: Verification,
     given: Mapping[str, Path | None],
-    differences: list[str] | None,
+    place: DeployedAnswer | None,
     faults: list[str] | None,
     on_trust: Path | None,
 ) -> dict[str, Any]:
@@ -161,6 +197,7 @@ def _facts(
     # What stands in a certificate beside its modes is held against a spec, or against nothing.
     compared = checked if given["spec"] is not None else None
     files = {name: None if path is None else str(path) for name, path in given.items()}
+    differences = None if place is None else place.differences
     return {
         "verdict": checked.verdict if checked and not (differences or faults) else "rejected",
         "refuted_in": checked.refuted_in if checked else None,
@@ -173,7 +210,10 @@ def _facts(
         "certificate_id": checked.id if checked else None,
         "spec": files["spec"],
         "deployed": files["deployed"],
-        "differences": differences,
+        "differences": None if differences is None else list(differences),
+        "compared": None if place is None else [file.name for file in place.comparison.compared],
+        "not_compared": None if place is None else place.comparison.left_out,
+        "binary": None if place is None else place.record,
         "robot": files["robot"],
         "bounds_faults": faults,
         "on_trust": None if on_trust is None else str(on_trust),
@@ -209,36 +249,43 @@ _NEXT = {
 }
 
 
-def _differences(
-    deployed: Path | None, loaded: LoadedSpec | None, checked: Certificate | None
-) -> list[str] | None:
+def _lines(
+    deployed: Path | None, compile_line: str | None, link_line: str | None, run_line: str | None
+) -> Mapping[str, str]:
+    """Return the command lines of the user, by their options."""
+    given = {"--compile": compile_line, "--link": link_line, "--run": run_line}
+    lines = {option: line for option, line in given.items() if line is not None}
+    for option in lines:
+        if "--compile" not in lines:
+            raise typer.BadParameter("needs --compile, whose program it is for", param_hint=option)
+        if deployed is None or (deployed.exists() and not deployed.is_dir()):
+            raise typer.BadParameter("needs --deployed with a folder", param_hint=option)
+    return lines
+
+
+def _deployed(
+    deployed: Path | None,
+    lines: Mapping[str, str],
+    loaded: LoadedSpec | None,
+    checked: Certificate | None,
+) -> DeployedAnswer | None:
     """Compare what was deployed with a certificate that holds; None if there is nothing to do."""
     if deployed is None or loaded is None or checked is None:
         return None
-    from nrs_design.exporters.deployed import find_differences
+    from nrs_design.cli.deployed import deployed_answer
     from nrs_design.pipeline import wrong_kind
     from nrs_design.spec import InteractionDesignSpec
 
     if not isinstance(loaded.spec, InteractionDesignSpec):
         what = f"a spec of kind {loaded.spec.kind} has no gains that could be deployed"
         raise wrong_kind(loaded, what, "leave --deployed out")
-    return find_differences(deployed, loaded.spec, checked)
-
-
-def _print_deployed(file: Path | None, differences: list[str]) -> None:
-    if differences:
-        say(f"REJECTED: {file} does not hold the numbers of the certificate", verdict="rejected")
-        for line in differences:
-            say(f"  {line}")
-    else:
-        from nrs_design.exporters.deployed import scope_of
-
-        assert file is not None, "it was compared"
-        compared, left_out = scope_of(file)
-        say(
-            f"deployed: {compared} of {file}: those of the certificate, bit for bit; not compared: "
-            f"{left_out}"
+    if not deployed.exists():
+        raise NrsDesignError(
+            "there is no such file or folder",
+            path=deployed,
+            remedy="--deployed names what `nrs-design export` has written",
         )
+    return deployed_answer(deployed, lines, loaded.spec, checked)
 
 
 def _print(certificate: Certificate, spec: Spec | None, on_trust: Path | None) -> None:

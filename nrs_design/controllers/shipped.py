@@ -12,6 +12,7 @@ from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.controllers.parts import BEYOND
+from nrs_design.controllers.safety import SafetyLimits, add_safety
 from nrs_design.controllers.step_analysis import check_range
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
@@ -48,14 +49,16 @@ def shipped_law(
     laws = {c.name: _discrete(c, outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
-    return replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
+    law = replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
+    return law if spec.safety is None else add_safety(law, SafetyLimits.of(spec.safety, period))
 
 
 def _discrete(controller: Controller, period: Fraction, method: str) -> DiscreteLaw:
     law = controller.law.discretize(period, method)
     if law is None:
         what = f"{controller.name} is a {controller.law.name} controller"
-        raise _without_program(what, controller.name)
+        because = "its law is known in continuous time only, and no proof is about its steps"
+        raise _without_program(what, because, controller.name)
     return law
 
 
@@ -79,7 +82,8 @@ def _step_law(
     frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec))
     if spec.offset != "none":
         first = next(c.name for c in design.controllers if c.law.commands == "position")
-        raise _without_program("force control takes an offset", first)
+        because = "it jumps at every switch, and no proof of a law in steps covers that"
+        raise _without_program("force control takes an offset", because, first)
     if (odd := design.find_odd_states(mixed=spec.idle_states is not None)) is not None:
         raise DesignError(odd, remedy=SHARED_STATES, at=("controllers",))
     idle = spec.idle_states
@@ -106,9 +110,9 @@ def _renamed(unit: str, command: str) -> str:
     return command + unit.removeprefix("rpm") if unit.startswith("rpm") else unit
 
 
-def _without_program(what: str, controller: str) -> DesignError:
+def _without_program(what: str, because: str, controller: str) -> DesignError:
     return DesignError(
-        f"{what}, of which there is no program",
+        f"{what}, of which there is no program: {because}",
         remedy="export the gains alone, with --format json",
         at=("controllers", controller),
     )

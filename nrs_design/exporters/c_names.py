@@ -50,13 +50,6 @@ class CNames:
         """The macro of how many modes there are."""
         return f"{self.upper}_MODES"
 
-    def numbers(self, law: StepLaw) -> dict[str, int | Fraction]:
-        """Return every macro of the header with its number: modes, coefficients and limits."""
-        modes = {self.mode(mode): k for k, mode in enumerate(law.modes)}
-        coefficients = {name: value for name, (_, value) in self.coefficients(law).items()}
-        limits = {self.limit(value): value.limit for value in law.guarded}
-        return {self.modes: len(law.modes), **modes, **coefficients, **limits, **self.logic(law)}
-
     def threshold(self, index: int, bound: SignalBound) -> str:
         """Return the macro of a bound of the switch with that number, counted from one."""
         side = "ABOVE" if bound.above else "BELOW"
@@ -76,17 +69,6 @@ class CNames:
         assert law.logic is not None
         holds = zip(law.modes, law.logic.stays, strict=True)
         return {self.start: law.logic.start, **{self.hold(mode): stay for mode, stay in holds}}
-
-    def logic(self, law: StepLaw) -> dict[str, int | Fraction]:
-        """Return the macros of a mode logic with their numbers; none without one."""
-        if law.logic is None:
-            return {}
-        thresholds = {
-            self.threshold(index, bound): bound.threshold
-            for index, switch in enumerate(law.logic.switches, 1)
-            for bound in switch.bounds
-        }
-        return {**self.stays(law), **thresholds}
 
     def coefficients(self, law: StepLaw) -> dict[str, tuple[Coefficient, Fraction]]:
         """Return every coefficient of a law that has a macro, by it."""

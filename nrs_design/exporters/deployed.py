@@ -1,45 +1,96 @@
-"""Whether numbers that were deployed are those of a certificate, bit for bit.
+"""Whether what was deployed is what is exported with a certificate: files, or a folder of them.
 
-An exported header is read as a compiler reads it, as far as its numbers go: comments say nothing.
-An export record is read as JSON. Of the law, code is not compared: that is what the vectors are
-for. A monitor has tables in its code, and a model for co-simulation has it inside: theirs is.
+Code is compared token by token, in its order: numbers, types, fields, operations, cases of a test.
+Tables, tests in Python and files of CMake are compared line by line, an export record field by
+field, a model for co-simulation by what it holds. Comments say nothing and are not compared.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 from nrs_design.certificates.certificate import Certificate
 from nrs_design.controllers.gains import design_from_gains
 from nrs_design.errors import NrsDesignError
+from nrs_design.exporters import format_names, format_of, rendered
 from nrs_design.exporters.build import build_record
-from nrs_design.exporters.deployed_c import code_differences, macro_differences
+from nrs_design.exporters.deployed_c import code_differences, line_differences
 from nrs_design.exporters.deployed_model import model_differences
+from nrs_design.exporters.deployed_record import record_differences
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.formats import monitor
-from nrs_design.exporters.monitor_limits import monitor_limits
-from nrs_design.exporters.program import program_of
-from nrs_design.exporters.record import ExportRecord, Gain, dump_record
-from nrs_design.files import open_regular
+from nrs_design.exporters.record import ExportRecord
+from nrs_design.files import open_regular, read_json_text, unique_keys
 from nrs_design.spec import InteractionDesignSpec
 
 LARGEST_BYTES = 2**22
-# The field of a record that is not compared: it names the release that wrote it.
-_RELEASE = "package"
+# How the record of a build ends, which stands beside what was built.
+BINARY_RECORD = ".binary.json"
 
 
-def scope_of(file: Path) -> tuple[str, str]:
-    """Return what of a deployed file `find_differences` compares, and what it does not."""
-    if file.suffix == ".json":
-        return "all fields", "the release that wrote it"
-    if file.suffix == ".fmu":
-        return "sources, variables and library", "the documentation inside"
-    source = file.with_suffix(".c").name
-    if file.suffix == ".h":
-        return "macros", f"any code ({source}), comments, how it is compiled"
-    return "code", f"its headers ({file.with_suffix('.h').name}), comments, how it is compiled"
+@dataclass(frozen=True, slots=True)
+class DeployedFiles:
+    """What of a deployed file or folder was compared, and what was found."""
+
+    compared: tuple[Path, ...]
+    differences: tuple[str, ...]  # Each begins with the name of its file
+    # Files beside them that nothing was compared with.
+    others: tuple[Path, ...]
+
+    @property
+    def left_out(self) -> str:
+        """What was not compared, in words."""
+        what = ["comments", "how it is compiled"]
+        if any(file.suffix == ".json" for file in self.compared):
+            what.append("the release that wrote it")
+        if any(file.suffix == ".fmu" for file in self.compared):
+            what.append("the documentation of the model")
+        return ", ".join([*what, *(file.name for file in self.others)])
+
+
+def compare_deployed(
+    place: Path, spec: InteractionDesignSpec, certificate: Certificate
+) -> DeployedFiles:
+    """Compare a deployed file, or every exported file in a folder, with a certificate.
+
+    Parameters
+    ----------
+    place : Path
+        A file, or a folder that holds at least header and source of the law.
+    spec : InteractionDesignSpec
+        That of the certificate.
+    certificate : Certificate
+        Accepted, and about this spec.
+
+    Raises
+    ------
+    NrsDesignError
+        If a file cannot be read, or is none that is compared, or the certificate says nothing about
+        it.
+    """
+    if not place.is_dir():
+        return DeployedFiles((place,), tuple(find_differences(place, spec, certificate)), ())
+    files = sorted(path for path in place.iterdir() if path.is_file())
+    known = {file: end for end in _ways() if (file := place / f"{spec.name}{end}") in files}
+    exports = _Exports(spec, certificate)
+    told = [f"{file.name}: {each}" for file in known for each in exports.differences(file)]
+    told += [f"{spec.name}{end}: it is missing" for end in _missing({*known.values()})]
+    # The certificate is read, and a record of a build is what is about to be written.
+    aside = {f"{spec.name}.cert.json", f"{spec.name}{BINARY_RECORD}"}
+    others = (file for file in files if file not in known and file.name not in aside)
+    return DeployedFiles((*known,), (*told,), (*others,))
+
+
+def _missing(there: set[str]) -> list[str]:
+    """Return the endings of files that belong to those that are there, and of the law itself."""
+    wanted = {".h", ".c"}
+    for pair in (("_test.h", "_test.c"), ("_monitor.h", "_monitor.c")):
+        wanted |= {*pair} if there & {*pair} else set()
+    return sorted(wanted - there)
 
 
 def find_differences(
@@ -50,8 +101,7 @@ def find_differences(
     Parameters
     ----------
     file : Path
-        An exported header (``.h``), monitor (``.h``, ``.c``), model (``.fmu``) or export record
-        (``.json``).
+        An export; which one, its name says by its ending, such as ``_monitor.h``.
     spec : InteractionDesignSpec
         That of the certificate.
     certificate : Certificate
@@ -62,29 +112,76 @@ def find_differences(
     NrsDesignError
         If the file cannot be read as one of these, or the certificate says nothing about it.
     """
-    if file.suffix == ".json":
-        return [*_of_record(_text(file), spec, certificate, file)]
-    if file.suffix not in (".h", ".c", ".fmu"):
-        raise _something_else(file)
-    export = _exported(spec, certificate, file)
-    if file.suffix == ".fmu":
-        return [*model_differences(_read(file), export)]
-    text = _text(file)
-    if "_monitor_t" in text:
-        return [*_of_monitor(text, export, file)]
-    if file.suffix == ".c":
-        raise _something_else(file)
-    program = program_of(export)
-    wanted = program.names.numbers(program.law)
-    return [*macro_differences(text, f"{program.names.upper}_H", wanted)]
+    return _Exports(spec, certificate).differences(file)
+
+
+@dataclass(frozen=True, slots=True)
+class _Exports:
+    """What is exported with a certificate, each format made once."""
+
+    spec: InteractionDesignSpec
+    certificate: Certificate
+    made: dict[str, Mapping[str, bytes]] = field(default_factory=dict)
+
+    def differences(self, file: Path) -> list[str]:
+        """Return in what a file differs from its export."""
+        ending = max((end for end in _ways() if file.name.endswith(end)), key=len, default=None)
+        if ending is None and file.suffix != ".json":
+            raise _something_else(file)
+        if ending in (None, ".export.json"):
+            proved = _record(self.spec, self.certificate)
+            return [*record_differences(_text(file), proved, file)]
+        format_, differences = _ways()[ending]
+        export = _exported(self.spec, self.certificate, file)
+        if ending.endswith(".fmu"):
+            return [*model_differences(_read(file), export)]
+        if format_ not in self.made:
+            self.made[format_] = rendered(format_, export)
+        return [*differences(_text(file), self.made[format_][ending].decode())]
+
+
+def _vector_differences(text: str, wanted: str) -> Iterator[str]:
+    """Compare a document of vectors; the lines that every file says of itself name the release."""
+    try:
+        found = json.loads(read_json_text(text.encode()), object_pairs_hook=unique_keys)
+    except (ValueError, RecursionError):
+        yield "it is no document of JSON"
+        return
+    exported = json.loads(wanted)
+    if not isinstance(found, dict):
+        found = {}
+    for name in sorted((found.keys() | exported.keys()) - {"about"}):
+        if json.dumps(found.get(name)) != json.dumps(exported.get(name)):
+            yield f"its field {name!r} is not what the export has"
+
+
+# How the text of a file is compared, by its suffix; a model has a way of its own.
+_BY_SUFFIX: Mapping[str, Callable[[str, str], Iterator[str]]] = MappingProxyType(
+    {
+        **dict.fromkeys((".h", ".c"), code_differences),
+        **dict.fromkeys((".cmake", ".csv", ".py", ".fmu"), line_differences),
+        ".json": _vector_differences,
+    }
+)
+
+
+@cache
+def _ways() -> Mapping[str, tuple[str, Callable[[str, str], Iterator[str]]]]:
+    """Return the format of each file that is compared, by its ending, and how that is done."""
+    endings = ((end, name) for name in format_names() for end in format_of(name).files)
+    return {
+        end: (name, _BY_SUFFIX[suffix])
+        for end, name in endings
+        if "/" not in end and (suffix := Path(f"law{end}").suffix) in _BY_SUFFIX
+    }
 
 
 def _something_else(file: Path) -> NrsDesignError:
     return NrsDesignError(
-        "is none of the files whose numbers are compared",
+        "is none of the files that are compared",
         path=file,
-        remedy="name the .h of `export --format c`, a file of `--format monitor`, or that of "
-        "`--format fmu` or `--format json`",
+        remedy="name the folder, or a file of `export --format c`, `cmake`, `vectors`, `monitor`, "
+        "`fmu` or `json`, under its name",
     )
 
 
@@ -112,18 +209,6 @@ def _record(spec: InteractionDesignSpec, certificate: Certificate) -> ExportReco
     return build_record(design, certificate, spec.idle_states, spec.offset, delay)
 
 
-def _of_monitor(text: str, export: Export, file: Path) -> Iterator[str]:
-    """Compare all macros of its header, or all code of its source, where the tables are."""
-    program = program_of(export)
-    limits, names = monitor_limits(export, program.law.modes), program.names
-    if file.suffix == ".c":
-        yield from code_differences(text, monitor.source_text(program, limits))
-        return
-    wanted = monitor.macro_numbers(names, limits)
-    guard = f"{names.upper}_MONITOR_H"
-    yield from macro_differences(text, guard, wanted, (f"{names.spec}.h",))
-
-
 def _read(file: Path) -> bytes:
     try:
         with open_regular(file) as stream:
@@ -137,78 +222,8 @@ def _read(file: Path) -> bytes:
 
 def _text(file: Path) -> str:
     try:
-        return _read(file).decode("utf-8" if file.suffix == ".json" else "ascii")
+        return _read(file).decode("ascii" if file.suffix in (".h", ".c") else "utf-8")
     except UnicodeDecodeError as error:
         raise NrsDesignError(
             "is not the text that was exported", path=file, remedy="export it again"
         ) from error
-
-
-def _of_record(
-    text: str, spec: InteractionDesignSpec, certificate: Certificate, file: Path
-) -> Iterator[str]:
-    from pydantic import ValidationError
-
-    try:
-        record = ExportRecord.model_validate_json(text)
-    except ValidationError as error:
-        raise NrsDesignError(
-            "is not an export record, or its numbers disagree with each other",
-            path=file,
-            remedy="export it again with --format json",
-        ) from error
-    proved = _record(spec, certificate)
-    told = [*_of_numbers(record, proved)]
-    yield from told
-    if told:
-        return
-    found, wanted = json.loads(text), json.loads(dump_record(proved))
-    for name in sorted((found.keys() | wanted.keys()) - {_RELEASE}):
-        if name not in found or name not in wanted or found[name] != wanted[name]:
-            yield f"its field {name!r} is not what the certificate says"
-
-
-def _of_numbers(record: ExportRecord, proved: ExportRecord) -> Iterator[str]:
-    """Yield what can be said of gains, and of what runs beside them."""
-    if record.spec.sha256 != proved.spec.sha256:
-        yield "it is of another spec, or of an earlier text of it"
-    listed, names = _gains_of(record), ["motion", *(c.name for c in record.controllers)]
-    mine, wanted = dict(listed), dict(_gains_of(proved))
-    if len(mine) < len(listed) or len({*names}) < len(names):
-        yield "a controller or a gain is there twice"
-    for at in sorted(mine.keys() | wanted.keys()):
-        found, has = mine.get(at, "missing"), wanted.get(at, "no such gain")
-        if found != has:
-            name, gain = at
-            yield f"{gain} of {name} is {found}, and the certificate has {has}"
-    rest = _rest_of(proved)
-    for what, found in _rest_of(record).items():
-        if found != rest[what]:
-            yield f"{what}: {found}, and the certificate has {rest[what]}"
-
-
-def _gains_of(record: ExportRecord) -> list[tuple[tuple[str, str], str]]:
-    """Return every gain with its unit, by controller and name."""
-    parts = [("motion", record.motion.gains), *((c.name, c.gains) for c in record.controllers)]
-    return [((name, gain.name), _said(gain)) for name, gains in parts for gain in gains]
-
-
-def _rest_of(record: ExportRecord) -> dict[str, str]:
-    """Return what runs beside the gains, in words."""
-    low_pass, idle, period = record.force_filter, record.idle_states, record.sample_time
-    return {
-        "laws and contacts": "; ".join(
-            f"{c.name}: {c.law} at {', '.join(c.contacts)}" for c in record.controllers
-        ),
-        "lags of the filter and their pole": f"{low_pass.order}, {_said(low_pass.pole)}"
-        if low_pass
-        else "none",
-        "decay and reset of idle states": f"{_said(idle.decay)}, {idle.reset}" if idle else "none",
-        "offset": record.offset or "none",
-        "sample time in s": period.exact if period else "none",
-        "age of the force sample": "{} to {}".format(*record.delay) if record.delay else "none",
-    }
-
-
-def _said(gain: Gain) -> str:
-    return f"{gain.exact} {gain.unit}"

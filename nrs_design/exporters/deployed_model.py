@@ -9,9 +9,16 @@ import zipfile
 from collections.abc import Iterator, Mapping
 
 from nrs_design.exporters.compiled import compiler
+from nrs_design.exporters.cosimulation import (
+    FIRST,
+    FMI2,
+    FMI3,
+    Interface,
+    contents,
+    library_of,
+)
 from nrs_design.exporters.deployed_c import code_differences
 from nrs_design.exporters.export import Export
-from nrs_design.exporters.formats.fmu import contents, library_of
 from nrs_design.exporters.program import Program, program_of
 
 _MOST_ENTRIES = 16
@@ -34,16 +41,16 @@ def model_differences(content: bytes, export: Export) -> Iterator[str]:
     export : Export
         What is exported with the certificate.
     """
-    program = program_of(export)
-    wanted, library = contents(program, None), library_of(program)
-    entries = _entries(content)
+    program, entries = program_of(export), _entries(content)
     if entries is None:
         yield "it is no archive that was exported"
         return
+    interface = FMI3 if entries.get(FIRST) == FMI3.mark else FMI2
+    wanted, library = contents(program, interface, None), library_of(program, interface)
     for name in entries.keys() - wanted.keys() - {library}:
         yield f"{name[:80]} is not in an export"
     if library in entries:
-        yield from _library_differences(program, entries[library])
+        yield from _library_differences(program, interface, entries[library])
     for name, exported in wanted.items():
         found = entries.get(name)
         if found is None:
@@ -73,11 +80,11 @@ def _entries(content: bytes) -> Mapping[str, bytes] | None:
         return None
 
 
-def _library_differences(program: Program, found: bytes) -> Iterator[str]:
-    compile_with, name = compiler(), library_of(program)
+def _library_differences(program: Program, interface: Interface, found: bytes) -> Iterator[str]:
+    compile_with, name = compiler(), library_of(program, interface)
     if compile_with is None:
         yield f"{name}: there is no compiler cc for 64-bit Linux on x86 here to compare it with"
-    elif found != contents(program, compile_with)[name]:
+    elif found != contents(program, interface, compile_with)[name]:
         yield (
             f"{name} is not what {compile_with} makes of the sources here: it is of another "
             "compiler, or of other code (export it here, or take the library out)"

@@ -12,7 +12,13 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.errors import DesignError
 from nrs_design.exporters.build import build_record, build_unproved, find_mismatch
 from nrs_design.exporters.record import ExportRecord
-from nrs_design.pipeline import Designed, interaction_of, run_certification, run_design
+from nrs_design.pipeline import (
+    Designed,
+    interaction_of,
+    run_certification,
+    run_design,
+    run_recorded,
+)
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec
@@ -31,6 +37,11 @@ class Export:
     design: ControllerDesign | None = None  # The gains of the record
     spec: InteractionDesignSpec | None = None  # What the record is of
     designed: Designed | None = None  # The plant and the gains of a proved design
+
+    @property
+    def may_be_written(self) -> bool:
+        """Whether there is something to write; matrices have a proof without a record."""
+        return self.record is not None or self.verdict == "proved"
 
     def shipped(self) -> ExportRecord:
         """Return the record.
@@ -94,10 +105,40 @@ def export_design(
     return _executable(loaded, export, period, unproved=execution.unproved)
 
 
+def export_proof(
+    loaded: LoadedSpec, certificate: Path | None = None, progress: Progress = silent
+) -> Export:
+    """Return what formats take for which a certificate is enough; of a design, with its record.
+
+    Parameters
+    ----------
+    loaded, certificate, progress
+        As for `export_design`.
+
+    Raises
+    ------
+    DesignError
+        If the design has no answer.
+    CertificateError
+        If the given file is no certificate of this spec, or does not hold.
+    """
+    if loaded.spec.kind == "interaction-design":
+        return export_design(loaded, certificate, progress)
+    result = (
+        run_certification(loaded, progress=progress)
+        if certificate is None
+        else run_recorded(loaded, certificate, progress)
+    )
+    verdict = str(result.certification.verdict)
+    reason = "" if verdict == "proved" else f"nothing is proved of the matrices: {verdict}"
+    return Export(verdict, None, result.certificate, reason)
+
+
 def _check_one_period(loaded: LoadedSpec, spec: InteractionDesignSpec) -> None:
     if spec.sampling is not None and spec.sampling.round > 1:
         raise DesignError(
-            "an export has room for one period, and the outer loop has its own",
+            "an export has one period for all operations of its law, and the proof with "
+            "outer_period runs some of them at another",
             path=loaded.path,
             remedy="leave outer_period out to export; the report has the gains",
             at=("sampling", "outer_period"),
@@ -123,7 +164,8 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
     progress("re-check")
     checked = verify(file, designed.loaded, plant=designed.plant)
     if checked.certificate is None or checked.fault is not None:
-        return Export("rejected", None, None, f"{file} is rejected: {checked.fault}")
+        remedy = "leave --certificate out to prove anew"
+        return Export("rejected", None, None, f"{file} is rejected: {checked.fault} ({remedy})")
     found, design = checked.certificate, designed.design
     if found.verdict == "refuted":
         return Export("refuted", None, found, f"{file} refutes the design", design)

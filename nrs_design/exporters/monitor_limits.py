@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import ceil, floor
 
 from nrs_design.controllers.float32 import float32_not_above, to_float32
+from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.record import ExportRecord
 from nrs_design.spec import InteractionDesignSpec
@@ -27,6 +28,9 @@ class MonitorLimits:
     age: tuple[int, int] | None  # Smallest and largest age of the force sample, in samples
     stays: tuple[tuple[int, int], ...]  # Shortest and longest time in each mode, in samples
     follows: tuple[tuple[bool, ...], ...]  # For each mode, which may follow it
+    sector: Sector | None  # What torque and angle keep; None where the spec does not tell
+    # How far the joint moves, at the limit of its velocity, between two torques that are read.
+    travel: Fraction
     left_out: tuple[str, ...]  # What is not monitored, and why
 
 
@@ -46,6 +50,7 @@ def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
     period, allowed = Fraction(record.sample_time.exact), spec.switching.of_a_run.transitions
     command = spec.limits.command
     speed = None if spec.coupling is None else spec.coupling.speed
+    sector, (youngest, oldest) = sector_of(spec), record.delay or (0, 0)
     return MonitorLimits(
         period=to_float32(period),
         torque=float32_not_above(spec.limits.torque.not_above),
@@ -56,7 +61,9 @@ def monitor_limits(export: Export, modes: tuple[str, ...]) -> MonitorLimits:
         follows=tuple(
             tuple(allowed is None or a == b or (a, b) in allowed for b in modes) for a in modes
         ),
-        left_out=_left_out(spec, record),
+        sector=None if isinstance(sector, str) else sector,
+        travel=spec.limits.velocity.not_below * period * (1 + oldest - youngest),
+        left_out=_left_out(spec, record, sector),
     )
 
 
@@ -68,11 +75,12 @@ def _stay(spec: InteractionDesignSpec, name: str, period: Fraction) -> tuple[int
     )
 
 
-def _left_out(spec: InteractionDesignSpec, record: ExportRecord) -> tuple[str, ...]:
-    said = [
-        "Stiffness, and whether contact is kept: samples show how torque changes with angle, and "
-        "the ranges of the spec bound their ratio. `nrs-design audit` estimates both from a log."
-    ]
+def _left_out(
+    spec: InteractionDesignSpec, record: ExportRecord, sector: Sector | str
+) -> tuple[str, ...]:
+    said = []
+    if isinstance(sector, str):
+        said.append(f"Stiffness, and whether contact is kept: {sector}.")
     if spec.limits.command is None:
         said.append("Saturation: the spec has no `limits: command`.")
     if spec.coupling is not None and spec.coupling.speed is None:

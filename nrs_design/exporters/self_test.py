@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.operations import StepLaw
 from nrs_design.exporters.c_names import CNames, block_comment
+from nrs_design.exporters.logic_cases import logic_document
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_TEST, C_TEST_HEADER
 
@@ -40,14 +41,19 @@ def self_test(
     about : tuple of str
         What every exported file says of itself.
     """
+    logic = [] if law.logic is None else logic_document(law.logic)["cases"]
+    count = len(rows) + len(logic)
     values = {
         "names": names,
         "law": law,
         "column": {name: i for i, name in enumerate(columns)},
         "rows": [[f"0x{number:x}U" for number in row] for row in rows.tolist()],
         "program": program_macro(names),
+        "passed": passed_text(names, count),
+        "logic_rows": [[_constant(number) for number in row] for row in logic],
     }
-    words = _words(len(rows), rows.nbytes, names)
+    size = rows.nbytes + 4 * sum(map(len, logic))
+    words = _words(count, size, names, " of the law and of its mode logic" if logic else "")
     heads = {
         "h": block_comment((*about, *words), C_TEST_HEADER),
         "c": block_comment((*about, f"More is in {names.spec}_test.h."), C_TEST),
@@ -58,15 +64,25 @@ def self_test(
     }
 
 
+def _constant(number: int | str) -> str:
+    """Return an integer, or bits in hexadecimal, as C has it."""
+    return f"{number}U" if isinstance(number, int) else f"0x{number}U"
+
+
 def program_macro(names: CNames) -> str:
     """Return the macro that asks for the program around a self-test."""
     return f"{names.upper}_TEST_PROGRAM"
 
 
-def _words(count: int, size: int, names: CNames) -> tuple[str, ...]:
+def passed_text(names: CNames, count: int | str) -> str:
+    """Return what a self-test prints if every one of so many cases is the same."""
+    return f"{names.spec}: all {count} cases are the same"
+
+
+def _words(count: int, size: int, names: CNames, of: str) -> tuple[str, ...]:
     return (
         "",
-        f"{names.lower}_self_test computes {count} steps from inputs and states that are stored "
+        f"{names.lower}_self_test computes {count} steps{of} from inputs and states stored "
         f"with it ({size} bytes of constants), and compares every bit. It changes no state of the "
         "caller.",
         f"Compiled with -D{program_macro(names)}, {names.spec}_test.c is a program that runs it.",

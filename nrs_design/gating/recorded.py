@@ -1,4 +1,4 @@
-"""Hashes of recorded commands of scenarios with limits: the hash of a spec covers only names."""
+"""Recorded commands of scenarios with limits: the hash of a spec covers only their names."""
 
 from __future__ import annotations
 
@@ -18,11 +18,8 @@ def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
     loaded : LoadedSpec
         The spec; files are below its folder. One that cannot be read is left out.
     """
-    if not isinstance(loaded.spec, InteractionDesignSpec):
-        return {}
-    limited = (one for one in loaded.spec.scenarios.values() if one.limits is not None)
     found = {}
-    for name in sorted({name for one in limited for name in _named(one)}):
+    for name in recorded_files(loaded):
         digest = hashlib.sha256()
         try:
             with open_regular(loaded.path.parent / name) as stream:
@@ -32,6 +29,14 @@ def hash_recorded(loaded: LoadedSpec) -> Mapping[str, str]:
             continue
         found[name] = digest.hexdigest()
     return found
+
+
+def recorded_files(loaded: LoadedSpec) -> tuple[str, ...]:
+    """Return the names of these files, from the folder of the spec, sorted."""
+    if not isinstance(loaded.spec, InteractionDesignSpec):
+        return ()
+    limited = (one for one in loaded.spec.scenarios.values() if one.limits is not None)
+    return tuple(sorted({name for one in limited for name in _named(one)}))
 
 
 def _named(scenario: ScenarioSpec) -> Iterator[str]:

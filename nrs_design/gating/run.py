@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from nrs_design.certificates.certificate import dump
 from nrs_design.controllers.gains import gains_of
 from nrs_design.errors import DesignError, OutputError, SpecError
 from nrs_design.gating.examine import Examiner
+from nrs_design.gating.judge import judge_margins, judge_scenarios
 from nrs_design.gating.obligations import (
     Findings,
     GateOutcome,
@@ -28,7 +29,6 @@ from nrs_design.ownership import REMEDY, check_owner, origin_of
 from nrs_design.pipeline import (
     Overrides,
     Result,
-    run_analysis,
     run_certification,
     run_verification,
     search_limits,
@@ -218,7 +218,7 @@ def _examine(
         obligations += (examiner.certificate(place, run_verification(place, result).fault),)
     bounds, on_trust = _bounds(loaded, files, examiner, progress, robots)
     recorded = hash_recorded(loaded)
-    simulated = tuple(_scenarios(result, examiner, progress))
+    simulated = tuple(judge_scenarios(result, examiner, progress))
     goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)
     outcome = examiner.outcome(
         certification,
@@ -251,27 +251,6 @@ def _bounds(
     return examiner.known_bounds(loaded.robot, files.bounds[loaded.sha256])
 
 
-def _scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:
-    """Simulate the scenarios that have limits, and yield how they end."""
-    if result.designed is None:
-        return
-    limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]
-    if not limited:
-        return
-    from nrs_design.pipeline.scenarios import Runs, run_scenarios
-
-    for name in limited:
-        progress(f"scenario {name}")
-        try:
-            # One run for each axis that moves.
-            runs = list(run_scenarios(result.designed, Runs((name,))))
-        except DesignError as error:
-            yield examiner.no_scenario(name, error)
-        else:
-            for simulated in runs:
-                yield from examiner.scenario(name, simulated)
-
-
 def _goals_and_report(
     result: Result,
     examiner: Examiner,
@@ -279,15 +258,7 @@ def _goals_and_report(
     progress: Progress,
     subsets: tuple[Subset, ...] | None,
 ) -> Findings:
-    analysis, found = None, tuple[Obligation, ...]()
-    if result.designed is not None:
-        progress("margins")
-        try:
-            analysis = run_analysis(result.designed)
-        except DesignError as error:
-            found = (examiner.no_margins(error),)
-        else:
-            found = (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis))
+    analysis, found = judge_margins(result, examiner, progress)
     if files.html:
         progress("report")
         # Drawing costs seconds to import; a run without reports must not pay for it.

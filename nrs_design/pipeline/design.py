@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.design.linear_parts import LinearParts
+    from nrs_design.design.open_loops import OpenLoop
     from nrs_design.models.plant import Plant
     from nrs_design.spec import InteractionDesignSpec
 
@@ -152,3 +153,10 @@ def run_linear_parts(designed: Designed) -> LinearParts:
     from nrs_design.design.linear_parts import linear_parts
 
     return linear_parts(designed.plant, designed.design)
+
+
+def run_open_loops(designed: Designed) -> tuple[OpenLoop, ...]:
+    """Return the loops whose margins a design has, at every corner."""
+    from nrs_design.design.open_loops import open_loops
+
+    return open_loops(designed.spec, designed.plant, designed.design)

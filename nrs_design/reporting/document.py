@@ -181,6 +181,8 @@ class Report:
     # them; without them, it stands on top itself.
     summary: tuple[str, ...] = ()
     lights: tuple[Light, ...] = ()  # Below the sentences
+    # The text of the certificate that its id is the hash of, which a page can check; or empty.
+    certificate: str = ""
     # As the reader gave it. Without one the report has no date, and the same spec gives the same
     # report on any day.
     date: datetime.date | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import html
 from importlib.resources import files
 from typing import Any
 
@@ -52,20 +53,23 @@ def render_html(report: Report, origin: str | None = None) -> str:
         keep_trailing_newline=True,
     )
     sections = [_section(section, f"section-{n}") for n, section in enumerate(report.sections, 1)]
-    script = _script()
+    checking = ("check.js", "check_page.js") if report.certificate else ()
+    script = "\n".join(map(_script, ["report.js", *checking]))
     return environment.get_template("report.html.j2").render(
         report=report,
         sections=sections,
         parts_of=parts_of,
         origin=origin,
         signs=_SIGNS,
+        # Quotes stay, which are half of it.
+        numbers=Markup(html.escape(report.certificate, quote=False)),
         script=Markup(script),
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
     )
 
 
-def _script() -> str:
-    text = files("nrs_design.reporting").joinpath("templates/report.js").read_text("utf-8")
+def _script(name: str) -> str:
+    text = files("nrs_design.reporting").joinpath(f"templates/{name}").read_text("utf-8")
     return text.replace("\r\n", "\n")
 
 

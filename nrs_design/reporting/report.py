@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.certificates.certificate import canonical, to_document
 from nrs_design.reporting.document import Report
 from nrs_design.reporting.sections.design import design_sections
 from nrs_design.reporting.sections.evidence import evidence_sections
@@ -105,5 +106,6 @@ def build_report(
         sections=tuple(section for section in sections if section is not None),
         summary=summary_of(result),
         lights=lights_of(result, analysis),
+        certificate=canonical(to_document(result.certificate)) if result.certificate else "",
         date=date,
     )

@@ -37,6 +37,7 @@ from nrs_design.work import Allowance, Fuse, NotAffordableError
 NO_RATE = "what was found shows no rate of decay"
 CONSTANT_FORCE = "constant force"
 SATURATION = "decay under saturation"
+SAFETY = "limits of the safety layer"
 NOT_IN_TURNS = "not looked for: where the loop has two periods, decay is proved, and no bound"
 
 
@@ -102,6 +103,9 @@ def certify(
         ]
         result = _combine(merged, blocks, parts)
     statements = _spread(result.statements, merged, system)
+    kept, tried = _safety(system, allowance, progress)
+    statements += kept
+    result = replace(result, attempts=(*result.attempts, *tried))
     if result.verdict is Verdict.PROVED:
         bounds, attempts = _bounds(system, allowance, progress)
         settled, more = _settling(system, allowance, progress)
@@ -205,6 +209,18 @@ def _saturated(
     progress(SATURATION)
     search = partial(search_saturated, system, allowance)
     return _attempted(SATURATION, search, system, allowance)
+
+
+def _safety(
+    system: SwitchedSystem, allowance: Allowance, progress: Progress
+) -> tuple[tuple[AbstractEvidence, ...], tuple[Attempt, ...]]:
+    """Show what the safety layer keeps, whatever else is shown, where the system has one."""
+    if system.safety is None:
+        return (), ()
+    from nrs_design.search.safety_layer import search_safety
+
+    progress(SAFETY)
+    return _attempted(SAFETY, partial(search_safety, system), system, allowance)
 
 
 def _attempted(

@@ -23,6 +23,7 @@ from nrs_design.proof.mode import Time
 from nrs_design.proof.stays import EnclosedStep
 from nrs_design.proof.steps import COUPLING, ROUNDING, Step
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.search.balance import balance, scale_states
 from nrs_design.search.family import NEARLY
 from nrs_design.search.lifted import make_vanish, products, vanishing_basis
 from nrs_design.search.lmi import time_unit
@@ -186,6 +187,11 @@ class FormsProgram:
         # The edges that solutions are sought for; what one violates is added, and stays.
         self.active = sorted({k * (count - 1) // max(few - 1, 1) for k in range(few)})
         flows = [np.abs(edge.M).max() for edge in self.edges if edge.is_flow]
+        if flows and self.degree > 1:
+            # The unit of the modes themselves: lifted entries, and margins with them, grow with
+            # the degree.
+            given = np.array([mode.A.floats() for mode in drawing.system.modes])
+            flows = [float(np.abs(scale_states(given, balance(given))).max())]
         self.unit = time_unit(np.array(max(flows))[None], self.time) if flows else 0
 
     @cached_property

@@ -22,7 +22,16 @@ def _saturated(limit: np.float32, value: np.float32) -> np.float32:
 
 
 _COMPUTED: Mapping[Kind, Callable[[np.float32, np.float32], np.float32]] = MappingProxyType(
-    {"add": add, "subtract": sub, "multiply": mul, "saturate": _saturated}
+    {
+        "add": add,
+        "subtract": sub,
+        "multiply": mul,
+        "saturate": _saturated,
+        "shift": add,
+        "rest": sub,
+        "product": mul,
+        "permit": lambda left, right: right if left >= 0 else np.float32(0),
+    }
 )
 
 

@@ -73,6 +73,7 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         wanted.exact if isinstance(wanted, Quantity) else wanted,
         dict(_preloads(spec)),
         spec.sensor is not None,
+        spec.safety,
     )
 
 

@@ -38,6 +38,7 @@ from nrs_design.spec.features import (
     PARALLEL,
     PRELOADED,
     RULES,
+    SAFE,
     SAMPLED,
     SAMPLED_DWELL,
     SATURATED,
@@ -105,6 +106,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(SAMPLED_DWELL, SAMPLED),
     *(not_together(DWELL, *features) for features in CHANGING),
     *_beside(TWO_PERIODS, OTHERS, RULES),
+    # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
+    *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
     not_together(COMMAND, OTHERS, SAMPLED),
     # It would move the position that the spring draws to.
     not_together(COMMAND, SPRUNG, SAMPLED),

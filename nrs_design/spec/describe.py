@@ -127,7 +127,15 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         yield from describe_model(getattr(spec, key), key)
     if spec.sampling is not None:
         yield from _sampling(spec.sampling)
-    for key in ("disturbances", "coupling", "sensor", "mode_logic", "scenarios"):
+    for key in (
+        "disturbances",
+        "safety",
+        "coupling",
+        "sensor",
+        "monitoring",
+        "mode_logic",
+        "scenarios",
+    ):
         yield from describe_model(getattr(spec, key), key)
     yield Line("contact", spec.contact or "not said: the claim tells", "", "")
     yield Line("coordinates", spec.coordinates, "", "")

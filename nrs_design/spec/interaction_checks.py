@@ -103,6 +103,25 @@ def _undriven(spec: Spec) -> str | None:
     return next(acting, None) if spec.sampling is None else None
 
 
+def _understated(spec: Spec) -> tuple[str, str, str] | None:
+    """Return a noise of readings that is below an error that the spec names elsewhere."""
+    if spec.monitoring is None:
+        return None
+    torque, angle = spec.monitoring.torque_noise, spec.monitoring.angle_noise
+    named: list[tuple[str, Quantity, str, Quantity | None, int]] = []
+    if spec.disturbances is not None:
+        steps = spec.disturbances.encoder_step, spec.disturbances.force_step
+        named += (("angle_noise", angle, "disturbances: encoder_step", steps[0], 2),)
+        named += (("torque_noise", torque, "disturbances: force_step", steps[1], 2),)
+    if spec.sensor is not None:
+        named += (("torque_noise", torque, "sensor: resolution", spec.sensor.resolution, 2),)
+        named += (("torque_noise", torque, "sensor: bias", spec.sensor.bias, 1),)
+    for key, noise, name, error, parts in named:
+        if error is not None and noise.not_below < error.not_above / parts:
+            return key, noise.text, f"{'half of ' * (parts > 1)}`{name}`, {error.text}"
+    return None
+
+
 @dataclass(frozen=True, slots=True)
 class _Goals:
     """Goals of all controllers or of one, and the laws that they are for."""
@@ -183,6 +202,21 @@ def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
     for at, quantity in written.items():
         if quantity is not None:
             yield at, AboutCommands(spec.actuator.command, quantity)
+
+
+def _unsafe(spec: Spec) -> tuple[str, str] | None:
+    """Return what a safety layer is not for, although it is touched, and by which name."""
+    if spec.safety is None:
+        return None
+    (low, high), most = spec.safety.stiffness, spec.safety.damping
+    for item in touched(spec):
+        found = item.law.linear_at_pivot()
+        stiffness, damping = found["stiffness"], found.get("damping")
+        if stiffness.low < low.exact or stiffness.high > high.exact:
+            return "stiffness", item.name
+        if damping is not None and damping.high > (0 if most is None else most.exact):
+            return "damping", item.name
+    return None
 
 
 def _dwell_times(spec: Spec) -> Iterator[tuple[Location, DwellTime]]:
@@ -337,6 +371,28 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         ),
         "the sensor says how far its signal is off, and force_step does, too",
         "move it to `sensor: {{resolution: ...}}`",
+    ),
+    Row(
+        "monitoring.{0}",
+        _understated,
+        "{1!r} is below {2}",
+        "write the largest error of a reading, all causes together",
+    ),
+    Row(
+        "safety",
+        lambda s: (
+            s.safety is not None
+            and (s.disturbances is None or s.disturbances.largest_angle is None)
+        ),
+        "how far the safety layer keeps its limits depends on the rounding of angles, and nothing "
+        "says how large they get",
+        "add `disturbances: {{largest_angle: 3 rad}}`",
+    ),
+    Row(
+        "safety.{0}",
+        _unsafe,
+        "{1!r} is touched, and its {0} is not within that of the safety layer",
+        "give the layer a wider range: it is for tissue that the proof does not know",
     ),
     *each(_commands, IN_ITS_UNIT),
     Row(

@@ -22,8 +22,10 @@ from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel, optional
+from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.safety import SafetySpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
@@ -77,6 +79,10 @@ class AbstractInteractionSpec(SpecModel):
     disturbances: DisturbancesSpec | None = optional(
         "what acts on the loop from outside; its effect on force and velocity is bounded"
     )
+    safety: SafetySpec | None = optional(
+        "a safety layer between the controllers and the motion loop, with limits that are kept "
+        "whatever the controllers command"
+    )
     coupling: CouplingSpec | None = optional(
         "what the axes do to each other through their links, for a proof about all "
         "axes at once; without it they are taken not to act on each other"
@@ -84,6 +90,10 @@ class AbstractInteractionSpec(SpecModel):
     sensor: SensorSpec | None = optional(
         "the force signal: its filter is a part of the loop, its errors bound the "
         "creep; without it the force is taken for exact"
+    )
+    monitoring: MonitoringSpec | None = optional(
+        "what readings of a running loop are worth, for `export --format monitor` and `audit`; no "
+        "proof depends on it"
     )
     contact: Literal["losable", "kept"] | None = optional(
         "whether a proof must hold while contact is lost and made again (losable), or "

@@ -74,6 +74,10 @@ TORQUE = QuantityKind(
         "N": "that is a force: multiply it by its lever arm and write N*m",
     },
 )
+ENERGY = QuantityKind("an energy", ("J",), "5 mJ")
+POWER = QuantityKind(
+    "a power", ("W",), "10 mW", {"J": "that is an energy: a power is per second, write W"}
+)
 INITIAL_TORQUE = replace(TORQUE, example="0.5 N*m")
 BANDWIDTH = QuantityKind(
     "a bandwidth",

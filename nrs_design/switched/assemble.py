@@ -19,6 +19,7 @@ from nrs_design.switched.assumptions import (
     identified_texts,
     logic_texts,
     preload_texts,
+    safety_texts,
     scale_texts,
     sensor_texts,
 )
@@ -160,10 +161,12 @@ def assemble(
                 f"coordinates {coordinates!r} do not apply to the sampled loop",
                 remedy="use coordinates: deflection",
             )
+        from nrs_design.switched.safety import with_safety
         from nrs_design.switched.sampled_loop import close_sampled_loop
 
         sampling = conditions.sampling
         system = close_sampled_loop(conditions, sampling, plant, design, boxes, coupling)
+        system = with_safety(system, conditions, plant, design)
     elif coordinates in ("deflection", "force"):
         state = state_of(conditions, plant, design, coordinates, boxes)
         system = _assemble_continuous(conditions, plant, state, coupling)
@@ -182,6 +185,7 @@ def assemble(
         *identified_texts(spec),
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
+        *safety_texts(system.safety),
     )
     return replace(system, assumptions=texts)
 

@@ -95,6 +95,20 @@ class AbstractAxis(ABC):
         """
 
     @abstractmethod
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Return the mode without the force in the law, and the one that is proved.
+
+        They differ by one column times one row; sampled, they are steps.
+
+        Parameters
+        ----------
+        law, contact, place
+            As for `cut`.
+        """
+
+    @abstractmethod
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
     ) -> tuple[CutLoop, CutLoop, CutLoop]:
@@ -164,6 +178,19 @@ class ContinuousAxis(AbstractAxis):
             )
         )
 
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Return the mode without the force in the law, and the one that is proved.
+
+        Parameters
+        ----------
+        law, contact, place
+            As in `AbstractAxis.cut`.
+        """
+        opened, closed = (self.rows(law, contact, place, cut) for cut in (_OPENED, _CLOSED))
+        return opened, closed
+
     def rows(
         self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place, cut: ForceShare = _CLOSED
     ) -> list[LinearForm]:
@@ -230,9 +257,24 @@ class ProcessorAxis(AbstractAxis):
         law, contact, place
             As in `AbstractAxis.cut`.
         """
+        return self._cut(self._held(law), contact, place)
+
+    def modes(
+        self, law: CompliantLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Return the step without the force in the law, and the one that is proved.
+
+        Parameters
+        ----------
+        law, contact, place
+            As in `AbstractAxis.cut`.
+        """
+        return self._modes(self._held(law), contact, place)
+
+    def _held(self, law: CompliantLaw) -> DiscreteLaw:
         held = law.discretize(self.sampling.outer, self.sampling.admittance)
         assert held is not None, "a spec with sampling has laws that are sampled"
-        return self._cut(held, contact, place)
+        return held
 
     def admittances(
         self, contact: AbstractLinearLaw, spring: Fraction, place: Place, *, inert: bool
@@ -252,17 +294,20 @@ class ProcessorAxis(AbstractAxis):
         return first, second, third
 
     def _cut(self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place) -> CutLoop:
-        """Close the loop over a period of the force; what is touched does not load the motor."""
-        k, b = contact.exact[0], (*contact.exact, ZERO)[1]
-        frame = self._frame(law, place)
-        opened, closed = (
-            characteristic(self._rows(frame, law, place, *touch))
-            for touch in ((ZERO, ZERO), (k, b))
-        )
+        opened, closed = map(characteristic, self._modes(law, contact, place))
         while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
             opened, closed = opened[:-1], closed[:-1]
         opened, closed = (_on_the_axis(p, self.period) for p in (opened, closed))
         return CutLoop(opened, closed, opened)
+
+    def _modes(
+        self, law: DiscreteLaw, contact: AbstractLinearLaw, place: Place
+    ) -> tuple[Sequence[LinearForm], Sequence[LinearForm]]:
+        """Close the loop over a period of the force; what is touched does not load the motor."""
+        k, b = contact.exact[0], (*contact.exact, ZERO)[1]
+        frame = self._frame(law, place)
+        opened, closed = (self._rows(frame, law, place, *touch) for touch in ((ZERO, ZERO), (k, b)))
+        return opened, closed
 
     def _rows(
         self, frame: Frame, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction

@@ -16,6 +16,7 @@ from tests.support import (
     ROOT,
     SOFT_TISSUE,
     document_of,
+    program_named,
     run,
     typed,
     write_spec,
@@ -193,44 +194,94 @@ def test_disagreement_is_an_internal_error(certified):
     assert not (certified / "reports").exists()
 
 
-WHAT = {
-    "x.h": "macros",
-    "x_monitor.h": "macros",
-    "x_monitor.c": "code",
-    "x.export.json": "all fields",
-    "x.fmu": "sources, variables and library",
-}
-
-
-def test_deployed_numbers_are_those_of_the_certificate(tmp_path):
-    """A header as exported; with one bit changed; and what cannot be compared."""
+@pytest.fixture(scope="module")
+def firmware(tmp_path_factory):
+    """Insertion every 2 ms, exported in every format that is compared, into the folder x."""
+    folder = tmp_path_factory.mktemp("deployed")
     head, _, _ = SOFT_TISSUE.read_text().partition("  withdrawal:")
     sampling = "switching: arbitrary\nsampling: {period: 2 ms, delay: 0}\n"
-    (tmp_path / "x.nrs.yaml").write_text(head.replace("name: soft-tissue", "name: x") + sampling)
-    export = ("export", "x.nrs.yaml", "--out", ".", "-q")
-    run(*export, "--format", "c", cwd=tmp_path, code=0)
-    run(*export, "--format", "json", cwd=tmp_path, code=0)
-    again = (*export, "--certificate", "x.cert.json")
-    run(*again, "--format", "monitor", cwd=tmp_path, code=0)
-    run(*again, "--format", "fmu", cwd=tmp_path, code=0)
-    check = ("verify", "x.cert.json", "x.nrs.yaml", "--deployed")
-    for name in ("x.h", "x.export.json", "x_monitor.h", "x_monitor.c", "x.fmu"):
-        first = run(*check, name, cwd=tmp_path, code=0).stdout.splitlines()[0]
-        assert first.startswith(f"deployed: {WHAT[name]} of {name}: those of the certificate")
-        assert "; not compared: " in first
-        assert ("any code (x.c)" in first) == (name == "x.h")
-    text = (tmp_path / "x.h").read_text()
+    (folder / "x.nrs.yaml").write_text(head.replace("name: soft-tissue", "name: x") + sampling)
+    run("export", "x.nrs.yaml", "--out", "x", "-q", "--format", "c", cwd=folder, code=0)
+    again = ("export", "x.nrs.yaml", "--out", "x", "-q", "--certificate", "x/x.cert.json")
+    for name in ("json", "vectors", "monitor", "cmake", "fmu"):
+        run(*again, "--format", name, cwd=folder, code=0)
+    return folder
+
+
+@pytest.fixture
+def deployed(firmware, tmp_path):
+    return shutil.copytree(firmware, tmp_path / "deployed")
+
+
+CHECK = ("verify", "x/x.cert.json", "x.nrs.yaml", "--deployed")
+
+
+def test_deployed_files_are_those_of_the_certificate(deployed):
+    """Each by itself, all of a folder, and with one bit changed."""
+    for name in ("x.h", "x_test.c", "x.fmu", "x.export.json"):
+        first = run(*CHECK, f"x/{name}", cwd=deployed, code=0).stdout.splitlines()[0]
+        assert first.startswith(f"deployed: x/{name}: as exported with the certificate, bit for")
+        assert "; not compared: comments, how it is compiled" in first
+    first = run(*CHECK, "x", cwd=deployed, code=0).stdout.splitlines()[0]
+    assert first.startswith("deployed: 12 files of x: as exported")
+    text = (deployed / "x/x.h").read_text()
     assert text.count("0x1.f6eep+19F") == 1
-    (tmp_path / "x.h").write_text(text.replace("0x1.f6eep+19F", "0x1.f6ee02p+19F"))
-    result = run(*check, "x.h", cwd=tmp_path, code=1)
-    assert "NRS_X_KD_OVER_T is 0x1.f6ee02p+19F, and the certificate has 1030000" in result.stdout
-    document = document_of(*check, "x.h", cwd=tmp_path)
-    assert (document["verdict"], document["deployed"]) == ("rejected", "x.h")
-    assert len(document["differences"]) == 1
-    run("verify", "x.cert.json", "--deployed", "x.h", cwd=tmp_path, code=2)
-    run(*check, "nothing.h", cwd=tmp_path, code=2)
-    result = run("verify", "x.cert.json", COMMUTING, "--deployed", "x.h", cwd=tmp_path, code=1)
-    assert "another spec" in result.stdout
+    (deployed / "x/x.h").write_text(text.replace("0x1.f6eep+19F", "0x1.f6ee02p+19F"))
+    for place in ("x", "x/x.h"):
+        shown = run(*CHECK, place, cwd=deployed, code=1).stdout
+        assert shown.startswith(f"REJECTED: {place} is not what the certificate is about")
+        assert "NRS_X_KD_OVER_T`: it has `0x1.f6ee02p+19F`, and the export has" in shown
+        document = document_of(*CHECK, place, cwd=deployed)
+        assert (document["verdict"], document["deployed"]) == ("rejected", place)
+        assert len(document["differences"]) == 1
+        assert document["binary"] is None
+    # Nothing is compiled of what is not the law.
+    run(*CHECK, "x", "--compile", "no-compiler", cwd=deployed, code=1)
+
+
+def test_a_binary_is_compiled_run_and_recorded(deployed):
+    program_named("gcc")
+    build = (*CHECK, "x", "--compile")
+    shown = run(*build, "gcc -O2", cwd=deployed, code=0).stdout
+    assert "binary: x: all 1000 cases are the same; gcc" in shown
+    record = json.loads((deployed / "x/x.binary.json").read_text())
+    for name, found in record["compiled"].items():
+        assert f"{name}: sha256 {found}" in shown
+    assert document_of(*build, "gcc -O2", cwd=deployed, code=0)["binary"] == record
+    shown = run(*build, "gcc -O2 -DX", cwd=deployed, code=0).stdout
+    assert "changed since the record before: compile\n" in shown
+    shown = run(*build, "gcc -ffast-math", cwd=deployed, code=1).stdout
+    assert shown.startswith("REJECTED: what is compiled of x is not shown to be the law\n")
+    assert "  the compiler refuses x.c\n" in shown
+    assert "compile without -ffast-math" in shown
+    # What was refused is in no record.
+    assert "-DX" in (deployed / "x/x.binary.json").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--deployed", "x/x.h", "--compile", "gcc"), "needs --deployed with a folder"),
+        (("--compile", "gcc"), "needs --deployed with a folder"),
+        (("--deployed", "x", "--run", "qemu"), "needs --compile"),
+        (("--deployed", "x", "--link", "-lm"), "needs --compile"),
+        (("--deployed", "x", "--compile", "gcc 'x"), "close every quote"),
+        (("--deployed", "x", "--compile", "no-such-compiler -O2"), "there is no program"),
+        (("--deployed", "x.nrs.yaml"), "none of the files that are compared"),
+        (("--deployed", "x/nothing.h"), "x/nothing.h: there is no such file"),
+        (("--deployed", "nothing", "--compile", "gcc"), "nothing: there is no such file or folder"),
+    ],
+)
+def test_lines_that_cannot_be_meant(firmware, arguments, said):
+    done = run(*CHECK[:3], *arguments, cwd=firmware, code=2)
+    assert said in " ".join(done.stderr.replace("│", " ").split())
+    assert not (firmware / "x/x.binary.json").exists()
+
+
+def test_what_is_deployed_needs_its_own_spec(firmware):
+    run("verify", "x/x.cert.json", "--deployed", "x", cwd=firmware, code=2)
+    done = run("verify", "x/x.cert.json", COMMUTING, "--deployed", "x", cwd=firmware, code=1)
+    assert "another spec" in done.stdout
 
 
 def test_swapped_files_are_named_in_their_order(tmp_path):

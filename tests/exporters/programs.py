@@ -1,6 +1,7 @@
 """Laws of every shape, and the compilers that make programs of them."""
 
 import subprocess
+from collections.abc import Iterable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -14,13 +15,16 @@ from nrs_design.controllers.laws import (
     ProportionalForce,
 )
 from nrs_design.controllers.operations import StepLaw
+from nrs_design.controllers.safety import SafetyLimits, add_safety
 from nrs_design.controllers.sensor import LowPass
 from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
-from tests.support import program_named
+from nrs_design.exporters import rendered
+from nrs_design.exporters.export import Export
+from tests.support import ROOT, program_named
 
 PERIOD = Fraction(1, 500)
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.43")), Fraction(2060))
-M4F = Path(__file__).parent / "m4f"
+M4F = ROOT / "nrs_design/exporters/board"
 STRICT = (
     "-std=c99",
     *("-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wdouble-promotion"),
@@ -84,8 +88,20 @@ LAWS = {
         {**PLACED, "insertion": SPRUNG.discretize(PERIOD, "exact")},
         to_float32(Fraction("0.96")),
     ),
+    "safety": add_safety(
+        law(limits=StepLimits(Fraction(3), to_float32(Fraction("0.13")), None)),
+        SafetyLimits(*map(to_float32, map(Fraction, ("0.2", "0.25", "1e-5", "1e-8")))),
+    ),
     "limits": law(limits=StepLimits(Fraction(1, 2), to_float32(Fraction("0.13")), Fraction(4000))),
 }
+
+
+def write_formats(folder: Path, export: Export, formats: Iterable[str]) -> Path:
+    """Write all files of some formats of an export into a folder, which comes back."""
+    for name in formats:
+        for ending, content in rendered(name, export).items():
+            (folder / f"{export.record.spec.name}{ending}").write_bytes(content)
+    return folder
 
 
 def compiler(name="gcc"):
@@ -106,16 +122,20 @@ def built(*command: str | Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def emulated(folder: Path, law: Path, *others: str | Path) -> str:
-    """Compile a law as for the robot, and return what its program says on an emulated STM32F405."""
+def emulated(folder: Path, law: Path, *others: str | Path, counted: bool = False) -> str:
+    """Compile a law as for the robot, and return what its program says on an emulated STM32F405.
+
+    Where it is `counted`, the clock of the emulator advances by 256 ns with each instruction.
+    """
     gcc, emulator = compiler("arm-none-eabi-gcc"), compiler("qemu-system-arm")
     compiled, program = folder / "compiled.o", folder / "program.elf"
     built(gcc, *CORTEX, *STRICT, "-O2", "-c", law, "-o", compiled)
-    start = (M4F / "startup.c", "-T", M4F / "m4f.ld", "--specs=nosys.specs", "-nostartfiles")
+    start = (M4F / "startup.c", "-T", M4F / "memory.ld", "--specs=nosys.specs", "-nostartfiles")
     flags = (*CORTEX, "-O2", "-std=c99", "-ffp-contract=off")
     linked = run(gcc, *flags, compiled, *others, *start, "-lm", "-o", program)
     assert linked.returncode == 0, linked.stderr
-    done = run(emulator, *MACHINE, *SEMIHOSTING, "-kernel", program)
+    clock = ("-icount", "shift=8,align=off,sleep=off") if counted else ()
+    done = run(emulator, *MACHINE, *clock, *SEMIHOSTING, "-kernel", program)
     # The emulator prints what the program says beside its own messages; its exit code stands first.
     return f"{done.returncode}: {done.stderr}"
 

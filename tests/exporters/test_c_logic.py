@@ -1,6 +1,7 @@
 """The mode logic in C: step by step what the replica does, and every number of it deployed."""
 
 import json
+import re
 from fractions import Fraction
 
 import numpy as np
@@ -8,10 +9,11 @@ import pytest
 
 from nrs_design.controllers.shipped import shipped_law
 from nrs_design.exporters.build import build_unproved
-from nrs_design.exporters.c_names import CNames
+from nrs_design.exporters.c_names import CNames, literal
 from nrs_design.exporters.formats.c import header_text, source_text
 from nrs_design.exporters.formats.vectors import make_vectors, vectors_text
-from nrs_design.exporters.logic_cases import logic_document
+from nrs_design.exporters.logic_cases import COUNT, logic_document
+from nrs_design.exporters.self_test import program_macro, self_test
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
 from tests.exporters.programs import STRICT, built, check_with_misra, compiler, emulated, run
@@ -130,14 +132,47 @@ def test_cppcheck_with_misra_is_content(tmp_path, shipped):
     check_with_misra(tmp_path / "law.c")
 
 
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("", ""),
+        ("logic->held >=", "logic->held >"),
+        (" >= NRS", " > NRS"),
+        ("logic->held++", "logic->held += 2U"),
+        ("? logic->mode", "? 0U"),
+        ("logic->mode = after", "logic->mode = before"),
+        ("return after", "return before"),
+    ],
+)
+def test_the_self_test_runs_the_logic_too(tmp_path, shipped, old, new):
+    """After the law, which is right: every slip in the logic is one of its own cases."""
+    record, law, names = shipped
+    vectors = make_vectors(law, 20)
+    files = self_test(law, vectors.columns, vectors.rows, names, ())
+    source = source_text(record, law, names)
+    assert old in source
+    (tmp_path / f"{names.spec}.h").write_text(header_text(record, law, names))
+    (tmp_path / "law.c").write_text(source.replace(old, new) if old else source)
+    for ending, content in files.items():
+        (tmp_path / f"{names.spec}{ending}").write_bytes(content)
+    sources = (tmp_path / "law.c", tmp_path / f"{names.spec}_test.c", "-o", tmp_path / "program")
+    built(compiler(), *STRICT, f"-D{program_macro(names)}", *sources)
+    said = run(tmp_path / "program").stdout
+    if old:
+        (index,) = map(int, re.findall(r"case (\d+) differs", said))
+        assert index >= len(vectors.rows)
+    else:
+        assert said == f"{names.spec}: all {len(vectors.rows) + COUNT} cases are the same\n"
+
+
 def test_every_number_of_the_logic_is_in_the_header(shipped):
     """`verify --deployed` compares all of them."""
     record, law, names = shipped
     exported = json.loads(vectors_text(law, make_vectors(law, 3), ()))
     assert exported["logic"] == logic_document(law.logic)
     text = header_text(record, law, names)
-    numbers = names.logic(law)
-    assert len(numbers) == 1 + len(law.modes) + sum(len(s.bounds) for s in law.logic.switches)
-    assert numbers.items() <= names.numbers(law).items()
-    assert all(f"#define {macro} " in text for macro in numbers)
+    macros = re.findall(rf"#define {names.upper}_LOGIC_\w+ (\S+)", text)
+    bounds = [literal(b.threshold) for s in law.logic.switches for b in s.bounds]
+    stays = [f"{number}U" for number in (law.logic.start, *law.logic.stays)]
+    assert sorted(macros) == sorted([*bounds, *stays])
     assert "The proof does not rest on the signals" in " ".join(text.replace("\n *", " ").split())

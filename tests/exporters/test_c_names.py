@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.errors import DesignError
 from nrs_design.exporters.c_names import CNames, block_comment, literal
+from nrs_design.exporters.c_step import declarations
 from tests.exporters.programs import LAWS
 
 NAMES = st.from_regex("[a-z0-9][a-z0-9._-]{0,63}", fullmatch=True)
@@ -27,12 +28,15 @@ def test_every_name_of_a_spec_gives_identifiers(name):
 
 def test_every_number_of_a_law_has_a_macro_of_its_own():
     law = LAWS["static, filter, spring"]
-    numbers = CNames("x").numbers(law)
+    lines = re.findall(r"#define (\w+) (\S+)", declarations(law, CNames("x")))
+    numbers = dict(lines)
+    assert len(numbers) == len(lines)
     coefficients = [value for c in law.coefficients for value in c.values]
     limits = [value.limit for value in law.values]
-    assert sorted(numbers.values()) == sorted([2, 0, 1, *coefficients, *limits])
-    assert numbers["NRS_X_MODE_WITHDRAWAL"] == 1
-    assert numbers["NRS_X_KT_OF_INSERTION"] == Fraction(1, 2)
+    wanted = ["2U", "0U", "1U", *map(literal, [*coefficients, *limits])]
+    assert sorted(numbers.values()) == sorted(wanted)
+    assert numbers["NRS_X_MODE_WITHDRAWAL"] == "1U"
+    assert numbers["NRS_X_KT_OF_INSERTION"] == literal(Fraction(1, 2))
     assert {"NRS_X_KP", "NRS_X_T", "NRS_X_MAX_ANGLE"} < set(numbers)
 
 

@@ -7,8 +7,8 @@ import zipfile
 import pytest
 
 from nrs_design.exporters.compiled import compiler
+from nrs_design.exporters.cosimulation import FMI2, contents, library_of, packed
 from nrs_design.exporters.deployed_model import model_differences
-from nrs_design.exporters.formats.fmu import contents, library_of, packed
 from nrs_design.exporters.program import program_of
 
 XML = "modelDescription.xml"
@@ -16,7 +16,7 @@ XML = "modelDescription.xml"
 
 @pytest.fixture(scope="module")
 def entries(sampled_export):
-    return contents(program_of(sampled_export), None)
+    return contents(program_of(sampled_export), FMI2, None)
 
 
 @pytest.fixture
@@ -48,10 +48,10 @@ def test_what_was_exported_has_no_difference(differences, entries):
 def test_a_library_is_what_the_sources_make_here(differences, sampled_export, monkeypatch):
     """A simulator runs it, and not the sources beside it."""
     program = program_of(sampled_export)
-    name = library_of(program)
+    name = library_of(program, FMI2)
     compile_with = compiler()
     assert compile_with is not None
-    own = contents(program, compile_with)[name]
+    own = contents(program, FMI2, compile_with)[name]
     assert differences(**{name: own}) == []
     (found,) = differences(**{name: own[:-1] + bytes([own[-1] ^ 1])})
     assert found.startswith(f"{name} is not what ")

@@ -2,12 +2,14 @@
 
 import re
 import shutil
+from dataclasses import replace
 
 import pytest
 
 from nrs_design.exporters.c_names import CNames
 from nrs_design.exporters.formats.c import header_text, render, source_text
 from nrs_design.exporters.formats.monitor import render as render_monitor
+from nrs_design.spec.monitoring import MonitoringSpec
 from tests.exporters.programs import LAWS, run
 
 pytestmark = pytest.mark.slow
@@ -114,8 +116,15 @@ int main(void)
 """
 
 
-def test_no_input_makes_a_monitor_undefined(tmp_path, sampled_export):
+@pytest.mark.parametrize("surface", ["", "fixed", "free"])
+def test_no_input_makes_a_monitor_undefined(tmp_path, sampled_export, surface):
+    """Without a test of the stiffness, and with it."""
     frama = frama_c()
+    if surface:
+        numbers = {"torque_noise": "2 N*mm", "angle_noise": "0.005 deg", "speed": "1 rad/s"}
+        told = MonitoringSpec.model_validate(numbers | {"surface": surface})
+        spec = sampled_export.spec.model_copy(update={"monitoring": told, "contact": "losable"})
+        sampled_export = replace(sampled_export, spec=spec)
     for files in (render(sampled_export), render_monitor(sampled_export)):
         for ending, content in files.items():
             (tmp_path / f"soft-tissue{ending}").write_bytes(content)

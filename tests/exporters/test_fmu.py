@@ -17,15 +17,15 @@ from fmpy.validation import validate_fmu
 from nrs_design.controllers.replica import step
 from nrs_design.exporters import format_of
 from nrs_design.exporters.c_names import CNames
-from nrs_design.exporters.formats.fmu import (
+from nrs_design.exporters.cosimulation import (
+    FMI2,
     contents,
     description,
     guid_of,
     packed,
-    remarks,
-    render,
     wrapper_text,
 )
+from nrs_design.exporters.formats.fmu import remarks, render
 from nrs_design.exporters.formats.vectors import make_vectors
 from nrs_design.exporters.program import Program
 from tests.exporters.programs import LAWS, STRICT, built, compiler
@@ -57,7 +57,7 @@ def model(sampled_export, tmp_path_factory):
     def of(law):
         folder = tmp_path_factory.mktemp("fmu")
         file = folder / "model.fmu"
-        file.write_bytes(packed(contents(program(LAWS[law], sampled_export), compiler("cc"))))
+        file.write_bytes(packed(contents(program(LAWS[law], sampled_export), FMI2, compiler("cc"))))
         described = fmpy.read_model_description(file)
         return described, fmpy.extract(file, unzipdir=folder / "model")
 
@@ -92,7 +92,7 @@ def run(slave, at, angle=0.0):
 @pytest.mark.parametrize("shape", LAWS)
 def test_fmpy_finds_no_problem(tmp_path, sampled_export, shape):
     file = tmp_path / "x.fmu"
-    file.write_bytes(packed(contents(program(LAWS[shape], sampled_export), None)))
+    file.write_bytes(packed(contents(program(LAWS[shape], sampled_export), FMI2, None)))
     assert validate_fmu(str(file)) == []
 
 
@@ -193,7 +193,7 @@ def test_what_is_no_input_is_not_set(opened):
 
 def test_another_model_is_not_started(tmp_path, sampled_export):
     """The guid of the description must be that of the program."""
-    entries = contents(program(LAWS["inertia"], sampled_export), compiler("cc"))
+    entries = contents(program(LAWS["inertia"], sampled_export), FMI2, compiler("cc"))
     guid = guid_of(sampled_export.record).encode()
     entries["modelDescription.xml"] = entries["modelDescription.xml"].replace(guid, b"{other}")
     file = tmp_path / "x.fmu"
@@ -203,7 +203,7 @@ def test_another_model_is_not_started(tmp_path, sampled_export):
 
 
 def test_sources_compile_without_a_warning_and_with_names_of_their_own(tmp_path, sampled_export):
-    entries = contents(program(LAWS["limits"], sampled_export), None)
+    entries = contents(program(LAWS["limits"], sampled_export), FMI2, None)
     assert not [name for name in entries if name.startswith("binaries")]
     for name, content in entries.items():
         if name.startswith("sources/"):
@@ -227,7 +227,7 @@ def test_the_guid_follows_from_spec_proof_and_period(sampled_export):
 
 
 def test_it_says_where_it_is_not_compiled(sampled_export, monkeypatch):
-    monkeypatch.setattr("nrs_design.exporters.formats.fmu.compiler", lambda: None)
+    monkeypatch.setattr("nrs_design.exporters.cosimulation.compiler", lambda: None)
     files = render(sampled_export)
     (remark,) = remarks(files)
     assert "sources only" in remark
@@ -240,7 +240,7 @@ def test_it_says_where_it_is_not_compiled(sampled_export, monkeypatch):
 def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):
     bare = sampled_export.record.model_copy(update={"proof": None})
     text, unproved = (
-        contents(program(LAWS["limits"], export), None)["documentation/index.html"].decode()
+        contents(program(LAWS["limits"], export), FMI2, None)["documentation/index.html"].decode()
         for export in (sampled_export, replace(sampled_export, record=bare))
     )
     for words in ("one sample slower than the proof", "proves nothing", "0: insertion"):
@@ -250,7 +250,7 @@ def test_its_page_says_what_is_proved_and_what_is_not(sampled_export):
 
 
 def text_of(shape, export):
-    return wrapper_text(program(LAWS[shape], export), "{some-guid}", "0.002")
+    return wrapper_text(program(LAWS[shape], export), FMI2)
 
 
 def test_every_function_of_the_standard_is_there_once(sampled_export):
@@ -263,7 +263,7 @@ def test_no_place_is_left_open(sampled_export, shape):
     """The GUID, the sample time and every variable are in; inputs come first and may be set."""
     law, text = LAWS[shape], text_of(shape, sampled_export)
     assert "@" not in text
-    assert 'strcmp(guid, "{some-guid}")' in text
+    assert f'strcmp(guid, "{guid_of(sampled_export.record)}")' in text
     assert "#define PERIOD 0.002\n" in text
     places = re.findall(r"case (\d+)U:\n        return &m->([\w.]+);", text)
     wanted = [f"in.{v.name}" for v in law.inputs] + [f"out.{name}" for name in law.outputs]
@@ -281,7 +281,7 @@ def law(request):
 @pytest.fixture
 def described(law, sampled_export):
     program = Program(sampled_export.record, law, CNames("a.b"))
-    return ElementTree.fromstring(description(program, "{guid}", "0.002"))
+    return ElementTree.fromstring(description(program, FMI2))
 
 
 def test_every_variable_of_a_step(law, described):

@@ -4,9 +4,11 @@ import re
 import subprocess
 from fractions import Fraction
 
+import control
 import numpy as np
 import pytest
 import scipy.io
+import scipy.linalg
 
 from nrs_design.certificates.certificate import dump
 from nrs_design.design.linear_parts import linear_parts
@@ -15,7 +17,7 @@ from nrs_design.exporters.formats.mat import render
 from nrs_design.spec import read_spec
 from tests.design.test_linear_parts import filtered
 from tests.exporters.conftest import CONTINUOUS
-from tests.support import ROOT, program_named
+from tests.support import ROOT, program_named, skip_for_want_of
 
 # u = M (K (E y + f)) by the parts alone, at some frequencies, beside the closed loop.
 FEEDBACK = """\
@@ -96,10 +98,10 @@ def test_no_date_is_written(export):
     assert text.strip() == f"MATLAB 5.0 MAT-file, nrs-design export of {export.record.spec.name}"
 
 
-def octave_lines():
-    """The program of the page, as it is printed there."""
+def octave_lines(which=0):
+    """A program of the page, as it is printed there."""
     page = (ROOT / "docs/exports.md").read_text()
-    return re.findall("```octave\n(.*?)```", page, re.DOTALL)[0]
+    return re.findall("```octave\n(.*?)```", page, re.DOTALL)[which].replace("-sampled.mat", ".mat")
 
 
 def run_octave(export, folder, lines):
@@ -153,3 +155,97 @@ def test_octave_sees_another_controller(continuous_export, tmp_path):
     spoiled = FEEDBACK.replace("k = at(K, s);", "k = at(K, s)*1.001;")
     lines = run_octave(continuous_export, tmp_path, spoiled)
     assert all(line.endswith(" velocity N*m 0 1") for line in lines)
+
+
+def open_loops_in(export, folder):
+    """Read the file back: loops, and where their closed ones are after a second of a unit step."""
+    loops = np.atleast_1d(loaded_mat(render(export)[".mat"], folder)["open_loops"])
+    return [(loop, step_of(loop)) for loop in loops]
+
+
+def step_of(loop):
+    """By the exponential of the closed loop, or by steps: nothing of the control package."""
+    A, B, C = (np.atleast_2d(loop[name]) for name in "ABC")
+    B, C = B.reshape(-1, 1), C.reshape(1, -1)
+    closed, period = A - B @ C, float(loop["sample_time"])
+    x = np.zeros_like(B)
+    if period:
+        for _ in range(round(1 / period)):
+            x = closed @ x + B
+    else:
+        n = len(A)
+        whole = np.block([[closed, B], [np.zeros((1, n + 1))]])
+        x = scipy.linalg.expm(whole)[:n, n:]
+    return (C @ x).item()
+
+
+def has_control_package():
+    done = subprocess.run(
+        [program_named("octave-cli"), "--no-init-file", "--eval", "pkg load control"],
+        capture_output=True,
+        check=False,
+    )
+    return done.returncode == 0
+
+
+def test_octave_rebuilds_margins_and_steps(export, tmp_path):
+    """The lines of the page: `margin` and `step` of octave-control find what the file says."""
+    if not has_control_package():
+        skip_for_want_of("octave-control")
+    lines = run_octave(export, tmp_path, octave_lines(1))
+    known = open_loops_in(export, tmp_path)
+    assert len(lines) == len(known) >= 6
+    for line, (loop, end) in zip(lines, known, strict=True):
+        name, *numbers = line.split()[:6]
+        said, gain, phase_said, phase, last = map(float, numbers)
+        assert name == loop["controller"]
+        assert line.endswith(loop["at"])
+        assert said == pytest.approx(loop["gain_margin"], abs=6e-5)
+        assert gain == pytest.approx(loop["gain_margin"], abs=1e-4)
+        assert phase_said == pytest.approx(np.degrees(loop["phase_margin"]), abs=6e-5)
+        assert phase == pytest.approx(phase_said, abs=1e-4)
+        assert last == pytest.approx(end, abs=2e-5)
+
+
+# The same without any package: the response at a frequency, and a unit step of the closed loop.
+PLAIN = """\
+d = load("soft-tissue.mat");
+for o = d.open_loops'
+  T = o.sample_time;
+  n = rows(o.A);
+  if T, z = @(w) exp(1j*w*T); else, z = @(w) 1j*w; end
+  L = @(w) o.C*((z(w)*eye(n) - o.A)\\o.B);
+  w = fzero(@(w) abs(L(w)) - 1, [0.01 1000]);
+  g = logspace(log10(w), log10(1500), 400);
+  s = imag(arrayfun(L, g));
+  k = find(s(1:end-1).*s(2:end) < 0, 1);
+  v = fzero(@(w) imag(L(w)), g([k k+1]));
+  F = [o.A - o.B*o.C, o.B; zeros(1, n), 1];
+  if ! T, F(end) = 0; F = expm(F); T = 1; end
+  x = F^round(1/T)*[zeros(n, 1); 1];
+  printf("%.9g %.9g %.9g\\n", -1/real(L(v)), arg(-L(w)), o.C*x(1:n));
+end
+"""
+
+
+def test_octave_rebuilds_them_without_a_package(export, tmp_path):
+    lines = run_octave(export, tmp_path, PLAIN)
+    known = open_loops_in(export, tmp_path)
+    assert len(lines) == len(known)
+    for line, (loop, end) in zip(lines, known, strict=True):
+        gain, phase, last = map(float, line.split())
+        assert gain == pytest.approx(loop["gain_margin"], rel=1e-6)
+        assert phase == pytest.approx(loop["phase_margin"], rel=1e-6)
+        assert last == pytest.approx(end, rel=1e-6)
+
+
+def test_margins_of_python_control_are_those_of_the_file(export, tmp_path):
+    """Taken of A, B, C and D, and not of the polynomials that ours are taken of."""
+    for loop, _ in open_loops_in(export, tmp_path):
+        n, period = len(np.atleast_2d(loop["A"])), float(loop["sample_time"])
+        shaped = loop["A"], np.reshape(loop["B"], (n, 1)), np.reshape(loop["C"], (1, n)), 0
+        points = np.logspace(0, np.log10(1500), 300)
+        response = control.FRD(control.ss(*shaped, period), points, smooth=True)
+        found = control.stability_margins(response)
+        assert found[0] == pytest.approx(loop["gain_margin"], rel=1e-3)
+        assert found[1] == pytest.approx(np.degrees(loop["phase_margin"]), rel=1e-3)

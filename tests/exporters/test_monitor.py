@@ -11,7 +11,13 @@ from nrs_design.exporters.compiled import shared_library
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.formats.c import header_text as law_header
 from nrs_design.exporters.formats.c import render as render_c
-from nrs_design.exporters.formats.monitor import KINDS, header_text, render, source_text
+from nrs_design.exporters.formats.monitor import (
+    KINDS,
+    header_text,
+    render,
+    source_text,
+    told_kinds,
+)
 from nrs_design.exporters.monitor_limits import monitor_limits
 from nrs_design.exporters.program import Program
 from nrs_design.identification.running import bounds_of_spec, judge_run, read_run
@@ -91,7 +97,7 @@ class Monitor:
     def step(self, **given):
         usual = {"mode": 0, "step": 0.002, "age": 0, "angle": 0.0, "torque": 0.0, "command": 0.0}
         found = self._step(ctypes.byref(Input(**(usual | given))), self._memory)
-        return list(KINDS)[found]
+        return list(told_kinds(self.limits))[found]
 
     def watch(self, log):
         """Return what was left first in a log, and when."""
@@ -229,7 +235,8 @@ def test_what_is_left_out_is_said(sampled_export):
     words = " ".join(files["_monitor.h"].decode().replace("\n *", " ").split())
     assert "for certain" not in words
     for text in (
-        "Not monitored: Stiffness, and whether contact is kept: ",
+        "Not monitored: Stiffness, and whether contact is kept: the spec has no `monitoring`, so "
+        "nothing says how far readings are off.",
         "Not monitored: Saturation: the spec has no `limits: command`.",
         "Not monitored: Dead time of the motion",
         "is no part of the proof",
@@ -237,7 +244,8 @@ def test_what_is_left_out_is_said(sampled_export):
     ):
         assert text in words
     for kind in KINDS:
-        assert (f"_LEFT_{kind} " in words) == (kind != "SPEED")
+        unknown = kind in ("SPEED", "STIFFNESS", "PULL", "FAST")
+        assert (f"_LEFT_{kind} " in words) == (not unknown)
 
 
 def test_it_compiles_for_the_processor_and_links_to_nothing(tmp_path, sampled_export, monitor):

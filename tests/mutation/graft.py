@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
@@ -25,7 +26,7 @@ def _graft_names(names: Any, changed: Any, owner: Any) -> None:
         elif functions := _functions(old):
             for target, source in zip(functions, _functions(new), strict=True):
                 target.__code__, target.__defaults__ = source.__code__, source.__defaults__
-        elif isinstance(old, (int, tuple)) and new != old:
+        elif isinstance(old, (int, tuple, Fraction)) and new != old:
             setattr(owner, name, new)
 
 

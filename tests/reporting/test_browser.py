@@ -1,17 +1,33 @@
 from __future__ import annotations
 
 import base64
+import hashlib
+import html
 import io
+import json
 import os
+import re
+from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from pypdf import PdfReader
 
+from nrs_design.certificates.certificate import canonical
 from nrs_design.thesis.figures import draw_counterparts, gallery_page
 from nrs_design.thesis.page import render_page
 from nrs_design.thesis.table import reproduce
+from tests.certificates.attacks import (
+    ATTACKS,
+    BOTH,
+    DEAR_ATTACKS,
+    PAGE_ALONE,
+    SHIPPED,
+    found,
+    named,
+    shipped,
+)
 from tests.reporting.conftest import KINDS
 from tests.support import program_named
 
@@ -20,6 +36,11 @@ MORE = ["force", "refuted", "discrete", *(name for name in KINDS if name not in 
 ALL = [*CASES, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)]
 
 pytestmark = pytest.mark.browser
+
+
+def slow(case):
+    """Leave a case to the slow tests."""
+    return pytest.param(case, marks=pytest.mark.slow)
 
 
 @pytest.fixture(scope="module")
@@ -38,9 +59,9 @@ def browser():
     window.quit()
 
 
-def open_page(browser, html, folder, width, scheme="light"):
+def open_page(browser, text, folder, width, scheme="light"):
     path = folder / "report.html"
-    path.write_text(html, encoding="utf-8")
+    path.write_text(text, encoding="utf-8")
     browser.execute_cdp_cmd(
         "Emulation.setDeviceMetricsOverride",
         {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False},
@@ -176,6 +197,142 @@ def test_without_its_script_the_page_says_all_the_same(browser, page, tmp_path):
         assert not browser.find_elements("css selector", "button")
     finally:
         browser.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+
+def pressed(browser, text, folder):
+    """Press the button of a page, and return what it says: good, bad or unknown, in words."""
+    open_page(browser, text, folder, 800)
+    browser.find_element("css selector", "#check button").click()
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    told = browser.find_element("css selector", "#check output")
+    WebDriverWait(browser, 60).until(lambda _: told.get_attribute("class"))
+    assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
+    return told.get_attribute("class"), told.text
+
+
+@pytest.mark.parametrize("case", ["proved", "dwell", *map(slow, ("polynomial", "parameter"))])
+def test_the_page_checks_its_proof(browser, page, tmp_path, case):
+    state, words = pressed(browser, page(case), tmp_path)
+    assert state == "good"
+    assert re.match(r"Holds for the \d+ modes.* in this page, checked in [\d.]+ s: decay", words)
+    assert "Not checked: whose modes these are" in words
+    assert "Who changed a page could change this check, too." in words
+
+
+@pytest.mark.parametrize("case", ["refuted", slow("period")])
+def test_the_page_says_what_it_cannot_check(browser, page, tmp_path, case):
+    state, words = pressed(browser, page(case), tmp_path)
+    assert state == "unknown"
+    assert "Not checked here: growing-sequence (this kind)." in words
+    assert "decay" not in words
+
+
+def test_without_a_certificate_there_is_nothing_to_check(page):
+    assert '<pre id="numbers"' in page("dwell")
+    assert "<pre" not in page("inconclusive-leaving")
+    assert "Bareiss" not in page("inconclusive-leaving")
+
+
+def renamed(text):
+    """Give a page the id of the numbers that it holds."""
+    numbers = html.unescape(re.search(r'<pre id="numbers" hidden>(.*)</pre>', text)[1])
+    identity = hashlib.sha256(numbers.encode()).hexdigest()
+    return re.sub(r"(Certificate id</dt><dd><a [^>]*>)[0-9a-f]{64}", rf"\g<1>{identity}", text)
+
+
+def in_numbers(pattern, replacement):
+    """Change the numbers of a page alone."""
+
+    def changed(text):
+        head, rest = text.split('<pre id="numbers" hidden>')
+        numbers, tail = rest.split("</pre>", 1)
+        return f'{head}<pre id="numbers" hidden>{re.sub(pattern, replacement, numbers)}</pre>{tail}'
+
+    return changed
+
+
+RATE, FORM = r'"rate":"[^"]+"', r'"form":\[\[(\d+)'
+TAMPERED = {
+    "rate": (in_numbers(RATE, '"rate":"5"'), "the numbers are not those"),
+    "rate and id": (lambda t: renamed(in_numbers(RATE, '"rate":"5"')(t)), "graph (it rises in"),
+    "form and id": (lambda t: renamed(in_numbers(FORM, r'"form":[[-\1')(t)), "graph (a form at"),
+    "claim": (lambda t: re.sub(r'(class="claim">.*?)3\.9\d*', r"\g<1>9.9", t), "a sentence of"),
+    "badge": (lambda t: t.replace('badge">proved', 'badge">refuted'), "the verdict of the page"),
+    "float": (
+        lambda t: renamed(in_numbers(r'"denominator_log2":(\d+)', r'"denominator_log2":\1.5')(t)),
+        "Cannot convert",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TAMPERED)
+def test_a_tampered_page_is_refused(browser, page, tmp_path, name):
+    tamper, why = TAMPERED[name]
+    tampered = tamper(page("proved"))
+    assert tampered != page("proved")
+    state, words = pressed(browser, tampered, tmp_path)
+    assert (state, words[:8]) == ("bad", "Refused:")
+    assert why in words
+
+
+@pytest.fixture
+def decide(browser, page, tmp_path):
+    """Let the script of a page decide about certificates: all hold, one does not, or neither."""
+    open_page(browser, page("proved"), tmp_path, 800)
+
+    def decided(document):
+        results, agrees = browser.execute_script(
+            "try { const { results, agrees } = check(arguments[0]);"
+            "return [results.map(([holds]) => holds), agrees]; }"
+            "catch (error) { return [[false], false]; }",
+            canonical(document),
+        )
+        if all(results):
+            return agrees
+        return False if False in results else None
+
+    return decided
+
+
+def test_the_page_agrees_on_what_ships(decide):
+    small = [path for path in SHIPPED if path.stat().st_size < 50_000]
+    assert len(small) > 15
+    assert [path for path in small if not decide(json.loads(path.read_text()))] == []
+
+
+@pytest.mark.slow
+def test_the_page_agrees_on_what_ships_with_many_modes(decide):
+    assert [path for path in SHIPPED if not decide(json.loads(path.read_text()))] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", [*BOTH, *PAGE_ALONE])
+def test_the_page_agrees_on_shapes_that_do_not_ship(decide, example):
+    document = found(example)
+    assert decide(document)
+    statement = document["statements"][0]
+    faster = Fraction(1, 2) if document["time"] == "discrete" else 100
+    if statement["kind"] == "graph":
+        statement["rate"] = str(Fraction(statement["rate"]) * faster)
+    else:
+        statement["factors"].pop()
+    assert decide(document) is False
+
+
+def test_the_page_refuses_forgeries(decide):
+    for name, change in ATTACKS:
+        forged = shipped(name)
+        change(forged)
+        assert not decide(forged), (name, change.__name__)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "change"), DEAR_ATTACKS, ids=named)
+def test_the_page_refuses_forgeries_of_sampled_loops(decide, name, change):
+    forged = shipped(name)
+    change(forged)
+    assert not decide(forged)
 
 
 @pytest.mark.slow

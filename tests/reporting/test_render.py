@@ -5,6 +5,7 @@ import hashlib
 import html
 import re
 from dataclasses import replace
+from importlib.resources import files
 
 import pytest
 
@@ -76,6 +77,19 @@ def test_the_page_runs_its_own_script_and_no_other(page):
     assert f"default-src 'none'; style-src 'unsafe-inline'; {policy}" in text
     assert len(script) < 300_000
     assert not re.search(r"<[^>]*\son\w+=", text)
+
+
+def test_a_page_holds_what_the_id_of_its_certificate_is_the_hash_of(page, report):
+    """And its check is short: the page grows by it and by the numbers, in which quotes stay."""
+    numbers = re.search(r'<pre id="numbers" hidden>(.*)</pre>', page("proved"))[1]
+    text = html.unescape(numbers)
+    assert text == report("proved").certificate
+    assert hashlib.sha256(text.encode()).hexdigest() in dict(report("proved").facts).values()
+    assert len(numbers) < 1.01 * len(text)
+    script = files("nrs_design.reporting").joinpath("templates/check.js").read_text("utf-8")
+    assert script in page("proved")
+    assert len(script) < 21_000
+    assert len(script.splitlines()) <= 250
 
 
 def test_every_gain_leads_to_its_line_of_the_spec(page):

@@ -16,6 +16,7 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.program import program_of
 from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.signs import sign_lines
 from nrs_design.exporters.start import start_lines
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
@@ -103,6 +104,8 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
     yield "and keep rounding to nearest, and subnormal numbers as they are."
     yield from start_lines(law)
     yield ""
+    yield from sign_lines(law)
+    yield ""
     yield (
         "Guards, outside the proof: a step is not valid where the mode does not exist, or an input "
         "or a state is not a number or beyond its limit below. Then the command is 0 and the state "
@@ -116,6 +119,13 @@ def _header_lines(record: ExportRecord, law: StepLaw, names: CNames) -> Iterator
     )
     if "velocity_limit" in law.coefficient:
         yield "The velocity command saturates at VELOCITY_LIMIT before the law takes it."
+    if "safe_speed" in law.coefficient:
+        yield (
+            "Safety layer: between the controllers and the reference. `withheld` is by how much it "
+            "made the step of the reference smaller, exactly 0 while it is idle: then every other "
+            "bit is that of the law without it. It books work that is done against the torque in "
+            "`spent`; init forgets it, so what it keeps is counted from there."
+        )
     if "d" in law.coefficient and 0 in law.coefficient["d"].values:
         yield (
             "Reset: what is set to zero when an impedance controller is left stays zero until the "

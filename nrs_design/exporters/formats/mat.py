@@ -20,13 +20,14 @@ from nrs_design.exporters.export import Export
 from nrs_design.exporters.header import header_lines
 from nrs_design.exporters.record import ExportRecord, Gain
 from nrs_design.output import MAT
-from nrs_design.pipeline.design import run_linear_parts
+from nrs_design.pipeline.design import run_linear_parts, run_open_loops
 from nrs_design.proof.bounds import lower_float, upper_float
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.system import SwitchedSystem
 
 if TYPE_CHECKING:
     from nrs_design.design.linear_parts import LinearPart
+    from nrs_design.design.open_loops import OpenLoop
 from nrs_design.exporters import DESIGN, Format
 
 FORMAT = Format(
@@ -39,6 +40,8 @@ _TEXT_BYTES = 116
 # Names that may be fields of a structure.
 _FIELD = re.compile("[A-Za-z][A-Za-z0-9_]*")
 _PART = ("name", *"ABCD", "input", "input_unit", "outputs", "output_units")
+_MARGINS = ("sensitivity_peak", "gain_margin", "phase_margin", "delay_margin", "disk_margin")
+_OPEN = ("controller", "at", *"ABCD", "sample_time", "stable", *_MARGINS)
 # Matrices of a statement that are numerators over two to the power `denominator_log2`.
 _FORMS = frozenset({"form", "Q", "low", "high"})
 _RATIO = re.compile("-?[0-9]+(/[0-9]+)?")
@@ -57,6 +60,7 @@ def render(export: Export) -> dict[str, bytes]:
         "force_filter": _parts(() if parts.force_filter is None else (parts.force_filter,)),
         "contacts": _parts(parts.contacts),
         "loops": _parts(parts.loops),
+        "open_loops": _structs([_open(loop) for loop in run_open_loops(export.designed)], _OPEN),
         "states": _cells(certificate.system.states),
         "modes": _modes(certificate.system.modes),
         "free_modes": _modes(certificate.system.contact.free if certificate.system.contact else ()),
@@ -91,6 +95,20 @@ def _parts(parts: Iterable[LinearPart]) -> Any:
         for part in parts
     ]
     return _structs(rows, _PART)
+
+
+def _open(loop: OpenLoop) -> dict[str, Any]:
+    """Return a loop that was cut, with its margins in SI; a sample time of zero is continuous."""
+    margins = {name: float(getattr(loop.loops, name)()[0]) for name in _MARGINS}
+    return {
+        "controller": loop.controller,
+        "at": loop.at,
+        **{key: getattr(loop, key) for key in "ABC"},
+        "D": np.zeros((1, 1)),
+        "sample_time": loop.loops.period or 0.0,
+        "stable": bool(loop.loops.stable[0]),
+        **margins,
+    }
 
 
 def _info(record: ExportRecord, certificate: Certificate) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
 from nrs_design.exporters.monitor_limits import MonitorLimits, monitor_limits
 from nrs_design.exporters.program import Program, program_of
+from nrs_design.exporters.sector_numbers import sector_macros, sector_words
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
 
@@ -33,6 +34,9 @@ KINDS = {
     "ORDER": "A mode was followed by one that must not follow it",
     "SATURATION": "The command met its limit",
     "FORCE": "The torque is beyond its limit",
+    "STIFFNESS": "No stiffness of the range, another one at every sample, explains the readings",
+    "PULL": "The torque pulls, which no tissue does",
+    "FAST": "The joint is faster than its readings are known for",
     "SPEED": "The axes together are faster than their coupling is known for",
 }
 
@@ -75,9 +79,10 @@ def header_text(program: Program, limits: MonitorLimits) -> str:
         spec=names.spec,
         own=names.lower,
         up=names.upper,
-        kinds=_told(limits),
+        kinds=told_kinds(limits),
         macros=[*_limits(names, limits)],
         limits=limits,
+        remembered=_remembered(limits),
     )
 
 
@@ -110,6 +115,8 @@ def source_text(program: Program, limits: MonitorLimits) -> str:
         modes=program.law.modes,
         tables=tables,
         limits=limits,
+        oldest=limits.age[1] if limits.age else 0,
+        remembered=_remembered(limits),
     )
 
 
@@ -128,19 +135,29 @@ def _words(program: Program, limits: MonitorLimits) -> Iterator[str]:
             "all axes together, the root of the sum of the squares of their joint speeds, which "
             "the caller knows: one monitor sees one axis. It is judged as it is read."
         )
+    if limits.sector is not None:
+        yield from sector_words(limits.sector, limits.travel)
     yield "Uneven steps of time: no proof knows them. The caller says how much is accepted."
     yield from (f"Not monitored: {text}" for text in limits.left_out)
 
 
-def macro_numbers(names: CNames, limits: MonitorLimits) -> dict[str, int | Fraction]:
-    """Return every macro of the header with its number: what may be left, and limits."""
-    kinds = {f"{names.upper}_LEFT_{kind}": k for k, kind in enumerate(_told(limits))}
-    return {**kinds, **{name: number for name, number, _ in _limits(names, limits)}}
+def told_kinds(limits: MonitorLimits) -> dict[str, str]:
+    """Return what may be left, and what that means, in the order of their numbers."""
+    sector = limits.sector
+    told = {
+        "SPEED": limits.speed is not None,
+        "STIFFNESS": sector is not None,
+        "PULL": sector is not None and not sector.kept,
+        "FAST": sector is not None and sector.speed is not None,
+    }
+    return {kind: text for kind, text in KINDS.items() if told.get(kind, True)}
 
 
-def _told(limits: MonitorLimits) -> dict[str, str]:
-    """Return what may be left: of one axis by itself, no speed."""
-    return {k: text for k, text in KINDS.items() if k != "SPEED" or limits.speed is not None}
+def _remembered(limits: MonitorLimits) -> int:
+    """Return how many angles before the present one are needed."""
+    if limits.sector is None:
+        return 0
+    return max(limits.age[1] if limits.age else 0, int(limits.sector.speed is not None))
 
 
 def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | Fraction, str]]:
@@ -156,3 +173,6 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
         least, most = limits.age
         yield f"{up}_YOUNGEST", least, "samples, from the spec"
         yield f"{up}_OLDEST", most, ""
+    if limits.sector is not None:
+        for name, number, note in sector_macros(limits.sector):
+            yield f"{up}_{name}", number, note

@@ -60,9 +60,9 @@ def audit(
 
     Columns, as far as they are there: time_s; angle_rad and torque_Nm (or deflection_m and
     force_N); velocity_rad_s; the command in the unit of the motor of the spec (command_rpm, _V, _A,
-    _counts); mode, the name of the controller in force. Stiffness and contact are estimated only:
-    no run is called outside for them, and none inside where they matter. What cannot be judged is
-    said.
+    _counts); mode, the name of the controller in force. The stiffness is tested where the spec says
+    by `monitoring` how far readings are off, and estimated otherwise, as contact is: no run is
+    called inside where they matter. What cannot be judged is said.
 
     Exit code 0: inside. 1: left. 3: not everything could be judged, or the spec is not proved.
 
@@ -173,6 +173,8 @@ def _print(found: RunJudgement, name: str, reason: str) -> None:
         if check.status == "not judged":
             say(f"not judged: {check.name}: {check.measured}")
     say(found.estimates)
+    if found.hint:
+        say(found.hint)
 
 
 def _measured(check: Check) -> str:
@@ -213,6 +215,8 @@ def _summary(
             for c in found.checks
         ],
         "estimated_share_of_time": found.share,
+        "judged_share_of_rows": found.judged,
+        "stiffness_not_tested_because": found.hint or None,
         "stiffness": [
             {
                 "from_s": found.log.begin + float(found.log.time[w.first]),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from nrs_design.controllers.sector import Sector, sector_of
 from nrs_design.errors import DesignError
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, SwitchingSpec, kinds
 from nrs_design.spec.build_plant import build_environments
@@ -52,6 +53,9 @@ class RunBounds:
     unseen: tuple[Unseen, ...] = ()  # What else must hold, and no log shows
     # Command at which the driver saturates, in that unit; None if the spec does not say.
     saturates: float | None = None
+    # What torque and angle keep in every row; a text says why that is not known.
+    sector: Sector | str = ""
+    oldest: float = 0.0  # How old a torque may be in its row, in s
     proved: bool = False  # Whether a valid certificate proves the spec; else it is only declared
 
     @property
@@ -140,6 +144,8 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         command=spec.actuator.command,
         unseen=tuple(_unseen(spec)),
         saturates=None if spec.limits.command is None else spec.limits.command.si,
+        sector=sector_of(spec),
+        oldest=0.0 if spec.sampling is None else float(spec.sampling.oldest),
     )
 
 

@@ -10,6 +10,7 @@ from nrs_design.identification.running.bounds import RunBounds
 from nrs_design.identification.running.check import BoundStatus, Check
 from nrs_design.identification.running.contact import ESTIMATE, estimate_contact
 from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.running.sector import hint, judge_sector
 from nrs_design.identification.running.signals import (
     judge_delay,
     judge_force,
@@ -32,6 +33,8 @@ class RunJudgement:
     checks: tuple[Check, ...]  # One for each bound
     windows: tuple[Window, ...]  # Stiffness at the pivot in N m/rad, estimated
     share: float  # Of the time of the log, in which stiffness or free motion could be estimated
+    # Of the rows, in which a stiffness far off would have been told; None if nothing tells.
+    judged: float | None = None
 
     @property
     def first(self) -> Check | None:
@@ -46,6 +49,11 @@ class RunJudgement:
         names = ", ".join(c.name for c in self.checks if c.status is BoundStatus.ESTIMATED)
         told = f"stiffness or free motion shows in {share:g} % of the time"
         return f"estimated, not judged: {names}: {ESTIMATE}; {told}" if names else told
+
+    @property
+    def hint(self) -> str:
+        """Why the stiffness is not tested, and how it would be; empty if it is."""
+        return hint(self.log, self.bounds)
 
     @property
     def verdict(self) -> str:
@@ -108,8 +116,11 @@ def judge_run(
     _check_unit(log, bounds)
     bounds = replace(bounds, proved=proved)
     touch = estimate_contact(log, bounds, window, losable=losable if proved else bounds.losable)
+    sector = judge_sector(log, bounds)
+    estimated, contact = touch.checks
     checks = (
-        *touch.checks,
+        *((estimated,) if sector is None else sector.checks),
+        contact,
         judge_stays(log, bounds),
         judge_delay(log, bounds),
         judge_jitter(log, bounds),
@@ -120,4 +131,5 @@ def judge_run(
             for name, why, allowed in bounds.unseen
         ),
     )
-    return RunJudgement(log, bounds, checks, touch.windows, touch.share)
+    judged = None if sector is None else sector.judged
+    return RunJudgement(log, bounds, checks, touch.windows, touch.share, judged)

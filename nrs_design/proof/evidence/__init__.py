@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from nrs_design.proof.evidence.parameter_quadratic import (
         ParameterQuadratic as ParameterQuadratic,
     )
+    from nrs_design.proof.evidence.safety_layer import SafetyLayer as SafetyLayer
     from nrs_design.proof.evidence.saturated_ellipsoid import (
         SaturatedEllipsoid as SaturatedEllipsoid,
     )
@@ -39,6 +40,7 @@ KINDS: Mapping[str, str] = {
     "invariant-ellipsoid": "InvariantEllipsoid",
     "no-common-quadratic": "NoCommonQuadratic",
     "parameter-quadratic": "ParameterQuadratic",
+    "safety-layer": "SafetyLayer",
     "saturated-ellipsoid": "SaturatedEllipsoid",
 }
 

@@ -50,11 +50,13 @@ class Shows(StrEnum):
     BOUND = "a bound on an output"
     CONVERGENCE = "convergence under a constant force"
     REGION = "decay from a region under saturation"
+    SAFETY = "limits under a safety layer"
 
     @property
     def is_good(self) -> bool:
         """Whether it must hold of every motion, not of one that grows."""
-        return self in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION)
+        goods = (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION, Shows.SAFETY)
+        return self in goods
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from nrs_design.exporters.c_step import (
     guards,
 )
 from nrs_design.exporters.outside import OUTSIDE
+from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_HEADER, C_SOURCE
 from nrs_design.ownership import MARK
 from nrs_design.robot.exporters.robot_tree import RobotExport
@@ -126,11 +127,12 @@ def header_text(export: RobotExport, laws: Mapping[str, StepLaw]) -> str:
         _comment(export, (*_HEADER_ONLY, *_saturation(laws)), C_HEADER),
         f"#ifndef {guard}\n#define {guard}\n",
         "#include <stdbool.h>\n",
+        fill_template("begin_c.j2"),
     ]
     for law, operations in laws.items():
         lines.append(block_comment([PURPOSES[law]], f"/* {law}\n".encode()))
         lines.append(declarations(operations, names_of(name, law)))
-    return "\n".join([*lines, "#endif\n"])
+    return "\n".join([*lines, fill_template("end_c.j2"), "#endif\n"])
 
 
 def source_text(export: RobotExport, laws: Mapping[str, StepLaw]) -> str:

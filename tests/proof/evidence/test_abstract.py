@@ -232,7 +232,7 @@ ALONE = (
 def test_what_is_good_must_cover_other_axes_and_what_grows_says_that_it_is_one(what):
     system = leaning(replace(bouncing(), contact=None), "1/8")
     fault, claim = Said(what=what).find_fault(system), Said(what=what).claim(system)
-    if what in (Shows.STABILITY, Shows.BOUND, Shows.CONVERGENCE, Shows.REGION):
+    if what.is_good:
         assert "does not cover what axes do to each other" in fault
     else:
         assert fault is None
@@ -372,10 +372,12 @@ FACTS = {
     "covers_clock": GRAPHS - RULED | {"growing-sequence"},
     "covers_coupling": {"coupled-axes", "invariant-ellipsoid"},
     "covers_lost_contact": BOUNCING
-    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"},
+    | {"constant-force", "invariant-ellipsoid", "no-common-quadratic", "saturated-ellipsoid"}
+    | {"safety-layer"},
     "covers_mixtures": SETS
     | BOUNCING
-    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"},
+    | {"common-polynomial", "constant-force", "block-triangular", "saturated-ellipsoid"}
+    | {"safety-layer"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
     "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,

@@ -48,9 +48,11 @@ void stopped(void)
 /* The unit for floating point is off at first: it is switched on before compiled code may use it. */
 __attribute__((naked)) void begin(void)
 {
-    __asm__ volatile("ldr r0, =0xe000ed88\n"
-                     "ldr r1, [r0]\n"
-                     "orr r1, r1, #0xf00000\n"
+    __asm__ volatile(".syntax unified\n"
+                     "ldr r0, =0xe000ed88\n"
+                     "ldr r1, =0xf00000\n"
+                     "ldr r2, [r0]\n"
+                     "orrs r1, r1, r2\n"
                      "str r1, [r0]\n"
                      "dsb\n"
                      "isb\n"

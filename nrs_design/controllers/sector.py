@@ -1,0 +1,136 @@
+"""What readings of torque and angle must keep where a stiffness stays in its range.
+
+At every sample there is a stiffness ``k`` in ``[low, high]``, of its own, with the torque
+``k max(angle - surface, 0)`` (``k (angle - surface)`` where contact is kept); readings are off by
+bounded noise. So each sample leaves an interval of surfaces; where the intervals of one contact
+have no point in common, no stiffness explains them. The theorem is in docs/exports/monitor.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from nrs_design.models.contact import Elastic, KelvinVoigt
+from nrs_design.models.contact.environment import Environment
+from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.build_plant import build_environments
+from nrs_design.spec.controllers import contact_names
+from nrs_design.spec.monitoring import Surface
+from nrs_design.spec.quantity import Quantity
+
+# Of the range: a sample counts as judged if it would have told so much, by those before it.
+JUDGED = Fraction(3, 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Sector:
+    """What is known of the readings, in exact numbers on the safe side."""
+
+    low: Fraction  # Least stiffness in N m/rad
+    high: Fraction  # Largest one
+    torque_noise: Fraction  # Largest error of the torque in N m, with what damping adds
+    angle_noise: Fraction  # Largest error of its angle in rad, with skew and what the surface moves
+    reading: Fraction  # Largest error of the angle as it is read, in rad
+    surface: Surface  # When the surface may be elsewhere
+    surface_speed: Fraction  # How fast it may move at any time, in rad/s
+    kept: bool  # Whether contact is never lost, so that the tissue pulls, too
+    speed: Fraction | None  # Largest speed of the joint in rad/s; None if nobody says it
+
+    def noise(self) -> Fraction:
+        """Return how far apart, in rad, noise may move two surfaces that are the same."""
+        yields = 1 / self.low + 1 / self.high
+        return 4 * self.angle_noise + 2 * self.torque_noise * yields
+
+    def need(
+        self, factor: Fraction, travel: Fraction = Fraction(0), rounding: Fraction = Fraction(0)
+    ) -> Fraction:
+        """Return the torque, in N m, from which on a violation is told whatever the noise is.
+
+        Parameters
+        ----------
+        factor : Fraction
+            The stiffness over the range: over its upper end above one, its lower end below.
+        travel : Fraction
+            How far the joint moves between two torques that are read, in rad.
+        rounding : Fraction
+            How far apart rounding moves two surfaces that are the same, in rad.
+        """
+        if factor > 1:
+            k = factor * self.high
+            gain, lever = 1 / self.high - 1 / k, 1 / self.low - 1 / k
+        else:
+            k = factor * self.low
+            gain, lever = 1 / k - 1 / self.low, 1 / k - 1 / self.high
+        # The other sample is the last one in the air where that tells where the surface is, and the
+        # first in which contact is certain otherwise.
+        if factor > 1 and self.surface != "touched" and not self.kept:
+            return (self.noise() + rounding + travel) / gain
+        least = k * travel + (0 if self.kept else 2 * self.torque_noise)
+        return (self.noise() + rounding + least * lever) / gain
+
+
+def sector_of(spec: InteractionDesignSpec) -> Sector | str:
+    """Return what readings of a run must keep, or why they cannot be held against the spec.
+
+    Parameters
+    ----------
+    spec : InteractionDesignSpec
+        What is proved, and what its readings are worth.
+    """
+    if spec.monitoring is None:
+        return "the spec has no `monitoring`, so nothing says how far readings are off"
+    if spec.contact is None:
+        return "the spec does not say by `contact` whether contact may be lost"
+    if spec.coordinates == "force":
+        return "in force coordinates the range is that of the slope, not of the ratio"
+    if spec.monitoring.surface != "fixed" and _ages(spec) > 1:
+        return "ages of the force sample differ by more than one, so the order of contacts is lost"
+    touched = list(_touched(spec))
+    if not touched:
+        return "no controller touches anything"
+    if strange := [e.name for e in touched if e.law not in (Elastic, KelvinVoigt) or e.preloaded]:
+        return f"the torque of {strange[0]} does not follow from angle and speed of the moment"
+    damping = max(e.parameters["b"].high if "b" in e.parameters else Fraction(0) for e in touched)
+    speed = spec.monitoring.speed
+    if damping and speed is None:
+        return "a tissue has damping, and no `monitoring: speed` bounds what that adds"
+    return _sector(spec, touched, damping * (Fraction(0) if speed is None else speed.not_below))
+
+
+def _sector(spec: InteractionDesignSpec, touched: list[Environment], viscous: Fraction) -> Sector:
+    """Return the sector of what is touched; damping adds so much torque."""
+    said = spec.monitoring
+    assert said is not None
+    speed, skew, surface = map(_not_below, (said.speed, said.skew, said.surface_speed))
+    # The surface moves on while the sample of the torque grows old.
+    oldest = Fraction(0) if spec.sampling is None else spec.sampling.oldest
+    reading = said.angle_noise.not_below
+    return Sector(
+        low=min(e.stiffness.low for e in touched),
+        high=max(e.stiffness.high for e in touched),
+        torque_noise=said.torque_noise.not_below + viscous,
+        angle_noise=reading + speed * skew + surface * (oldest + skew),
+        reading=reading,
+        surface=said.surface,
+        surface_speed=surface,
+        kept=spec.contact == "kept",
+        speed=None if said.speed is None else speed,
+    )
+
+
+def _ages(spec: InteractionDesignSpec) -> int:
+    """Return by how many samples the ages of torques differ."""
+    youngest, oldest = (0, 0) if spec.sampling is None else spec.sampling.delay
+    return oldest - youngest
+
+
+def _not_below(quantity: Quantity | None) -> Fraction:
+    return Fraction(0) if quantity is None else quantity.not_below
+
+
+def _touched(spec: InteractionDesignSpec) -> Iterator[Environment]:
+    """Yield what controllers touch, alone or together."""
+    names = {name for c in spec.controllers.values() for name in contact_names(c.contacts)}
+    yield from (e for e in build_environments(spec) if e.name in names)

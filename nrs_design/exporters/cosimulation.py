@@ -1,0 +1,264 @@
+"""A law as a model for co-simulation: variables, archive, and what it says of itself.
+
+Versions of FMI differ in their C around the law and in their description: `Interface`. Entries are
+stored as they are, with one date: no library of compression changes a byte.
+"""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from uuid import NAMESPACE_OID, uuid5
+
+from nrs_design.controllers.operations import StepLaw
+from nrs_design.exporters.c_names import block_comment
+from nrs_design.exporters.compiled import compiler, shared_library
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.formats.c import header_text, source_text
+from nrs_design.exporters.program import Program, program_of
+from nrs_design.exporters.record import ExportRecord
+from nrs_design.exporters.start import start_lines
+from nrs_design.exporters.template import fill_template
+from nrs_design.output import C_SOURCE
+
+# The first entry is always the same for a version, and so are the first bytes of the file.
+FIRST = "documentation/nrs-design.txt"
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """A version of FMI."""
+
+    version: str  # As it calls itself
+    mark: bytes  # What the first entry says
+    source: str  # The C around the law, and its template
+    description: str  # Template of the description
+    libraries: str  # Folder of the library for 64-bit Linux on x86
+    inputs: str  # How inputs arrive
+    build: str = ""  # Template of how sources are compiled, where the description does not say it
+
+
+FMI2 = Interface(
+    "2.0",
+    b"nrs-design fmu\n",
+    "fmu.c",
+    "modelDescription.xml",
+    "binaries/linux64",
+    "Inputs arrive as doubles and are rounded to single precision once.",
+)
+FMI3 = Interface(
+    "3.0",
+    b"nrs-design fmi3\n",
+    "fmi3.c",
+    "modelDescription3.xml",
+    "binaries/x86_64-linux",
+    "Inputs are numbers of single precision, as the law takes them: who has doubles rounds them.",
+    "buildDescription.xml",
+)
+_DATE = (1980, 1, 1, 0, 0, 0)
+# By base units of SI; those of motors that are none have a name only.
+_BASE = {
+    "rad": 'rad="1"',
+    "rad/s": 'rad="1" s="-1"',
+    "N*m": 'kg="1" m="2" s="-2"',
+    # 2 pi / 60.
+    "rpm": 'rad="1" s="-1" factor="0.10471975511965977"',
+    "V": 'kg="1" m="2" s="-3" A="-1"',
+    "A": 'A="1"',
+}
+OUTSIDE = (
+    "A step from t on takes the inputs that are set at t. What it commands is for the time from t "
+    "on: step this model first, hand its command over, then step the motor across the same time. "
+    "A master that hands it over after the step makes the loop one sample slower than the proof "
+    "says.",
+    "A communication step is a whole number of sample times; others are refused. In one of many "
+    "samples inputs are held, and of the commands the last one is seen alone: the loop of the "
+    "proof has steps of one.",
+    "A simulation shows one run. It proves nothing, and it is no part of the proof.",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """One variable that is a real number."""
+
+    # As the description calls it, and its number.
+    name: str
+    reference: int
+    # Member of the model in C.
+    place: str
+    # "input", "output" or "local".
+    causality: str
+    unit: str
+    meaning: str
+
+
+def variables_of(law: StepLaw) -> tuple[Variable, ...]:
+    """Return all real variables of a law by their numbers: inputs, then outputs, then states."""
+    return tuple(Variable(name, i, *rest) for i, (name, *rest) in enumerate(_rows(law)))
+
+
+def _rows(law: StepLaw) -> Iterator[tuple[str, str, str, str, str]]:
+    for value in law.inputs:
+        yield value.name, f"in.{value.name}", "input", value.unit, value.meaning
+    for name in law.outputs:
+        meaning = "what the step computed; 0 where it was not valid"
+        yield name, f"out.{name}", "output", law.units[name], meaning
+    for value in law.states:
+        yield f"state.{value.name}", f"state.{value.name}", "local", value.unit, value.meaning
+
+
+def fmu_of(export: Export, interface: Interface) -> bytes:
+    """Return the file of an export.
+
+    Parameters
+    ----------
+    export : Export
+        With a record, proved or not.
+    interface : Interface
+        The version of FMI.
+
+    Raises
+    ------
+    DesignError
+        If there is no program of a controller yet, or the compiler of this system fails.
+    """
+    return packed(contents(program_of(export), interface, compiler()))
+
+
+def what_it_lacks(file: bytes) -> tuple[str, ...]:
+    """Say what a file lacks that `fmu_of` made."""
+    with zipfile.ZipFile(io.BytesIO(file)) as archive:
+        if any(name.startswith("binaries/") for name in archive.namelist()):
+            return ()
+    return (
+        "the FMU holds sources only: there is no compiler cc for 64-bit Linux on x86 here; an "
+        "importer that compiles sources takes it",
+    )
+
+
+def contents(program: Program, interface: Interface, compile_with: str | None) -> dict[str, bytes]:
+    """Return every entry by its path.
+
+    Parameters
+    ----------
+    program : Program
+        The law.
+    interface : Interface
+        The version of FMI.
+    compile_with : str or None
+        A compiler; None for sources alone.
+    """
+    record, law, names = program.record, program.law, program.names
+    code = {
+        f"{names.spec}.h": header_text(record, law, names),
+        f"{names.spec}.c": source_text(record, law, names),
+        interface.source: wrapper_text(program, interface),
+    }
+    sources = code | (
+        {interface.build: fill_template(f"{interface.build}.j2", names=names)}
+        if interface.build
+        else {}
+    )
+    entries = {FIRST: interface.mark, "documentation/index.html": b""}
+    entries["modelDescription.xml"] = description(program, interface).encode()
+    entries |= {f"sources/{name}": text.encode() for name, text in sources.items()}
+    binary = "compiled: nothing, only sources"
+    if compile_with is not None:
+        library = library_of(program, interface)
+        entries[library] = shared_library(compile_with, code)
+        binary = (
+            f"compiled for 64-bit Linux on x86: {library}, by the C compiler of who exported it"
+        )
+    entries["documentation/index.html"] = _page(program, interface, binary).encode()
+    return entries
+
+
+def library_of(program: Program, interface: Interface) -> str:
+    """Return where the compiled library of a program is, if there is one."""
+    return f"{interface.libraries}/{program.names.lower}.so"
+
+
+def _period(record: ExportRecord) -> str:
+    """Return the sample time in s, as a decimal that reads back as the same double."""
+    assert record.sample_time is not None
+    return repr(float(Fraction(record.sample_time.exact)))
+
+
+def guid_of(record: ExportRecord) -> str:
+    """Return a name that follows from the spec, the proof and the sample time, and nothing else."""
+    certificate = "none" if record.proof is None else record.proof.certificate_id
+    period = "none" if record.sample_time is None else record.sample_time.exact
+    text = f"nrs-design {record.spec.sha256} {certificate} {period}"
+    return f"{{{uuid5(NAMESPACE_OID, text)}}}"
+
+
+def packed(entries: Mapping[str, bytes]) -> bytes:
+    """Pack entries into an archive, the same bytes each time.
+
+    Parameters
+    ----------
+    entries : mapping of str to bytes
+        Contents by path, in their order.
+    """
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        for name, content in entries.items():
+            info = zipfile.ZipInfo(name, _DATE)
+            # As a system writes it that Python does not run on may differ.
+            info.create_system = 3
+            info.external_attr = 0o644 << 16
+            archive.writestr(info, content)
+    return file.getvalue()
+
+
+def wrapper_text(program: Program, interface: Interface) -> str:
+    """Return the C around a law; numbers are rounded where the law takes them."""
+    about = (*program.about, f"It makes a model by FMI {interface.version} of the law.")
+    return fill_template(
+        f"{interface.source}.j2",
+        comment=block_comment(about, C_SOURCE),
+        names=program.names,
+        law=program.law,
+        variables=variables_of(program.law),
+        guid=guid_of(program.record),
+        period=_period(program.record),
+    )
+
+
+def description(program: Program, interface: Interface) -> str:
+    """Return what the model says of itself, as XML."""
+    record, law, variables = program.record, program.law, variables_of(program.law)
+    modes = ", ".join(f"{k} {mode}" for k, mode in enumerate(law.modes))
+    # Outputs by their places: the mode comes first, and whether a step is valid last.
+    places = [v.reference + 2 for v in variables if v.causality == "output"]
+    period = _period(record)
+    return fill_template(
+        f"{interface.description}.j2",
+        names=program.names,
+        law=law,
+        guid=guid_of(record),
+        summary=f"{record.verdict.upper()}: the law of {record.spec.name}, every {period} s",
+        tool=f"nrs-design {record.package.version}",
+        units={v.unit: _BASE.get(v.unit, "") for v in variables},
+        period=period,
+        modes=f"controller in force: {modes}",
+        variables=variables,
+        places=[*places, len(variables) + 2],
+    )
+
+
+def _page(program: Program, interface: Interface, binary: str) -> str:
+    """Return the documentation as HTML, with what is compiled, in words."""
+    proof, modes = program.record.proof, program.law.modes
+    sections = (
+        ("What this is", (*program.about, binary)),
+        ("Outside the proof, in this format", (interface.inputs, *OUTSIDE)),
+        ("How to start it", tuple(start_lines(program.law))),
+        ("Taken for granted by the proof", () if proof is None else proof.assumptions),
+        ("Modes", tuple(f"{k}: {mode}" for k, mode in enumerate(modes))),
+    )
+    return fill_template("fmu.html.j2", names=program.names, sections=sections)

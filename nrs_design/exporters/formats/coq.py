@@ -1,0 +1,76 @@
+"""Statement and certificate for the proof assistant Coq (or Rocq), in one file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from nrs_design.certificates.certificate import Certificate
+from nrs_design.exporters import Format
+from nrs_design.exporters.export import Export
+from nrs_design.exporters.header import header_lines
+from nrs_design.exporters.proof_assistant.choose import choose_theorem
+from nrs_design.exporters.proof_assistant.text import in_comment
+from nrs_design.exporters.proof_assistant.theorem import Theorem
+from nrs_design.output import COQ
+
+FORMAT = Format(
+    "statement and certificate for the proof assistant Coq, which checks them by itself",
+    "a proof of stability; matrices have one, too",
+    {".v": COQ},
+    identifier=True,
+    alone=True,
+)
+_LIBRARY = Path(__file__).parent.parent / "proof_assistant"
+# What the statement leaves out against the claim of the certificate.
+# What no statement of the library covers of a claim.
+_LEFT_OUT = (
+    "that these modes are those of the robot: what is taken for granted, below",
+    "that they come from the spec: `nrs-design verify CERTIFICATE SPEC` assembles them again",
+)
+
+
+def render(export: Export) -> dict[str, bytes]:
+    """Return the file of an export, by its ending.
+
+    Raises
+    ------
+    DesignError
+        If the library for Coq has no theorem of this kind of certificate.
+    """
+    certificate = export.certificate
+    assert certificate is not None, "what is proved has a certificate"
+    theorem = choose_theorem(certificate)
+    parts = [
+        _head(export, certificate, theorem),
+        *((_LIBRARY / f"{name}.v").read_text(encoding="utf-8") for name in theorem.library),
+        "(** * The system, and what proves its stability *)\n",
+        "Open Scope Z_scope.\n",
+        *theorem.definitions,
+        f"Lemma checked : {theorem.check} = true.\nProof. vm_cast_no_check (eq_refl true). Qed.\n",
+        f"Theorem stable :\n  {theorem.statement}.\nProof. exact ({theorem.proof}). Qed.\n",
+        "Print Assumptions stable.\n",
+    ]
+    return {".v": "\n".join(parts).encode()}
+
+
+def _head(export: Export, certificate: Certificate, theorem: Theorem) -> str:
+    lines = "\n".join(
+        f"   {in_comment(line)}" for line in _head_lines(export, certificate, theorem)
+    )
+    return f"{COQ.decode()}\n{lines} *)\n"
+
+
+def _head_lines(export: Export, certificate: Certificate, theorem: Theorem) -> Iterator[str]:
+    yield "to check it: coqc and the name of this file; the last lines print what it assumes"
+    if export.record is not None:
+        yield from header_lines(export.record)
+    else:
+        evidence = certificate.evidence
+        assert evidence is not None, "it is proved"
+        yield f"spec: {certificate.spec_name}, sha256 {certificate.spec_sha256}"
+        yield f"certificate: {certificate.id}"
+        yield f"claim: {evidence.claim(certificate.system)}"
+    yield f"states, in this order: {', '.join(theorem.states)}"
+    yield from (f"not in the theorem: {text}" for text in (*theorem.left_out, *_LEFT_OUT))
+    yield from (f"taken for granted: {text}" for text in certificate.granted)

@@ -1,0 +1,130 @@
+"""Rules of switching: one quadratic form for each mode, as a theorem of Coq."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil
+
+from nrs_design.exporters.proof_assistant.flows import FlowStatement
+from nrs_design.exporters.proof_assistant.text import (
+    Definitions,
+    factor_of,
+    identifiers,
+    listed,
+    long_integer,
+    symmetric,
+)
+from nrs_design.exporters.proof_assistant.theorem import Theorem
+from nrs_design.proof.evidence.graph import FormsOnGraph
+from nrs_design.proof.exact import transpose
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.steps import Stays
+from nrs_design.proof.system import SwitchedSystem
+
+STAYS = ("forms", "jumps", "stays")
+SWITCHES = ("forms", "jumps", "polynomials", "continuous", "bridges", "switches")
+# How a form is followed through a stay: terms of a series in each piece, what is added for its rest
+# and for rounding, and the scale of both.
+TERMS, MORE, SCALE = 16, 2**40, 2**60
+INSIDE = "what happens within a stay of a mode that must be left, between its switches"
+MIXED = "averages of modes, such as values between the corners of ranges"
+
+
+def places_theorem(system: SwitchedSystem, evidence: FormsOnGraph) -> Theorem:
+    """Return the theorem of a certificate with a form for each mode.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With its rules of switching.
+    evidence : FormsOnGraph
+        That holds for it, with quadratic forms.
+    """
+    flows, definitions = system.time is Time.CONTINUOUS, Definitions()
+    names = identifiers(mode.name for mode in system.modes)
+    texts = _flowing(system, evidence, definitions) if flows else _stepping(system, evidence)
+    for mode in system.modes:
+        definitions.define(names[mode.name], texts[mode.name], mode.name)
+    places = listed(names[mode.name] for mode in system.modes)
+    definitions.define("switches", f"{_switches(system, flows=flows)} : list switch")
+    factor = max(factor_of(node.form) for node in evidence.nodes)
+    rate = f"{evidence.rate.numerator} {evidence.rate.denominator}"
+    if flows:
+        return Theorem(
+            SWITCHES,
+            definitions.texts,
+            f"switches_fall {rate} {factor}\n    {places}\n    switches",
+            f"decays_by_mode {rate} {factor}\n    {places}\n    switches",
+            "switches_sound _ _ _ _ _ checked",
+            system.states,
+            (MIXED,),
+        )
+    stays = evidence.stays
+    return Theorem(
+        STAYS,
+        definitions.texts,
+        f"stays_fall {rate} {factor}\n    {places}\n    switches",
+        f"decays_by_mode {factor}\n    {places}\n    switches\n"
+        f"    ({evidence.rate.numerator} / {evidence.rate.denominator})%R",
+        "stays_sound _ _ _ _ _ checked",
+        system.states,
+        (MIXED, INSIDE) if stays is not None and stays.leaving else (MIXED,),
+    )
+
+
+def _stepping(system: SwitchedSystem, evidence: FormsOnGraph) -> dict[str, str]:
+    """Return the modes in discrete time."""
+    forms, stays = dict(evidence.nodes), system.stays()
+    leaving = (evidence.stays or Stays()).leaving
+    found = {}
+    for mode in system.modes:
+        stay = stays[mode.name]
+        longest = "None" if stay.longest is None else f"(Some {stay.longest}%nat)"
+        left = "true" if mode.name in leaving else "false"
+        found[mode.name] = (
+            f"Place ({_linear(mode.A)})\n  {symmetric(forms[mode.name])}\n  {stay.shortest}%nat "
+            f"{longest} {left}"
+        )
+    return found
+
+
+def _flowing(
+    system: SwitchedSystem, evidence: FormsOnGraph, definitions: Definitions
+) -> dict[str, str]:
+    """Return the modes in continuous time, with the inequality of each."""
+    forms, stays, flows = dict(evidence.nodes), system.stays(), FlowStatement(system, evidence)
+    grams = {place: (gram, factor) for place, gram, factor in flows.witnesses()}
+    found = {}
+    for k, mode in enumerate(system.modes):
+        gram, factor = grams[mode.name]
+        dwell = stays[mode.name].shortest
+        found[mode.name] = (
+            f"Place {len(mode.A.numerators)} ({flows.flow(k, mode, definitions)})\n"
+            f"  {symmetric(forms[mode.name])}\n  ({dwell.numerator}, {dwell.denominator})\n"
+            f"  (Witness {symmetric(gram, long_integer)} {factor})"
+        )
+    return found
+
+
+def _switches(system: SwitchedSystem, *, flows: bool) -> str:
+    index = {mode.name: k for k, mode in enumerate(system.modes)}
+    stays = system.stays()
+    return listed(
+        f"Switch {index[edge.source.name]} {index[edge.target.name]} "
+        + ("None" if edge.map is None else f"(Some ({_linear(edge.map)}))")
+        + (_bridge(edge.source, stays[edge.source.name].shortest) if flows else "")
+        for edge in system.edges()
+    )
+
+
+def _bridge(mode: Mode, stay: Fraction) -> str:
+    """Return how a stay is followed: in pieces in which the mode does not move far."""
+    size = max(sum(map(abs, row)) for row in mode.A.numerators)
+    pieces = ceil(2 * stay * Fraction(size, mode.A.denominator)) or 1
+    return f" (Bridge {pieces} {TERMS} {MORE} {SCALE})"
+
+
+def _linear(A: RationalMatrix) -> str:
+    columns = (listed(map(str, column)) for column in transpose(A.numerators))
+    return f"Linear {listed(columns)} {A.denominator}"

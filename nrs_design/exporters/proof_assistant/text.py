@@ -1,0 +1,131 @@
+"""Numbers, lists, forms and names as text of Coq."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+
+from nrs_design.printable import printable
+from nrs_design.proof.exact import IntegerMatrix, is_positive_definite
+
+WIDTH = 100
+# From this length on, Coq reads digits of its own in a tenth of the time that a decimal takes it.
+SHORT_BITS = 30
+
+
+@dataclass(slots=True)
+class Definitions:
+    """Definitions in order; equal ones have one name."""
+
+    texts: list[str] = field(default_factory=list)
+    names: dict[str, str] = field(default_factory=dict)
+
+    def share(self, stem: str, text: str) -> str:
+        """Return the name of a term, which is defined where it is new.
+
+        Parameters
+        ----------
+        stem : str
+            What a new name begins with.
+        text : str
+            The term.
+        """
+        if text not in self.names:
+            self.names[text] = self.define(f"{stem}{len(self.names) + 1}", text)
+        return self.names[text]
+
+    def define(self, name: str, text: str, remark: str = "") -> str:
+        """Define a name, and return it.
+
+        Parameters
+        ----------
+        name : str
+            That is new.
+        text : str
+            The term.
+        remark : str
+            What is said of it.
+        """
+        said = f"(* {in_comment(remark)} *)\n" if remark else ""
+        self.texts.append(f"{said}Definition {name} := {text}.\n")
+        return name
+
+    def row(self, entries: Sequence[int]) -> str:
+        """Return the name of a list of integers."""
+        return self.share("v", listed(map(str, entries)))
+
+
+def listed(items: Iterable[str]) -> str:
+    """Return a list of terms."""
+    return f"[{'; '.join(items)}]"
+
+
+def long_integer(number: int) -> str:
+    """Return an integer in hexadecimal digits that Coq reads fast, the last one first."""
+    if number.bit_length() <= SHORT_BITS:
+        return str(number)
+    digits = f"{abs(number):X}"
+    top = "xH"
+    for bit in f"{int(digits[0], 16):b}"[1:]:
+        top = f"(x{'I' if bit == '1' else 'O'} {top})"
+    for digit in digits[1:]:
+        top = f"(h{digit} {top})"
+    return f"({'Zneg' if number < 0 else 'Zpos'} {top})"
+
+
+def symmetric(form: IntegerMatrix, integer: Callable[[int], str] = str) -> str:
+    """Return a symmetric matrix: of every row the diagonal entry, and what is right of it."""
+    rows = (
+        f"({integer(row[i])}, {listed(map(integer, row[i + 1 :]))})" for i, row in enumerate(form)
+    )
+    return "[" + ";\n  ".join(rows) + "]"
+
+
+def identifiers(names: Iterable[str]) -> dict[str, str]:
+    """Return a name of Coq for each name of a mode; no two are the same."""
+    found: dict[str, str] = {}
+    for name in names:
+        plain = "mode_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
+        taken = set(found.values())
+        count = next(k for k in range(1, len(taken) + 2) if _numbered(plain, k) not in taken)
+        found[name] = _numbered(plain, count)
+    return found
+
+
+def in_comment(text: str) -> str:
+    """Return a line that ends no comment and begins none, and no string either."""
+    plain = printable(" ".join(text.split())).replace('"', "'")
+    return plain.replace("(*", "( *").replace("*)", "* )")
+
+
+def factor_of(form: IntegerMatrix) -> int:
+    """Return a power of two with which a positive definite form exceeds the sum of squares.
+
+    Raises
+    ------
+    ValueError
+        If the form is not positive definite.
+    """
+    if not is_positive_definite(form):
+        raise ValueError("no multiple of a form that is not positive definite exceeds it")
+    power = 1
+    while not is_positive_definite(
+        [[power * e - (i == j) for j, e in enumerate(row)] for i, row in enumerate(form)]
+    ):
+        power *= 2
+    return power
+
+
+def reordered(form: IntegerMatrix, order: Sequence[int]) -> list[list[int]]:
+    """Return a matrix with rows and columns in another order."""
+    return [[form[i][j] for j in order] for i in order]
+
+
+def deflection_first(states: int) -> list[int]:
+    """Return the order of states in which the last one comes first."""
+    return [states - 1, *range(states - 1)]
+
+
+def _numbered(name: str, count: int) -> str:
+    return name if count == 1 else f"{name}_{count}"

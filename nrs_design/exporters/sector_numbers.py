@@ -1,0 +1,140 @@
+"""The test of the stiffness in single precision, and what it finds for certain, in words.
+
+No rounding may tell a violation that there is not. With ``u = 2^-24``, a reading that is turned
+into a float is off by ``u`` of itself, and so is the sum with an angle: ``ROUNDING`` times the
+angle, a little more than ``2 u``, covers both. All other operations are on numbers of the size of
+the noise and of the deflection; each loses ``u`` of it, five at most one after the other, and
+``SLACK = 16 u`` is on the safe side in every number that they meet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from nrs_design.controllers.float32 import float32_not_above, float32_not_below
+from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.proof.bounds import lower, upper
+
+ROUNDING = Fraction(17, 2**27)
+SLACK = Fraction(1, 2**20)
+# No operation on what is not below it loses anything to subnormal numbers.
+TINY = Fraction(1, 2**100)
+# Violations that a header tells of, as stiffness over the range; the largest angle there, in rad.
+FACTORS = (Fraction(1, 2), Fraction(4, 5), Fraction(6, 5), Fraction(3, 2), Fraction(2), Fraction(4))
+TURN = Fraction(22, 7)
+
+Macro = tuple[str, Fraction, str]
+
+
+def sector_macros(sector: Sector) -> Iterator[Macro]:
+    """Yield what each number of the test is called, the number, and what stands beside it.
+
+    Parameters
+    ----------
+    sector : Sector
+        What readings must keep.
+    """
+    yield "TORQUE_NOISE", _more(sector.torque_noise), "N*m, a reading of the torque is off by"
+    yield "ANGLE_NOISE", _more(sector.angle_noise), "rad, its angle is off by"
+    yield "ROUNDING", ROUNDING, "of an angle, single precision"
+    yield "YIELD_MOST", _more(1 / sector.low), "rad/(N*m), at the least stiffness"
+    yield "YIELD_LEAST", _less(1 / sector.high), "rad/(N*m), at the largest stiffness"
+    yield (
+        "JUDGED_HIGH",
+        _less(JUDGED * sector.high, 4),
+        "N*m/rad, below it for certain counts as judged",
+    )
+    yield "JUDGED_LOW", _more(sector.low / JUDGED, 4), "N*m/rad, and above it"
+    if sector.surface_speed:
+        yield "SURFACE_SPEED", _more(sector.surface_speed), "rad/s, of the surface"
+    if sector.speed is not None:
+        yield "JOINT_SPEED", _more(sector.speed), "rad/s, of the joint"
+        yield "JOINT_NOISE", _more(2 * sector.reading), "rad, two readings of it"
+
+
+def _more(value: Fraction, slacks: int = 1) -> Fraction:
+    return float32_not_below(value * (1 + slacks * SLACK) + TINY)
+
+
+def _less(value: Fraction, slacks: int = 1) -> Fraction:
+    return float32_not_above(value * (1 - slacks * SLACK))
+
+
+def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
+    """Yield what the test tells, and what it finds for certain.
+
+    Parameters
+    ----------
+    sector : Sector
+        What readings must keep.
+    travel : Fraction
+        How far the joint moves between two torques that are read, at the velocity limit, in rad.
+    """
+    low, high = lower(sector.low, 6), upper(sector.high, 6)
+    yield (
+        f"STIFFNESS: no stiffness within [{low}, {high}] N*m/rad, another one at every sample, "
+        f"explains the readings; the torque is off by at most {upper(sector.torque_noise, 4)} N*m, "
+        f"its angle by {upper(sector.angle_noise, 4)} rad; {_surface(sector)}. Where that holds "
+        "it is never told, whatever stiffness and noise do, rounding included. Noise is a bound: "
+        "three standard deviations of a normal one are left in nearly every run."
+    )
+    yield (
+        "Found for certain: a stiffness c times the end of the range beyond which it is, from the "
+        "torque N on (k times the deflection, without damping), where contact is made while the "
+        f"monitor runs. N = {_formula(sector)}; e and "
+        "a are the noise of torque and angle, l and h the ends of the range, d is the travel of "
+        f"the joint between two torques that are read, {upper(travel, 3)} rad at the velocity "
+        f"limit.{_moving(sector)}"
+    )
+    for factor in FACTORS:
+        need = _need(sector, factor, Fraction(0))
+        more = _need(sector, factor, travel) - need
+        yield f"c = {float(factor):g}: N = {upper(need, 3)} N*m, and {upper(more, 2)} N*m for d"
+    yield (
+        f"In `judged` of `sample` samples {float(JUDGED):g} times the range would have been told, "
+        "whatever the noise: the stiffness was nearer, if it was in its range before."
+    )
+
+
+def _surface(sector: Sector) -> str:
+    if sector.kept:
+        return "contact is kept, with one surface"
+    return {
+        "fixed": "there is one surface for the whole run",
+        "free": "the surface has moved since a reading only if the next torque may be zero",
+        "touched": "the surface stands still from the first torque that is not zero for certain on",
+    }[sector.surface]
+
+
+def _formula(sector: Sector) -> str:
+    """Return how N follows, as `Sector.need` has it."""
+    noise, light = "4 a + 2 e (1/l + 1/h)", "c {k} d" if sector.kept else "(2 e + c {k} d)"
+    stiff, soft = (
+        f"({noise} + {light.format(k=k)} ({lever}))/({gain})"
+        for k, lever, gain in (
+            ("h", "1/l - 1/(c h)", "1/h - 1/(c h)"),
+            ("l", "1/(c l) - 1/h", "1/(c l) - 1/l"),
+        )
+    )
+    if sector.surface != "touched" and not sector.kept:
+        stiff = f"({noise} + d)/(1/h - 1/(c h))"
+    after = ", where the torque comes down to zero" if sector.kept else ""
+    return f"{stiff} for c > 1, {soft} for c < 1{after}"
+
+
+def _moving(sector: Sector) -> str:
+    """Say what a surface that moves all the same costs."""
+    if not sector.surface_speed:
+        return ""
+    return (
+        " A surface that moves adds twice its speed times the time between the two samples to 4 a."
+    )
+
+
+def _need(sector: Sector, factor: Fraction, travel: Fraction) -> Fraction:
+    """Return the torque with what single precision costs up to half a turn.
+
+    Each of two surfaces is moved by `ROUNDING` of the angle, and by ``2 u`` of it in rounding.
+    """
+    return sector.need(factor, travel, 4 * ROUNDING * TURN) * (1 + 16 * SLACK)

@@ -1,0 +1,43 @@
+"""Sign and frame of every input and output of a law: which way is positive, and from where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+
+from nrs_design.controllers.operations import StepLaw
+
+SIGNS: Mapping[str, str] = MappingProxyType(
+    {
+        "angle": "rotation about the axis of the joint, behind the gear; positive the way in which "
+        "a positive command turns it; zero anywhere, but the same place for all angles",
+        "torque": "torque about the same axis (force times lever arm), measured between joint and "
+        "tissue; positive where the tissue pushes the joint towards smaller angles, that is where "
+        "the joint pushes towards larger ones",
+        "velocity_command": "rate of `angle` that the hand commands; positive towards larger "
+        "angles",
+        "position": "wanted `angle`: of the same axis, sign and zero",
+        "wanted_torque": "wanted `torque`: of the same axis and sign",
+        "command": "speed command of the motor before its drive; positive towards larger angles",
+        "withheld": "by how much the safety layer shortened the step of the reference; positive "
+        "where that went towards larger angles",
+    }
+)
+WRONG = (
+    "Of a torque or an angle of the other sign the proof says nothing: the loop then adds to what "
+    "it should oppose. Vectors do not see it: push the joint by hand, and look at both signs."
+)
+
+
+def sign_lines(law: StepLaw) -> Iterator[str]:
+    """Yield sign and frame of each input and output of a program.
+
+    Parameters
+    ----------
+    law : StepLaw
+        Of one axis.
+    """
+    yield "Signs and frames:"
+    for name in (*(value.name for value in law.inputs), *law.outputs):
+        yield f"- {name}: {SIGNS[name]}"
+    yield WRONG

@@ -1,0 +1,100 @@
+"""What the gate asks of a design beside its proof: goals, and limits of scenarios."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from nrs_design.errors import DesignError
+from nrs_design.gating.examine import Examiner
+from nrs_design.gating.obligations import Obligation
+from nrs_design.gating.rules import SWITCHING_STABLE
+from nrs_design.pipeline import Result, run_analysis
+from nrs_design.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from nrs_design.design.analysis import DesignAnalysis
+
+
+def judge_result(result: Result, progress: Progress = silent) -> tuple[Obligation, ...]:
+    """Return what the gate asks of a spec beside files, single modes and robots.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    progress : callable
+        Told the name of each step.
+    """
+    examiner, decided = Examiner.of(result.loaded), result.certification
+    stability = examiner.stability(decided.system, decided.statements, "")
+    _, margins = judge_margins(result, examiner, progress)
+    return (
+        *(item for item in stability if item.rule is SWITCHING_STABLE),
+        *examiner.certified_goals(result.certificate),
+        *margins,
+        *judge_scenarios(result, examiner, progress),
+        *examiner.identified(),
+    )
+
+
+def judge_margins(
+    result: Result, examiner: Examiner, progress: Progress
+) -> tuple[DesignAnalysis | None, tuple[Obligation, ...]]:
+    """Analyze a design, and return how its goals and stiffness ranges end.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    examiner : Examiner
+        Of the same spec.
+    progress : callable
+        Told the name of each step.
+
+    Returns
+    -------
+    DesignAnalysis or None
+        None for given matrices, and where a nominal loop is unstable.
+    tuple of Obligation
+        NRS103 and NRS106.
+    """
+    if result.designed is None:
+        return None, ()
+    progress("margins")
+    try:
+        analysis = run_analysis(result.designed)
+    except DesignError as error:
+        return None, (examiner.no_margins(error),)
+    return analysis, (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis))
+
+
+def judge_scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:
+    """Simulate the scenarios that have limits, and yield how they end.
+
+    Parameters
+    ----------
+    result : Result
+        Of the certification.
+    examiner : Examiner
+        Of the same spec.
+    progress : callable
+        Told the name of each step.
+    """
+    if result.designed is None:
+        return
+    limited = [n for n, one in result.designed.spec.scenarios.items() if one.limits is not None]
+    if not limited:
+        return
+    from nrs_design.pipeline.scenarios import Runs, run_scenarios
+
+    for name in limited:
+        progress(f"scenario {name}")
+        try:
+            # One run for each axis that moves.
+            runs = list(run_scenarios(result.designed, Runs((name,))))
+        except DesignError as error:
+            yield examiner.no_scenario(name, error)
+        else:
+            for simulated in runs:
+                yield from examiner.scenario(name, simulated)

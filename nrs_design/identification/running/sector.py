@@ -1,0 +1,214 @@
+"""Whether stiffnesses of the range explain the torques of a log: the test of the monitor in C."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, floor, inf
+
+import numpy as np
+
+from nrs_design.controllers.sector import JUDGED, Sector
+from nrs_design.identification.numeric import Array, Flags, runs
+from nrs_design.identification.rounding import resolution
+from nrs_design.identification.running.bounds import RunBounds
+from nrs_design.identification.running.check import BoundStatus, Check, Violation
+from nrs_design.identification.running.log import RunLog
+from nrs_design.identification.statistics import span
+
+# What double precision loses of an angle, and of a number of the size of the noise.
+_ROUNDED = 2.0**-48
+# Rows that are further apart than so many periods leave samples out.
+_SAME = 1.5
+# In so many standard deviations a normal noise stays over an hour of samples, nearly always.
+_SCATTERS = 6.0
+# Of a row: an age that is no longer than a whole number of rows but for that is one.
+_EVEN = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class SectorJudgement:
+    """What the rows of a log leave of the surface."""
+
+    checks: tuple[Check, ...]  # Of the stiffness, and of the speed where the spec bounds it
+    judged: float  # Share of rows in which `JUDGED` times the range would have been told
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rows:
+    """What the rows say, shape (n,) each."""
+
+    # lowest, highest: between which a row leaves the surface; infinite where it says nothing.
+    lowest: Array
+    highest: Array
+    # least, most: torque, with its noise.
+    least: Array
+    most: Array
+    # first, last: angle at which it was measured, with its noise.
+    first: Array
+    last: Array
+
+
+def judge_sector(log: RunLog, bounds: RunBounds) -> SectorJudgement | None:
+    """Hold a log against the range of stiffness; None if the spec, or the log, does not tell.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    """
+    sector, columns = bounds.sector, _columns(log, bounds)
+    if isinstance(sector, str) or columns is None:
+        return None
+    basis = "proved range" if bounds.proved else "range of the spec, not proved"
+    allowed = span(float(sector.low), float(sector.high), "N m/rad", 5)
+    every = bounds.period or bounds.oldest or inf
+    if (bounds.oldest or sector.surface != "fixed") and log.step > _SAME * every:
+        words = "rows are missing that the age of a torque, or a contact, is told by: log all"
+        return SectorJudgement((Check.open("stiffness", words, allowed, basis),), 0.0)
+    rows = _rows(log, columns, sector, ceil(bounds.oldest / log.step - _EVEN))
+    certain = rows.least > 0
+    first, judged = inf, np.zeros(len(log.time), dtype=np.bool_)
+    for begin, end in _contacts(log, certain, sector):
+        left, judged[begin:end] = _one_surface(log, rows, (begin, end), sector)
+        first = min(first, left)
+    pulled = np.flatnonzero((rows.most < 0) & (not sector.kept))
+    first = min(first, float(pulled[0]) if len(pulled) else inf)
+    # From then on nothing is told of the surface.
+    judged[int(min(first, len(judged))) :] = False
+    share = float((judged & certain).mean())
+    check = _stiffness(log, columns[1], first, share, allowed, basis)
+    return SectorJudgement((check, *_speed(log, columns[0], sector, basis)), share)
+
+
+def hint(log: RunLog, bounds: RunBounds) -> str:
+    """Say why the stiffness is not tested, and what the log would let a spec say; else nothing.
+
+    Parameters
+    ----------
+    log : RunLog
+        The data.
+    bounds : RunBounds
+        What the spec promises.
+    """
+    columns = _columns(log, bounds)
+    if not isinstance(bounds.sector, str) or columns is None:
+        return ""
+    angle, torque = (_SCATTERS * _scatter(column) for column in columns)
+    return (
+        f"stiffness not tested: {bounds.sector}; from row to row this log scatters within "
+        f"`torque_noise: {torque:.2g} N*m, angle_noise: {angle:.2g} rad` ({_SCATTERS:g} standard "
+        "deviations; bias, drift and what bends come on top)"
+    )
+
+
+def _scatter(x: Array) -> float:
+    """Return the standard deviation of white noise on a smooth signal, jumps aside."""
+    # Binomial coefficients 1, 3, 3, 1, and the quartile of a normal distribution.
+    rough = float(np.median(np.abs(np.diff(x, 3)))) / np.sqrt(20) / 0.6745
+    return float(np.hypot(rough, resolution(x) / np.sqrt(12)))
+
+
+def _columns(log: RunLog, bounds: RunBounds) -> tuple[Array, Array] | None:
+    """Return angle and torque at the pivot."""
+    columns, arm = log.columns, bounds.lever_arm
+    if {"angle", "torque"} <= columns.keys():
+        return columns["angle"], columns["torque"]
+    if {"deflection", "force"} <= columns.keys() and arm is not None:
+        return columns["deflection"] / arm, columns["force"] * arm
+    return None
+
+
+def _rows(log: RunLog, columns: tuple[Array, Array], sector: Sector, old: int) -> _Rows:
+    angle, torque = columns
+    noise, error = float(sector.torque_noise), float(sector.angle_noise)
+    low, high = float(sector.low), float(sector.high)
+    size = np.abs(angle).max() + np.abs(torque).max() / low
+    about = error * (1 + _ROUNDED) + _ROUNDED * float(size)
+    late = [np.concatenate([np.full(k, np.nan), angle[: len(angle) - k]]) for k in range(old + 1)]
+    # Before the log, and before a gap, an angle is not known: NaN stays NaN.
+    first, last = np.min(late, axis=0) - about, np.max(late, axis=0) + about
+    for k in np.flatnonzero(log.gaps):
+        first[k + 1 : k + 1 + old] = last[k + 1 : k + 1 + old] = np.nan
+    least, most = torque - noise * (1 + _ROUNDED), torque + noise * (1 + _ROUNDED)
+    lowest = first - np.maximum(most / low, most / high)
+    highest = last - np.minimum(least / low, least / high)
+    unknown = np.isnan(first)
+    return _Rows(
+        np.where(unknown, -inf, lowest),
+        np.where(unknown | ~((least > 0) | sector.kept), inf, highest),
+        *(least, most, first, last),
+    )
+
+
+def _contacts(log: RunLog, certain: Flags, sector: Sector) -> Iterator[tuple[int, int]]:
+    """Yield first row and end of stretches in which the surface stands still."""
+    count = len(certain)
+    if sector.surface == "fixed" or sector.kept:
+        yield 0, count
+        return
+    breaks = np.flatnonzero(log.gaps) + 1
+    for begin, end in runs(certain):
+        cuts = [begin, *breaks[(breaks > begin) & (breaks < end)].tolist(), end]
+        for part, (first, last) in enumerate(pairwise(cuts)):
+            # The last row in the air tells where the surface is not, unless a gap follows it.
+            still = sector.surface == "free" and not part and first > 0 and first not in breaks
+            yield first - still, last
+
+
+def _one_surface(
+    log: RunLog, rows: _Rows, ends: tuple[int, int], sector: Sector
+) -> tuple[float, Flags]:
+    """Return the first row that leaves no surface (else infinity), and which rows are judged."""
+    part = slice(*ends)
+    moved = float(sector.surface_speed) * log.time[part]
+    lowest = np.maximum.accumulate(rows.lowest[part] + moved)
+    highest = np.minimum.accumulate(rows.highest[part] - moved)
+    empty = np.flatnonzero(lowest - moved > highest + moved)
+    # What the rows before leave: a row that is off would move its own.
+    before = np.concatenate([[-inf], lowest[:-1]]) - moved
+    after = np.concatenate([[inf], highest[:-1]]) + moved
+    factor, low, high = float(JUDGED), float(sector.low), float(sector.high)
+    with np.errstate(invalid="ignore"):
+        below = rows.most[part] < factor * high * (rows.first[part] - after)
+        above = rows.least[part] > low / factor * (rows.last[part] - before)
+    return ends[0] + float(empty[0]) if len(empty) else inf, below & above
+
+
+def _stiffness(
+    log: RunLog, torque: Array, first: float, share: float, allowed: str, basis: str
+) -> Check:
+    percent = floor(1000 * share) / 10
+    within = f"{float(JUDGED):g} times the range would have been told in {percent:g} % of the rows"
+    if first == inf:
+        words = f"the range explains every row; {within}"
+        return Check("stiffness", BoundStatus.UNDECIDED, words, allowed, basis)
+    at = int(first)
+    what = Violation(
+        log.begin + float(log.time[at]),
+        f"no stiffness of the range explains {torque[at]:.4g} N m and the rows before",
+    )
+    return Check("stiffness", BoundStatus.OUTSIDE, within, allowed, basis, what)
+
+
+def _speed(log: RunLog, angle: Array, sector: Sector, basis: str) -> Iterator[Check]:
+    """Judge the speed of the joint, where the spec says one for its readings."""
+    if sector.speed is None:
+        return
+    name, limit = "speed of the joint", float(sector.speed)
+    # Stamps may be early or late where the samples are not.
+    step = np.maximum(np.diff(log.time), log.step)
+    size = np.abs(np.diff(angle))
+    noise = 2 * float(sector.reading) + _ROUNDED * float(np.abs(angle).max())
+    over = np.flatnonzero(size > limit * step * (1 + 1e-9) + noise)
+    measured = f"at least {max(float(size.max()) - noise, 0.0):.3g} rad in a row"
+    if not len(over):
+        yield Check(name, BoundStatus.INSIDE, measured, f"up to {limit:.4g} rad/s", basis)
+        return
+    at = int(over[0]) + 1
+    words = f"{size[at - 1]:.3g} rad in {step[at - 1]:.3g} s"
+    first = Violation(log.begin + float(log.time[at]), words)
+    yield Check(name, BoundStatus.OUTSIDE, measured, f"up to {limit:.4g} rad/s", basis, first)

@@ -19,6 +19,7 @@ are as rare as in the program itself.
 
 import gc
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -65,3 +66,8 @@ def pytest_collection_finish() -> None:
     gc.collect()
     gc.freeze()
     gc.set_threshold(COLLECT_AFTER)
+
+
+def pytest_runtest_teardown() -> None:
+    """Put back a limit that a command lifts, which is run in the process of the tests."""
+    sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)

@@ -96,6 +96,7 @@ KINDS_OF_SPECS = {
     ("nrs_design.cli.check", "interaction-design"),
     ("nrs_design.cli.mode_logic", "interaction-design"),
     ("nrs_design.cli.report", "robot"),
+    ("nrs_design.exporters.export", "interaction-design"),
     ("nrs_design.gating.examine", "interaction-design"),
     ("nrs_design.pipeline.certification", "robot"),
     ("nrs_design.pipeline.certification", "switched-system"),

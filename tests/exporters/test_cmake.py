@@ -56,7 +56,10 @@ def test_cmake_builds_the_library_and_runs_its_test(firmware, tmp_path):
         assert done.returncode == 0, done.stdout + done.stderr
     assert run(build / "robot").returncode == 0
     tested = run(compiler("ctest"), "--test-dir", build)
-    assert "100% tests passed, 0 tests failed out of 1" in tested.stdout
+    # Versions of CTest write the rest of the line in their own ways.
+    assert tested.returncode == 0, tested.stdout
+    assert "100% tests passed" in tested.stdout
+    assert "No tests were found" not in tested.stderr
 
 
 def test_without_vectors_there_is_no_test(firmware, tmp_path):

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.build_plant import build_environments
@@ -90,8 +89,9 @@ def sector_of(spec: InteractionDesignSpec) -> Sector | str:
     touched = list(_touched(spec))
     if not touched:
         return "no controller touches anything"
-    if strange := [e.name for e in touched if e.law not in (Elastic, KelvinVoigt) or e.preloaded]:
-        return f"the torque of {strange[0]} does not follow from angle and speed of the moment"
+    for e in touched:
+        if e.law.remembers or e.law.has_mass or e.preloaded:
+            return f"the torque of {e.name} does not follow from angle and speed of the moment"
     damping = max(e.parameters["b"].high if "b" in e.parameters else Fraction(0) for e in touched)
     speed = spec.monitoring.speed
     if damping and speed is None:

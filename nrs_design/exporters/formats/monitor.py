@@ -150,7 +150,7 @@ def told_kinds(limits: MonitorLimits) -> dict[str, str]:
         "PULL": sector is not None and not sector.kept,
         "FAST": sector is not None and sector.speed is not None,
     }
-    return {kind: text for kind, text in KINDS.items() if told.get(kind, True)}
+    return {kind: text for kind, text in KINDS.items() if kind not in told or told[kind]}
 
 
 def _remembered(limits: MonitorLimits) -> int:

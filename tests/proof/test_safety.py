@@ -4,6 +4,7 @@ from dataclasses import astuple, replace
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cache
+from itertools import product
 from math import ceil
 
 import numpy as np
@@ -324,10 +325,10 @@ def test_the_limits_follow_from_the_reach():
 
 
 @cache
-def true_powers(count=400):
-    """A^0, A^1, ... of the loop with 60 digits, until nothing is left."""
+def true_powers(loop=LOOP, count=400):
+    """A^0, A^1, ... of a loop with 60 digits, until nothing is left."""
     with localcontext(prec=60):
-        rows = SampledMotor.of(LOOP, PERIOD).matrix(LOOP)
+        rows = SampledMotor.of(loop, PERIOD).matrix(loop)
         A = [[decimal(v) for v in row] for row in rows]
         P = [[Decimal(int(i == j)) for j in range(3)] for i in range(3)]
         powers = []
@@ -337,9 +338,9 @@ def true_powers(count=400):
     return powers
 
 
-def true_sums():
+def true_sums(loop=LOOP):
     """Sums of the responses of error, change, velocity and command."""
-    Kp, D = decimal(LOOP.Kp), decimal(LOOP.D)
+    Kp, D = decimal(loop.Kp), decimal(loop.D)
     rows = {
         "error": (1, 0, 0),
         "change": (1, -1, 0),
@@ -348,14 +349,14 @@ def true_sums():
     }
     for name, row in rows.items():
         step, spin = (
-            [sum(c * P[i][k] for i, c in enumerate(row)) for P in true_powers()] for k in (0, 2)
+            [sum(c * P[i][k] for i, c in enumerate(row)) for P in true_powers(loop)] for k in (0, 2)
         )
         jumps = [abs(b - a) for a, b in zip([Decimal(0), *step], step, strict=False)]
         yield name, (sum(map(abs, step)), sum(jumps), sum(map(abs, spin)))
 
 
-def true_carry(oldest):
-    h = [1 - P[0][0] for P in true_powers()]
+def true_carry(oldest, loop=LOOP):
+    h = [1 - P[0][0] for P in true_powers(loop)]
     h = [Decimal(0)] * (oldest + 1) + h
     ends = [*h, *([Decimal(1)] * len(h))]
     return max(sum(abs(ends[q + M] - ends[q]) for q in range(len(h))) for M in range(1, len(h)))
@@ -392,3 +393,55 @@ def test_an_angle_that_swings_about_the_reference_goes_on_by_more_than_its_error
     wanted = max(abs(h[M:] - h[:-M]).sum() for M in range(1, 500))
     assert wanted > sum(map(abs, error)) + oldest + 1
     assert wanted * (1 - 1e-9) <= float(found.carry) <= wanted * (1 + 1e-6)
+
+
+# Few binary digits, so that what is rounded shows: as it is computed, and not too small.
+COARSE = {
+    (20, 1): (F(2111, 256), [F(208835, 39168), F(108457, 39168), F(1625, 4896)]),
+    (68, 1): (F(2255, 256), [F(3457, 616), F(65631, 19712), F(18763, 19712)]),
+}
+
+
+@pytest.mark.parametrize(("horizon", "oldest"), COARSE)
+def test_what_is_rounded_is_counted_once(horizon, oldest, monkeypatch):
+    monkeypatch.setattr("nrs_design.proof.safety.SUM_BITS", 8)
+    found = respond(LOOP, SampledMotor.of(LOOP, PERIOD), horizon, oldest)
+    assert (found.carry, [*astuple(found.error)]) == COARSE[horizon, oldest]
+
+
+@pytest.mark.parametrize("Kp", [15, 60])
+@pytest.mark.parametrize("D", [0, 3])
+def test_coarse_sums_are_not_too_small(Kp, D, monkeypatch):
+    loop = replace(LOOP, Kp=F(Kp), D=F(D))
+    motor = SampledMotor.of(loop, PERIOD)
+    sums, ways = dict(true_sums(loop)), {oldest: true_carry(oldest, loop) for oldest in (0, 3)}
+    decided = 0
+    for bits in range(7, 14):
+        monkeypatch.setattr("nrs_design.proof.safety.SUM_BITS", bits)
+        for horizon, oldest in product((12, 25, 60, 90), ways):
+            if (found := respond(loop, motor, horizon, oldest)) is None:
+                continue
+            decided += 1
+            assert found.carry >= F(ways[oldest])
+            for name, wanted in sums.items():
+                each = zip(astuple(getattr(found, name)), wanted, strict=True)
+                assert all(number >= F(true) for number, true in each), (bits, horizon, name)
+    assert decided > 5
+
+
+@pytest.mark.parametrize(
+    ("horizon", "oldest", "carry"),
+    [(60, 0, F(75217, 4096)), (60, 2, F(76821, 4096)), (150, 2, F(76687, 4096))],
+)
+def test_what_is_rounded_is_counted_once_where_the_angle_swings(
+    horizon, oldest, carry, monkeypatch
+):
+    """Then the most is found between samples of the horizon, not behind it."""
+    monkeypatch.setattr("nrs_design.proof.safety.SUM_BITS", 12)
+    swings = replace(QUICK, Kp=F(190))
+    assert respond(swings, SampledMotor.of(swings, PERIOD), horizon, oldest).carry == carry
+
+
+@pytest.mark.parametrize(("horizon", "forward"), [(6, False), (20, True)])
+def test_what_may_be_left_behind_the_horizon_may_go_back(horizon, forward):
+    assert respond(LOOP, SampledMotor.of(LOOP, PERIOD), horizon, 0).forward == forward

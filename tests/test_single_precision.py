@@ -9,7 +9,7 @@ from benchmarks.bounded_runs import CASES, hold_against_bound
 from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame, build_law
-from nrs_design.switched.sampled_frame import Frame
+from tests.switched.frames import frame_of
 
 TAU, KM, PERIOD = Fraction("0.0351"), Fraction("4.8417e-4"), Fraction(1, 500)
 MOTION = StepFrame(Fraction(117359), Fraction(1_030_000))
@@ -21,7 +21,7 @@ LAW = Admittance.discrete(Fraction(5, 8), Fraction(3, 16), T)
 @pytest.mark.parametrize("delay", [0, 2])
 def test_it_follows_the_exact_model_up_to_rounding(law, delay):
     """A step of the command, in contact: the same as the rows of a frame, step after step."""
-    frame = Frame(PERIOD, MOTION, (law,), delay, TAU)
+    frame = frame_of(PERIOD, MOTION, (law,), delay, TAU)
     n, E = len(frame.states), np.exp(-float(PERIOD / TAU))
     values = {"Km": KM, "E": Fraction(E), "k": Fraction(43), "b": Fraction(0)}
     rows = np.array(frame.rows(law, delay, values), dtype=float)

@@ -129,6 +129,23 @@ TWO_PERIODS = _F(
     "leave outer_period out",
     lambda s: s.sampling is not None and s.sampling.round > 1,
 )
+TIMED = _F(
+    "the {0[1]}",
+    "{0[0]}.{0[1]}",
+    "leave {0[1]} out, or write `delay` in samples where it is the force that is old",
+    lambda s: next(
+        (
+            (part, key)
+            for part, key in (
+                ("actuator", "dead_time"),
+                ("sampling", "latency"),
+                ("sampling", "jitter"),
+            )
+            if getattr(getattr(s, part), key, None) is not None
+        ),
+        None,
+    ),
+)
 LOSABLE = _F("loss of contact", "contact", "use `contact: kept`", lambda s: s.contact == "losable")
 NOT_KEPT = _F(
     "contact that may be lost", "contact", "write `contact: kept`", lambda s: s.contact != "kept"

@@ -105,6 +105,10 @@ class ActuatorSpec(IdentifiedRangesSpec):
         "theta_m/delta = Km/(s (tau s + 1))"
     )
     time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
+    dead_time: Duration | None = optional(
+        "time in s for which a command does nothing before the motor follows it; it counts in "
+        "with the latency of `sampling`"
+    )
     load_inertia: RotorInertia | None = optional(
         "inertia at the joint in kg*m^2 against which the torque of an environment "
         "works; without it that torque does not slow the motor"

@@ -9,12 +9,22 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from nrs_design.proof.text import exact_text
+from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.quantity_fields import Angle, AngularVelocity, Command, Duration, Torque
+from nrs_design.spec.quantity import Quantity, is_less
+from nrs_design.spec.quantity_fields import (
+    Angle,
+    AngularVelocity,
+    Command,
+    Duration,
+    Torque,
+    quantity_schema,
+    read_quantity,
+)
 from nrs_design.spec.units import command_unit
 
 # Every sample of delay is a state more.
@@ -61,6 +71,27 @@ Delay = Annotated[
 ]
 
 
+def _read_latency(value: object) -> tuple[Quantity, Quantity]:
+    """Read one time, or the shortest and the longest."""
+    ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
+    if len(ends) != 2:
+        raise fault("expected a time, or two of them", "write `0.4 ms`, or `[0.3 ms, 0.8 ms]`")
+    low, high = (read_quantity(end, kinds.DURATION, positive=False) for end in ends)
+    if is_less(high, low):
+        raise fault("the range of the latency ends below its start", "write [shortest, longest]")
+    return low, high
+
+
+_TIME_SCHEMA = quantity_schema(kinds.DURATION)
+Latency = Annotated[
+    tuple[Quantity, Quantity],
+    ReadBy(
+        _read_latency,
+        {"anyOf": [_TIME_SCHEMA, {"type": "array", "items": _TIME_SCHEMA, "minItems": 2}]},
+    ),
+]
+
+
 class SamplingSpec(IdentifiedSpec):
     """The law as a processor runs it: once a period, with float32 coefficients.
 
@@ -72,6 +103,13 @@ class SamplingSpec(IdentifiedSpec):
     delay: Delay = Field(
         description="age of the force sample that the law uses, in samples: one number, or "
         "[smallest, largest] for a delay that may differ at every sample"
+    )
+    latency: Latency | None = optional(
+        "time in s from a sample to where its command takes effect: one number, or [shortest, "
+        "longest] for one that may differ at every sample; default: at once"
+    )
+    jitter: Duration | None = optional(
+        "by how much, in s, a period may be longer or shorter than `period`, each for itself"
     )
     outer_period: Duration | None = optional(
         "time between two samples of the outer loop (filter of the force and "
@@ -104,6 +142,22 @@ class SamplingSpec(IdentifiedSpec):
         """Age of the oldest force sample that the law uses, in s."""
         return self.delay[1] * self.outer
 
+    @property
+    def late(self) -> tuple[Fraction, Fraction]:
+        """Shortest and longest time from a sample to its command, in s."""
+        ends = (self.latency[0].exact, self.latency[1].exact) if self.latency else None
+        return ends or (Fraction(0), Fraction(0))
+
+    @property
+    def unsteady(self) -> Fraction:
+        """By how much a period may be longer or shorter than the others, in s."""
+        return Fraction(0) if self.jitter is None else self.jitter.exact
+
+    @property
+    def longest_step(self) -> Fraction:
+        """The longest time from one sample of either loop to the next, in s."""
+        return self.step + self.unsteady
+
     def find_odd_periods(self) -> str | None:
         """Say why the loops do not meet at common samples, or None."""
         ratio = max(self.period.exact, self.outer) / self.step
@@ -118,6 +172,18 @@ class SamplingSpec(IdentifiedSpec):
             find_odd_periods,
             "{0}",
             f"give 1 to {LARGEST_RATIO} periods of one loop to a period of the other",
+        ),
+        Row(
+            "latency",
+            lambda s: s.late[1] > LONGEST_DELAY * s.period.exact and s.latency[1].text,
+            f"a latency of {{0}} is more than {LONGEST_DELAY} periods, and is not modelled",
+            "shorten it, or run the law less often",
+        ),
+        Row(
+            "jitter",
+            lambda s: 2 * s.unsteady >= s.period.exact and s.jitter.text,
+            "a jitter of {0} is half a period or more",
+            "write by how much a period differs from `period` at most",
         ),
     )
 

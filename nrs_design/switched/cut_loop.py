@@ -36,10 +36,12 @@ from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.matrix import multiply as multiply_matrices
-from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.build_plant import dead_time_of
 from nrs_design.spec.sampling import SamplingSpec
+from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.coupled import AxesCoupling
+from nrs_design.switched.held_motor import hold
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.modes import ForceShare, position_mode, velocity_mode
 from nrs_design.switched.sampled_coupled import slowed_motor
@@ -57,6 +59,7 @@ class Place:
 
     motor: Actuator  # A corner of its ranges, or the nominal one
     age: int = 0  # Of the force sample, always the same; zero in continuous time
+    late: Fraction = ZERO  # From a sample to its command in s, always the same
     texts: tuple[str, ...] = ()  # What is not nominal, and the age where there are several
 
 
@@ -312,8 +315,9 @@ class ProcessorAxis(AbstractAxis):
     def _rows(
         self, frame: Frame, law: DiscreteLaw, place: Place, k: Fraction, b: Fraction
     ) -> Sequence[LinearForm]:
-        E = sum(exponential_between(-frame.period / place.motor.time_constant), ZERO) / 2
-        values = {"Km": place.motor.gain, "E": E, "k": k, "b": b}
+        # Of numbers that are enclosed, the middle.
+        motor = {symbol: interval.middle for symbol, interval in frame.motor.box.ranges.items()}
+        values = {**motor, "Km": place.motor.gain, "k": k, "b": b}
         n = len(frame.states)
         rows = [row[:n] for row in frame.rows(law, place.age, values)[:n]]
         if self.sampling.round > 1:
@@ -326,7 +330,9 @@ class ProcessorAxis(AbstractAxis):
         low_pass = None if self.low_pass is None else self.low_pass.discretize(self.sampling.outer)
         D = self.motion.over(self.sampling.period.exact)
         step = StepFrame(self.motion.Kp, D, low_pass)
-        return Frame(self.sampling.step, step, (law,), place.age, place.motor.time_constant)
+        timing = CommandTiming(self.sampling.step, place.late, place.late)
+        motor = hold(ActuatorRanges.point(place.motor), timing)
+        return Frame(timing, motor, step, (law,), place.age)
 
 
 def axis_of(
@@ -363,10 +369,14 @@ def axis_of(
         return None
     if spec.coupling is not None and plant.load_inertia is not None:
         ranges = slowed_motor(ranges, AxesCoupling.of(spec.coupling, plant.load_inertia))
-    return ProcessorAxis(tuple(_places(ranges, sampling.delay)), motion, sampling, low_pass)
+    lates = tuple(late + dead_time_of(spec) for late in sampling.late)
+    places = tuple(_places(ranges, sampling.delay, lates))
+    return ProcessorAxis(places, motion, sampling, low_pass)
 
 
-def _places(ranges: ActuatorRanges, ages: tuple[int, int]) -> Iterator[Place]:
+def _places(
+    ranges: ActuatorRanges, ages: tuple[int, int], lates: tuple[Fraction, ...] = (ZERO,)
+) -> Iterator[Place]:
     nominal = ranges.nominal
     motors: dict[Actuator, tuple[str, ...]] = {nominal: ()}
     ends = (interval.ends for interval in (ranges.gain, ranges.time_constant))
@@ -376,9 +386,11 @@ def _places(ranges: ActuatorRanges, ages: tuple[int, int]) -> Iterator[Place]:
             f"tau = {float(tau):.6g} s",
         )
         motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)
-    for (motor, texts), age in product(motors.items(), range(ages[0], ages[1] + 1)):
-        late = () if ages[0] == ages[1] else (f"delay {age}",)
-        yield Place(motor, age, (*texts, *late))
+    every = product(motors.items(), range(ages[0], ages[1] + 1), dict.fromkeys(lates))
+    for (motor, texts), age, late in every:
+        aged = () if ages[0] == ages[1] else (f"delay {age}",)
+        told = () if len({*lates}) == 1 else (f"command {float(late):.6g} s late",)
+        yield Place(motor, age, late, (*texts, *aged, *told))
 
 
 def characteristic(rows: Sequence[LinearForm]) -> Polynomial:

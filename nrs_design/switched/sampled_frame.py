@@ -26,6 +26,8 @@ from nrs_design.controllers.parts import StepPart
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame, numbers_in_force, step_parts
 from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
+from nrs_design.switched.command_timing import CommandTiming
+from nrs_design.switched.held_motor import Commands, HeldMotor
 from nrs_design.switched.sampled_law import (
     ERROR,
     IDLE_REFERENCE,
@@ -62,6 +64,8 @@ INPUTS = (
 )
 
 T = TypeVar("T")
+# Those of a motor, by their symbols.
+Numbers = tuple[tuple[str, Fraction], ...]
 
 
 class Turn(StrEnum):
@@ -79,20 +83,25 @@ class Frame:
     # Asked for at every corner of every box, and made once for a loop.
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    # From one sample to the next in s; of two periods the shorter one.
-    period: Fraction
+    # From one sample to the next, of two periods the shorter one, and when commands take effect.
+    timing: CommandTiming
+    # What turns commands into motion.
+    motor: HeldMotor
     # The motion controller, and the filter through which the laws get the force samples.
     step: StepFrame
     # Of all controllers, with the numbers that ship.
     laws: tuple[DiscreteLaw, ...]
     # How many force samples are on their way at most.
     longest_delay: int
-    # The tau of the motor in s, if it is known.
-    time_constant: Fraction | None
     # What a period leaves of the states of laws that are not active; None where all laws are alike.
     idle: Fraction | None = None
     # What is computed at the samples of a round.
     turns: tuple[Turn, ...] = (Turn.BOTH,)
+
+    @property
+    def period(self) -> Fraction:
+        """From one sample to the next in s."""
+        return self.timing.period
 
     @property
     def roundings(self) -> dict[str, Fraction]:
@@ -143,8 +152,13 @@ class Frame:
         """Names and units of the states."""
         place, others = _around(self.stored)
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
-        motion = (OMEGA, self.stored[BEFORE], *((HELD,) if self.holds else ()))
+        motion = (OMEGA, self.stored[BEFORE], *((HELD,) if self.holds else ()), *self._sent)
         return (*place, *motion, *others, *ages, DELTA)
+
+    @property
+    def _sent(self) -> tuple[str, ...]:
+        """The commands of samples before, the last one first, as far as they are not in force."""
+        return tuple(f"u {age} before" for age in range(1, self.timing.oldest + 1))
 
     def rows(
         self,
@@ -166,9 +180,9 @@ class Frame:
         delay : int
             Age of its force sample.
         values : mapping
-            The gain ``Km``, ``E = exp(-T/tau)``, and ``s = tau (1 - E)`` unless tau is known; in
-            contact the stiffness ``k`` and the damping ``b`` that the force sample shows; other
-            names say where the law itself is in a range.
+            The numbers of the motor, as its box names them; in contact the stiffness ``k`` and the
+            damping ``b`` that the force sample shows; other names say where the law itself is in
+            a range.
         turn : Turn
             What is computed; the rest holds what it had.
         """
@@ -177,20 +191,23 @@ class Frame:
         seen = contact if delay == 0 else (ZERO, ZERO)
         made = _sample(self, law, delay, seen, turn, retuned="a" in values)
         ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
-        Km, E, tau = values["Km"], values["E"], self.time_constant
-        s = values["s"] if tau is None else tau * (1 - E)
         _, others = _around(made.after)
-        reference, delta = _place(made, Km, s)
+        turning, moving = (
+            tuple((name, value) for name, value in values.items() if name in names)
+            for names in (self.motor.of_speed, self.motor.of_way)
+        )
+        reference, delta = _place(made, self.motor, moving)
         return [
             *reference,
-            _speed(made, Km, E),
+            _speed(made, self.motor, turning),
             made.after[BEFORE],
             *([made.drive] if self.holds else []),
+            *made.sent[:-1],
             *others,
             *ages[: self.longest_delay],
             delta,
             *made.sizes,
-            _slip(made, Km),
+            _slip(made, self.motor, (("Km", values["Km"]),)),
         ]
 
     def command(self) -> tuple[LinearForm, Sequence[LinearForm]]:
@@ -231,12 +248,12 @@ class _Sample:
     # Each is made once.
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    frame: Frame
     after: Mapping[str, LinearForm]
     drive: LinearForm
     sizes: Sequence[LinearForm]
     at: _Signals
-    taken: LinearForm
+    sent: Sequence[LinearForm]  # The command of this sample, and after it those of samples before
+    given: Commands
 
 
 # Corners of the motor's ranges share what the law makes of one stiffness.
@@ -267,14 +284,14 @@ def _sample(
         moved = (ONE if law.law.commands == "velocity" else ZERO, at[REFERENCE])
         after |= {name: combine((ONE, after[name]), moved) for name in _places(after)}
         sizes |= step.other_sizes(retuned=retuned)
-    return _Sample(
-        frame,
-        after,
-        drive,
-        [sizes.get(name, nothing) for name in shares],
-        at,
-        combine((ONE, drive), (ONE, at["friction"])),
+    sent = [drive, *(at[name] for name in frame._sent)]
+    ages = frame.timing.within
+    given = Commands(
+        at[OMEGA],
+        combine((ONE, sent[-1]), (ONE, at["friction"])),
+        tuple(combine((ONE, sent[age]), (-ONE, sent[age + 1])) for age in ages),
     )
+    return _Sample(after, drive, [sizes.get(name, nothing) for name in shares], at, sent, given)
 
 
 @lru_cache(maxsize=64)
@@ -284,26 +301,27 @@ def _force(frame: Frame, k: Fraction, b: Fraction) -> LinearForm:
     return combine((k, at[DELTA]), (b, at[OMEGA]), (ONE, at["force error"]))
 
 
-# What the motor makes of the command less friction. Corners share what does not depend on all of
-# its numbers: as one object, so that they are known to be alike.
+# Corners share what does not depend on all of their numbers: as one object, so that they are known
+# to be alike.
 @lru_cache(maxsize=256)
-def _speed(made: _Sample, Km: Fraction, E: Fraction) -> LinearForm:
-    return combine((E, made.at[OMEGA]), (Km * (1 - E), made.taken))
+def _speed(made: _Sample, motor: HeldMotor, numbers: Numbers) -> LinearForm:
+    return motor.speed(made.given, dict(numbers))
 
 
 @lru_cache(maxsize=256)
-def _place(made: _Sample, Km: Fraction, s: Fraction) -> tuple[list[LinearForm], LinearForm]:
+def _place(
+    made: _Sample, motor: HeldMotor, numbers: Numbers
+) -> tuple[list[LinearForm], LinearForm]:
     """Return the reference, if any, or the error of it, and the deflection after the period."""
-    at = made.at
-    delta = combine((ONE, at[DELTA]), (s, at[OMEGA]), (Km * (made.frame.period - s), made.taken))
+    delta = combine((ONE, made.at[DELTA]), (ONE, motor.way(made.given, dict(numbers))))
     if ALONE in made.after:
         return [combine((ONE, made.after[ALONE]), (-ONE, delta))], delta
     return _around(made.after)[0], delta
 
 
 @lru_cache(maxsize=64)
-def _slip(made: _Sample, Km: Fraction) -> LinearForm:
-    return combine((ONE, made.at[OMEGA]), (-Km, made.taken))
+def _slip(made: _Sample, motor: HeldMotor, numbers: Numbers) -> LinearForm:
+    return motor.slip(made.given, dict(numbers))
 
 
 def _places(states: Iterable[str]) -> list[str]:

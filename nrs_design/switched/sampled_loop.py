@@ -27,6 +27,7 @@ from nrs_design.spec.interaction_parts import FREE
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumptions import at_once_texts
+from nrs_design.switched.command_timing import CommandTiming, timing_of
 from nrs_design.switched.constraints import assemble_switching, leaving_impedance, zeroing
 from nrs_design.switched.coupled import AxesCoupling, among_axes
 from nrs_design.switched.free_motion import (
@@ -37,6 +38,7 @@ from nrs_design.switched.free_motion import (
     outputs_of,
 )
 from nrs_design.switched.gain_box import GainBox, RangedLaw
+from nrs_design.switched.held_motor import hold
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
@@ -48,7 +50,6 @@ from nrs_design.switched.sampled_inputs import (
     damping_of,
     roundings_of,
 )
-from nrs_design.switched.sampled_motor import motor_box
 
 
 def close_sampled_loop(
@@ -92,8 +93,10 @@ def close_sampled_loop(
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
     ranges = plant.actuator_ranges
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
-    frame = _frame(conditions.idle, sampling, design, [item.law for item in laws.values()], slowed)
-    loop = _Loop(frame, sampling.delay, motor_box(slowed, frame.period))
+    timing = timing_of(sampling, conditions.dead_time)
+    each = [item.law for item in laws.values()]
+    frame = _frame(conditions.idle, sampling, design, each, slowed, timing)
+    loop = _Loop(frame, sampling.delay)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
     parts, free = _motions(frame, loop, plant, design, laws, loss)
@@ -144,7 +147,7 @@ def close_sampled_loop(
         texts,
         assemble_switching(conditions.switching, groups, resets),
         losable,
-        frame.period,
+        sampling.longest_step,
         channels,
         (*outputs, *(() if driven is None else (driven.output,))),
         tuple(roundings_of(frame, channels, every)),
@@ -215,20 +218,21 @@ def _frame(
     design: ControllerDesign,
     laws: Sequence[DiscreteLaw],
     ranges: ActuatorRanges,
+    timing: CommandTiming,
 ) -> Frame:
     if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
         raise AssemblyError(
             f"{odd}, so their modes share no state", remedy=SHARED_STATES, at=("controllers",)
         )
-    tau, low_pass, motion = ranges.time_constant, design.sensor.filter, design.motion
+    low_pass, motion = design.sensor.filter, design.motion
     outer = sampling.outer
     filtered = None if low_pass is None else low_pass.discretize(outer)
     return Frame(
-        sampling.step,
+        timing,
+        hold(ranges, timing),
         StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered),
         tuple(laws),
         sampling.delay[1],
-        tau.nominal if tau.low == tau.high else None,
         None if idle is None else idle_share(idle, outer),
         _turns(sampling),
     )
@@ -240,7 +244,6 @@ class _Loop:
 
     frame: Frame
     delays: tuple[int, int]
-    motor: Box
 
     def in_contact(
         self, controller: Controller, gains: RangedLaw, environments: Iterable[Environment]
@@ -252,17 +255,17 @@ class _Loop:
         """
         found: list[SampledMode] = []
         if not controller.contacts:
-            found += self._corners(gains, self.motor, controller.name)
+            found += self._corners(gains, self.frame.motor.box, controller.name)
             environments = environments if self.frame.remembers else ()
         for environment in environments:
             own = Box({"k": environment.stiffness, "b": damping_of(environment)})
             name = f"{controller.name}/{environment.name}"
-            found += self._corners(gains, own.beside(self.motor), name)
+            found += self._corners(gains, own.beside(self.frame.motor.box), name)
         return tuple(found)
 
     def in_the_air(self, controller: str, gains: RangedLaw) -> tuple[SampledMode, ...]:
         """Return the motions of a controller that touches nothing."""
-        return tuple(self._corners(gains, self.motor, f"{controller}/{FREE}"))
+        return tuple(self._corners(gains, self.frame.motor.box, f"{controller}/{FREE}"))
 
     def between(self, law: DiscreteLaw, name: str) -> Iterator[SampledMode]:
         """Yield the motions at samples of the motion loop alone, which no force reaches."""
@@ -270,7 +273,7 @@ class _Loop:
         def rows_at(values: Mapping[str, Fraction]) -> list[LinearForm]:
             return self.frame.rows(law, 0, values, Turn.MOTION)
 
-        for corner, rows in self.motor.corners(rows_at, name):
+        for corner, rows in self.frame.motor.box.corners(rows_at, name):
             yield SampledMode.of(corner, rows, len(self.frame.states), begins=False)
 
     def _corners(self, gains: RangedLaw, box: Box, name: str) -> Iterator[SampledMode]:

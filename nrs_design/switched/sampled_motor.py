@@ -10,6 +10,8 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.switched.parameter_box import Box, Triangle
 
+ZERO = Fraction(0)
+
 # Binary digits of the enclosure of an exponential: its ends are one number in doubles, by which a
 # search knows that they are one mode.
 EXPONENTIAL_BITS = 56
@@ -67,6 +69,30 @@ def motor_box(ranges: ActuatorRanges, period: Fraction) -> Box:
         s = max(s_high - flat * (E_high - E), s_low + steep * (E - E_low))
     box = {"E": Interval(E_low, E_low, E_high), "s": Interval(s_low, s_low, s_high)}
     return Box({"Km": ranges.gain, **box}, triangle=Triangle("E", "s", (E, _up(s, finer))))
+
+
+def way_between(time: Fraction, rate: Interval) -> tuple[Fraction, Fraction]:
+    """Enclose ``(1 - exp(-g h)) / g``: how far a motor of speed 1 goes on in a time.
+
+    Parameters
+    ----------
+    time : Fraction
+        The h in s; not negative.
+    rate : Interval
+        The g in 1/s; positive. The larger it is, the shorter the way.
+    """
+    if not time:
+        return ZERO, ZERO
+    fast, _ = exponential_between(-time * rate.low)
+    _, slow = exponential_between(-time * rate.high)
+    unit = way_unit(time, rate)
+    return _down((1 - slow) / rate.high, unit), _up((1 - fast) / rate.low, unit)
+
+
+def way_unit(time: Fraction, rate: Interval) -> Fraction:
+    """Return the digit to which ways in a time are rounded; fewer where motors have a range."""
+    bits = EXPONENTIAL_BITS if rate.low == rate.high else RANGED_BITS + MORE_BITS
+    return Fraction(1, 2 ** (bits + ceil(1 / time).bit_length()))
 
 
 def _slope(period: Fraction, tau: Fraction, E: Fraction) -> Fraction:

@@ -14,8 +14,9 @@ from nrs_design.design.transfer import white_noise_power
 from nrs_design.errors import DesignError
 from nrs_design.pipeline import run_analysis, run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_frame import INPUTS, Frame
+from nrs_design.switched.sampled_frame import INPUTS
 from tests.support import SOFT_TISSUE
+from tests.switched.frames import frame_of
 
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 SENSOR = """
@@ -109,7 +110,7 @@ def test_simulated_and_bounded(tmp_path, spring):
     low_pass = found.design.sensor.filter.discretize(period)
     motion, held = found.design.motion, law.discretize(period, "exact")
     step = StepFrame(motion.Kp, motion.over(period), low_pass)
-    frame = Frame(period, step, (held,), 1, Fraction("0.0351"))
+    frame = frame_of(period, step, (held,), 1, Fraction("0.0351"))
     E = Fraction(float(np.exp(-0.002 / 0.0351)))
     rows = frame.rows(held, 1, {"Km": Fraction("4.8417e-4"), "E": E})
     n = len(frame.states)

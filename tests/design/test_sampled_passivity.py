@@ -16,9 +16,10 @@ from nrs_design.design.sampled_passivity import sampled_bands
 from nrs_design.models.actuator import Actuator
 from nrs_design.models.motion_loop import close_motion_loop, realize
 from nrs_design.switched.cut_loop import ContinuousAxis
-from nrs_design.switched.sampled_frame import INPUTS, Frame
+from nrs_design.switched.sampled_frame import INPUTS
 from tests.design.motion_loops import PLACE
 from tests.support import thinned
+from tests.switched.frames import frame_of
 
 MOTOR = Actuator(Fraction("4.8417e-4"), Fraction("0.0351"))
 MOTION = ProportionalDerivative(to_float32(Fraction("117359.436")), Fraction(2060))
@@ -35,7 +36,7 @@ def real_part(omega, law, period, age):
     E = Fraction(float(np.exp(-float(period / MOTOR.time_constant))))
     held = DiscreteLaw(Admittance, law)
     step = StepFrame(MOTION.Kp, MOTION.over(period))
-    frame = Frame(period, step, (held,), age, MOTOR.time_constant)
+    frame = frame_of(period, step, (held,), age, MOTOR.time_constant)
     rows = frame.rows(held, age, {"Km": MOTOR.gain, "E": E})
     n = len(frame.states)
     # The velocity that the command holds on to; the last state only counts the angle.

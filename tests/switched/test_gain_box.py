@@ -15,9 +15,9 @@ from nrs_design.search.certify import Limits, Verdict, certify
 from nrs_design.spec import LoadedSpec, parse_spec, read_spec
 from nrs_design.switched.assemble import DECLARED, assemble_from_text
 from nrs_design.switched.gain_box import GainBox, RangedLaw
-from nrs_design.switched.sampled_frame import Frame
 from tests.proof.graphs import shape_of
 from tests.support import ROOT
+from tests.switched.frames import frame_of
 
 F = Fraction
 TEXT = """\
@@ -192,7 +192,7 @@ def test_corners_hold_what_lies_between_them():
     step = StepFrame(Fraction(10**5), Fraction(10**6))
     for springs in (("0.5", 1), (0, 0)):
         gains = ranged_law(("0.01", "0.02"), (1, 2), springs)
-        frame = Frame(PERIOD, step, (gains.law,), 1, Fraction(1, 20))
+        frame = frame_of(PERIOD, step, (gains.law,), 1, Fraction(1, 20))
         motor = {"Km": Fraction(1, 2000), "E": Fraction(9, 10), "k": Fraction(43)}
 
         def rows_at(values, frame=frame, motor=motor, gains=gains):

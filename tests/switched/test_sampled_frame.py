@@ -20,6 +20,7 @@ from nrs_design.controllers.sensor import DiscreteLowPass
 from nrs_design.controllers.step_analysis import UNIT, rounding_share
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.switched.sampled_frame import Frame, Turn
+from tests.switched.frames import frame_of
 
 
 @pytest.mark.parametrize(
@@ -48,7 +49,7 @@ MOTION = StepFrame(Fraction("117359.43"), Fraction(1_030_000))
 
 
 def _frame(delay: int, *laws: DiscreteLaw) -> Frame:
-    return Frame(PERIOD, MOTION, laws or (_law("1.04"),), delay, TAU)
+    return frame_of(PERIOD, MOTION, laws or (_law("1.04"),), delay, TAU)
 
 
 def _force(Kf: Fraction) -> DiscreteLaw:
@@ -77,7 +78,8 @@ def test_largest_stable_stiffness_of_a_faster_outer_loop(Bt, limit):
     tick = Fraction(1, 10_000)
     a = np.exp(-float(Bt) * float(tick) / 0.01)
     law = Admittance.discrete(Fraction(a), Fraction((1 - a) / float(Bt)), tick)
-    frame = replace(_frame(0), period=tick, turns=(Turn.BOTH, Turn.ADMITTANCE))
+    turns = (Turn.BOTH, Turn.ADMITTANCE)
+    frame = frame_of(tick, MOTION, (_law("1.04"),), 0, TAU, turns=turns)
 
     def radius(k: float) -> float:
         values = {"Km": KM, "E": Fraction(float(np.exp(-0.0001 / 0.0351))), "k": Fraction(k)}
@@ -121,7 +123,7 @@ def test_maps_agree_with_a_simulation_step_by_step(faster, cases):
         step = StepFrame(Fraction(Kp), Fraction(D), low_pass)
         other = Turn.ADMITTANCE if faster else Turn.MOTION
         turns = (Turn.BOTH, other) if count > 1 else (Turn.BOTH,)
-        frame = Frame(
+        frame = frame_of(
             Fraction(tick), step, (law_of(0.5, 0.5),), longest, Fraction(tau), turns=turns
         )
         n, E = len(frame.states), float(np.exp(-tick / tau))
@@ -204,7 +206,7 @@ def test_single_precision_never_leaves_the_roundings(laws, order):
     p, q = Fraction(3, 5), Fraction(2, 5)
     low_pass = DiscreteLowPass(order, to_float32(p), to_float32(q)) if order else None
     step_frame = replace(MOTION, Kp=to_float32(MOTION.Kp), low_pass=low_pass)
-    frame = Frame(PERIOD, step_frame, laws, 1, TAU, idle)
+    frame = frame_of(PERIOD, step_frame, laws, 1, TAU, idle)
     law = build_law(step_frame, {str(i): one for i, one in enumerate(laws)}, idle)
     n, values = len(frame.states), {"Km": KM, "E": Fraction(94, 100)}
     for _ in range(60):

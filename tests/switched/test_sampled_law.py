@@ -15,9 +15,9 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import InternalError
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
-from nrs_design.switched.sampled_frame import Frame
 from nrs_design.switched.sampled_law import kinds_of, list_law, short
 from tests.support import ROOT
+from tests.switched.frames import frame_of
 
 SPEC = ROOT / "specs/neuroboscope/soft-tissue-sampled.nrs.yaml"
 CERTIFICATE = ROOT / "reports/soft-tissue-sampled.cert.json"
@@ -130,7 +130,7 @@ def test_a_velocity_that_changes_its_sign_is_rounded_as_much():
     a, sizes = Fraction(3, 7), []
     for sign in (1, -1):
         law = Admittance.discrete(sign * a, Fraction(1), Fraction(1, 500))
-        frame = Frame(Fraction(1, 500), MOTION, (law,), 0, Fraction("0.0351"))
+        frame = frame_of(Fraction(1, 500), MOTION, (law,), 0, Fraction("0.0351"))
         row = len(frame.states) + [*frame.roundings].index("a vm")
         sizes.append(frame.rows(law, 0, values)[row][frame.states.index("vm [rad/s]")])
     assert sizes[0] == -sizes[1]

@@ -1,0 +1,83 @@
+"""When the commands of a processor take effect: within the period of their sample, or after it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor
+
+from nrs_design.models.interval import Interval
+from nrs_design.spec.sampling import SamplingSpec
+
+ZERO = Fraction(0)
+
+
+@dataclass(frozen=True, slots=True)
+class CommandTiming:
+    """How late commands are; of several that are on their way, the newest that came is in force.
+
+    The command of the sample at time t takes effect between ``t + earliest`` and ``t + latest``,
+    each at a time of its own. Ages of commands count from the sample at which a period begins: that
+    of age 0 is computed at it.
+    """
+
+    period: Fraction  # From sample to sample in s
+    # earliest, latest: from a sample to its command, in s.
+    earliest: Fraction = ZERO
+    latest: Fraction = ZERO
+    jitter: Fraction = ZERO  # By how much a period is longer or shorter at most, in s
+
+    @property
+    def lengths(self) -> Interval:
+        """How long a period is, in s."""
+        return Interval(self.period, self.period - self.jitter, self.period + self.jitter)
+
+    @property
+    def oldest(self) -> int:
+        """Age of the command that is in force when a period begins; a newer one may be already."""
+        return ceil(self.latest / self.lengths.low)
+
+    @property
+    def newest(self) -> int:
+        """Age of the newest command that may take effect before a period ends."""
+        return min(floor(self.earliest / self.lengths.high), self.oldest)
+
+    @property
+    def within(self) -> range:
+        """Ages of the commands that may take effect within a period, the oldest first."""
+        return range(self.oldest - 1, self.newest - 1, -1)
+
+    def left(self, age: int) -> Interval:
+        """Return how long before the end of a period commands of an age or newer are in force.
+
+        Where none of them takes effect in a period, that is no time.
+
+        Parameters
+        ----------
+        age : int
+            One of `within`.
+
+        Returns
+        -------
+        Interval
+            In s; its ends are not negative, nor above the longest period.
+        """
+        shortest, longest = self.lengths.low, self.lengths.high
+        begins = self.earliest - age * longest, self.latest - age * shortest
+        low = shortest - min(max(begins[1], ZERO), shortest)
+        high = longest - min(max(begins[0], ZERO), longest)
+        return Interval(high, low, high)
+
+
+def timing_of(sampling: SamplingSpec, dead_time: Fraction) -> CommandTiming:
+    """Return when commands of a processor take effect.
+
+    Parameters
+    ----------
+    sampling : SamplingSpec
+        The processor.
+    dead_time : Fraction
+        For which a motor does nothing, in s.
+    """
+    earliest, latest = (late + dead_time for late in sampling.late)
+    return CommandTiming(sampling.step, earliest, latest, sampling.unsteady)

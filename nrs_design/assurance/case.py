@@ -176,8 +176,7 @@ def _program(result: Result, certificate: Certificate) -> tuple[dict[str, bytes]
     if certificate.system.clock is not None:
         return {}, "an export has room for one period, and the outer loop has its own"
     spec, design = designed.spec, designed.design
-    delay = None if spec.sampling is None else spec.sampling.delay
-    record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
+    record = build_record(design, certificate, spec)
     export = Export("proved", record, certificate, design=design, spec=spec, designed=designed)
     try:
         return dict(_files(export, spec.name)), ""

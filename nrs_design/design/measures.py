@@ -29,9 +29,9 @@ COST_MEANING = (
     "without a load of the motor; gains are chosen by it."
 )
 PASSIVITY_NOT_COMPUTED = (
-    "Where a sampled law is passive is not computed with two periods, a spring Kt, a filter of the "
-    "force, ranges of gains or of the motor, or beside other axes; the frequency of another law is "
-    "not shown in its place."
+    "Where a sampled law is passive is not computed with two periods, a spring Kt, late commands, "
+    "a filter of the force, ranges of gains or of the motor, or beside other axes; the frequency "
+    "of another law is not shown in its place."
 )
 ONE_AXIS = "Of axes that act on each other, this is one by itself."
 

@@ -33,15 +33,14 @@ from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec, LoadedSpec
+from nrs_design.spec.build_plant import dead_time_of
 from nrs_design.spec.controllers import Offset
 
 
 def build_record(
     design: ControllerDesign,
     certificate: Certificate,
-    idle: IdleStatesSpec | None,
-    offset: Offset = "none",
-    delay: tuple[int, int] | None = None,
+    spec: InteractionDesignSpec,
 ) -> ExportRecord:
     """Put a design and its proof together.
 
@@ -51,12 +50,8 @@ def build_record(
         The gains that ship.
     certificate : Certificate
         Made or re-checked just now; it must prove stability of exactly these gains.
-    idle : IdleStatesSpec or None
-        Of the spec that the certificate is about.
-    offset : {"none", "reference", "measured"}
-        Where its force controllers take X_i from.
-    delay : (int, int), optional
-        Smallest and largest age of the force sample of that spec.
+    spec : InteractionDesignSpec
+        That the certificate is about.
 
     Raises
     ------
@@ -67,12 +62,14 @@ def build_record(
     if fault is not None:
         raise CertificateError(f"the certificate {fault}")
     system, evidence = certificate.system, certificate.evidence
+    sampling = None if system.sample_time is None else spec.sampling
     rounded = evidence is not None and evidence.covers_rounding
     return ExportRecord(
-        **_contents(design, idle, offset),
+        **_contents(design, spec.idle_states, spec.offset),
         spec=SpecReference(name=certificate.spec_name, sha256=certificate.spec_sha256),
-        sample_time=_sample_time(system.sample_time),
-        delay=delay,
+        sample_time=_sample_time(None if sampling is None else sampling.step),
+        delay=None if sampling is None else sampling.delay,
+        timing=_timing(spec),
         outside=outside_of(sampled=system.sample_time is not None, rounded=rounded),
         proof=_proof(certificate),
     )
@@ -105,6 +102,7 @@ def build_unproved(
         unproved=reason,
         sample_time=_sample_time(period),
         delay=None if spec.sampling is None else spec.sampling.delay,
+        timing=_timing(spec),
         outside=outside_of(sampled=False, rounded=False) if proof else (NOTHING,),
         proof=proof,
     )
@@ -175,6 +173,19 @@ def find_mismatch(design: ControllerDesign, certificate: Certificate) -> str | N
 
 def _sample_time(period: Fraction | None) -> SampleTime | None:
     return None if period is None else SampleTime(exact=exact_text(period))
+
+
+def _timing(spec: InteractionDesignSpec) -> str | None:
+    """Say when commands take effect; None where that is at once, in periods of one length."""
+    sampling = spec.sampling
+    if sampling is None or spec.late_at is None:
+        return None
+    first, last = (exact_text(late + dead_time_of(spec)) for late in sampling.late)
+    late = f"{first} s" if first == last else f"{first} s to {last} s"
+    said = f"commands take effect {late} after their sample"
+    if sampling.jitter is None:
+        return said
+    return f"{said}, and a period is up to {exact_text(sampling.unsteady)} s longer or shorter"
 
 
 def _idle_states(idle: IdleStatesSpec) -> IdleStates:

@@ -205,8 +205,7 @@ def _exported(spec: InteractionDesignSpec, certificate: Certificate, file: Path)
 
 def _record(spec: InteractionDesignSpec, certificate: Certificate) -> ExportRecord:
     design = design_from_gains(spec, certificate.gains)
-    delay = None if spec.sampling is None else spec.sampling.delay
-    return build_record(design, certificate, spec.idle_states, spec.offset, delay)
+    return build_record(design, certificate, spec)
 
 
 def _read(file: Path) -> bytes:

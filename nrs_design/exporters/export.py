@@ -182,8 +182,7 @@ def _certified_by(loaded: LoadedSpec, file: Path, progress: Progress) -> Export:
 
 def _proved(designed: Designed, certificate: Certificate) -> Export:
     spec, design = designed.spec, designed.design
-    delay = None if spec.sampling is None else spec.sampling.delay
-    record = build_record(design, certificate, spec.idle_states, spec.offset, delay)
+    record = build_record(design, certificate, spec)
     return Export("proved", record, certificate, design=design, designed=designed)
 
 
@@ -208,8 +207,8 @@ def _period(loaded: LoadedSpec, spec: InteractionDesignSpec, asked: Fraction | N
 
 def _executable(loaded: LoadedSpec, export: Export, period: Fraction, *, unproved: bool) -> Export:
     """Return an export for a processor: the proof must be about its sampled loop."""
-    record, design, certificate = export.record, export.design, export.certificate
-    if record is not None and certificate is not None and certificate.system.sample_time == period:
+    record, design = export.record, export.design
+    if record is not None and record.sample_time is not None:
         return export
     if record is not None:
         reason = (

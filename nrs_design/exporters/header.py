@@ -37,4 +37,5 @@ def _sample_time(record: ExportRecord) -> str:
         return text
     least, most = record.delay
     ages = str(least) if least == most else f"{least} to {most}"
-    return f"{text}, force sample {ages} sample{'' if most == 1 else 's'} old"
+    text = f"{text}, force sample {ages} sample{'' if most == 1 else 's'} old"
+    return text if record.timing is None else f"{text}; {record.timing}"

@@ -147,6 +147,8 @@ class ExportRecord(_Frozen):
     sample_time: SampleTime | None = None
     # Smallest and largest age of the force sample, in samples.
     delay: tuple[int, int] | None = None
+    # When commands take effect, in words; only where that is not at once, in periods of one length.
+    timing: str | None = None
     # What no proof covers.
     outside: tuple[str, ...]
     # Unproved, it is there where something else than the sampled loop is proved.

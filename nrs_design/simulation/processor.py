@@ -48,8 +48,8 @@ class Motors:
         axes, commands, width
             As there.
         """
-        for axis, command in zip(axes, commands, strict=True):
-            axis.glide(command, width)
+        for axis in axes:
+            axis.move(width)
 
 
 def run_axes(
@@ -78,10 +78,11 @@ def run_axes(
     first = axes[0]
     wanted = math.floor(first.scenario.duration / first.T + 1e-9) + 1
     count = min(wanted, max_steps)
-    inputs = [SampleInputs.of(axis.scenario, first.T, axis.delay, count) for axis in axes]
+    inputs = [SampleInputs.of(a.scenario, first.T, a.delay, a.late, count) for a in axes]
     instants = [*inputs[0].times.tolist(), float(inputs[0].times[-1]) + first.T]
     rows = [
-        list(zip(f.hand.tolist(), f.noise.tolist(), f.ages.tolist(), strict=True)) for f in inputs
+        list(zip(*(of.tolist() for of in (f.hand, f.noise, f.ages, f.lates)), strict=True))
+        for f in inputs
     ]
     stopped = None
     if count < wanted:

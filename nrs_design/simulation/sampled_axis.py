@@ -65,10 +65,16 @@ class SampleInputs:
     hand: Array
     noise: Array
     ages: NDArray[np.int64]  # Shape (N,). Of the force samples.
+    lates: Array  # Shape (N,). From a sample to its command, in s.
 
     @classmethod
     def of(
-        cls, scenario: Scenario, period: float, delay: tuple[int, int], count: int
+        cls,
+        scenario: Scenario,
+        period: float,
+        delay: tuple[int, int],
+        late: tuple[float, float],
+        count: int,
     ) -> SampleInputs:
         """Draw it from the seed of the scenario.
 
@@ -80,15 +86,18 @@ class SampleInputs:
             In s.
         delay : tuple of (int, int)
             Smallest and largest age.
+        late : tuple of (float, float)
+            Shortest and longest time from a sample to its command, in s.
         count : int
             Number of samples N.
         """
         rng = np.random.default_rng(scenario.seed)
-        late = scenario.errors.jitter * period * rng.random(count)
+        shifted = scenario.errors.jitter * period * rng.random(count)
         noise = scenario.errors.force_noise * rng.standard_normal(count)
         ages = rng.integers(delay[0], delay[1] + 1, count)
-        times = period * np.arange(count) + late
-        return cls(times, scenario.profile.at(times), noise, ages)
+        times = period * np.arange(count) + shifted
+        lates = late[0] + (late[1] - late[0]) * rng.random(count)
+        return cls(times, scenario.profile.at(times), noise, ages, lates)
 
 
 @dataclass
@@ -103,6 +112,8 @@ class SampledAxis:
     # Smallest and largest age of the force samples, counted in samples of the outer loop.
     delay: tuple[int, int]
     turns: Turns = Turns()  # Which samples are those of the motion loop, and of the outer one
+    # Shortest and longest time from a sample to where its command takes effect, in s.
+    late: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Begin at rest, free of contact."""
@@ -129,6 +140,8 @@ class SampledAxis:
         self.switches: list[tuple[float, str]] = []
         self.rows: list[tuple[float, ...]] = []
         self.refused, self.saturated, self.turn, self.command = 0, 0, 0, 0.0
+        # The command in force, and those on their way: after how long, the oldest sample first.
+        self.in_force, self.sent = 0.0, deque[tuple[float, float]]()
         self.kept = [state.name in _OF_MOTION for state in law.states]
         limit = law.coefficient.get("command_limit")
         self.largest = math.inf if limit is None else float(limit.of(0))
@@ -167,7 +180,7 @@ class SampledAxis:
             outer=float(self.turns.outer * self.period),
         )
 
-    def sample(self, t: float, hand: float, noise: float, age: int) -> float:
+    def sample(self, t: float, hand: float, noise: float, age: int, late: float) -> float:
         """Run the law once; return its command.
 
         Parameters
@@ -178,6 +191,8 @@ class SampledAxis:
             Commanded velocity in rad/s, and error of the measured torque in N m.
         age : int
             Of the force sample.
+        late : float
+            After how long its command takes effect, in s.
         """
         tissue, errors = self.tissue, self.scenario.errors
         torque = tissue.torque(self.theta, self.omega)
@@ -216,6 +231,7 @@ class SampledAxis:
         self.rows.append((mode, *now, *map(float, before)))
         if not self.holds[self.controller]:
             self.commanded += self.T * hand
+        self.sent.append((late, command))
         return command
 
     def _decide(self, t: float, hand: float, felt: float, depths: list[float]) -> None:
@@ -241,6 +257,30 @@ class SampledAxis:
         if target != self.controller:
             self.controller = target
             self.switches.append((t, target))
+
+    def move(self, width: float) -> None:
+        """Let motor and tissue move until the next sample, in s, under the commands that come."""
+        now = 0.0
+        for time, command in self._coming(width):
+            self.glide(self.in_force, time - now)
+            self.in_force, now = command, time
+        self.glide(self.in_force, width - now)
+
+    def _coming(self, width: float) -> list[tuple[float, float]]:
+        """Take the commands that take effect within a time; one that a newer overtakes does not."""
+        coming: list[tuple[float, float]] = []
+        left: deque[tuple[float, float]] = deque()
+        soonest = math.inf
+        for time, command in reversed(self.sent):
+            if time < soonest:
+                soonest = time
+                if time < width:
+                    coming.append((max(time, 0.0), command))
+                else:
+                    left.appendleft((time - width, command))
+        self.sent = left
+        # Behind each there are newer and later ones only.
+        return coming[::-1]
 
     def glide(self, command: float, width: float) -> None:
         """Let motor and tissue move for a time in s, as if there were no other axis."""

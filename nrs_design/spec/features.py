@@ -132,19 +132,8 @@ TWO_PERIODS = _F(
 TIMED = _F(
     "the {0[1]}",
     "{0[0]}.{0[1]}",
-    "leave {0[1]} out, or write `delay` in samples where it is the force that is old",
-    lambda s: next(
-        (
-            (part, key)
-            for part, key in (
-                ("actuator", "dead_time"),
-                ("sampling", "latency"),
-                ("sampling", "jitter"),
-            )
-            if getattr(getattr(s, part), key, None) is not None
-        ),
-        None,
-    ),
+    "leave {0[1]} out; where it is the force that is old, write `delay`",
+    lambda s: s.late_at,
 )
 LOSABLE = _F("loss of contact", "contact", "use `contact: kept`", lambda s: s.contact == "losable")
 NOT_KEPT = _F(

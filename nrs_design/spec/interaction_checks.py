@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import partial
 
+from nrs_design.proof.bounds import rounded_up
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.combinations import COMBINATIONS
 from nrs_design.spec.controllers import ControllerSpec, names_in, touched_in
@@ -28,6 +29,7 @@ from nrs_design.spec.logic_checks import LOGIC_CHECKS
 from nrs_design.spec.motion import IN_ITS_UNIT, AboutCommands
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.references import NO_SUCH, Reference
+from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.scenario_checks import SCENARIO_CHECKS
 from nrs_design.spec.switching import DwellTime, switching_checks
 
@@ -44,6 +46,16 @@ class _Of:
         """Return whether it does not touch what it is designed for."""
         names, own = touched_in(self.it.contacts), self.it.environment
         return own is not None and own not in names and self.spec.environments.keys() >= set(names)
+
+
+def _too_late(spec: Spec) -> tuple[str, int] | None:
+    """Return the longest time to a command, where a dead time makes it too long, and the limit."""
+    dead, sampling = spec.actuator.dead_time, spec.sampling
+    if dead is None or sampling is None:
+        return None
+    late = sampling.late[1] + dead.exact
+    too_long = late > LONGEST_DELAY * sampling.period.exact
+    return (rounded_up(late), LONGEST_DELAY) if too_long else None
 
 
 def _controllers(spec: Spec) -> Iterator[tuple[Location, _Of]]:
@@ -326,6 +338,13 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         ),
         "peak_torque is wanted, but the bound would be that of a loop without a command",
         "add `command: 8 deg/s`",
+    ),
+    Row(
+        "actuator.dead_time",
+        _too_late,
+        "{0} s from a sample to its command, dead time and latency, is more than {1} periods, and "
+        "is not modelled",
+        "shorten them, or run the law less often",
     ),
     Row(
         "goals.delay",

@@ -177,6 +177,13 @@ class AbstractInteractionSpec(SpecModel):
         return next((offset for offset in offsets if offset is not None), "none")
 
     @property
+    def late_at(self) -> tuple[str, str] | None:
+        """The key that says that commands take effect later than at their sample, or None."""
+        keys = (("actuator", "dead_time"), ("sampling", "latency"), ("sampling", "jitter"))
+        said = (at for at in keys if getattr(getattr(self, at[0]), at[1], None) is not None)
+        return next(said, None)
+
+    @property
     def takes_motor_ranges(self) -> bool:
         """Whether a proof can be about ranges of the actuator."""
         driven = all(c.commands == "velocity" for c in self.controllers.values())

@@ -43,6 +43,11 @@ class CommandTiming:
         return min(floor(self.earliest / self.lengths.high), self.oldest)
 
     @property
+    def varies(self) -> bool:
+        """Whether periods differ, or times from a sample to its command."""
+        return self.earliest < self.latest or self.jitter > 0
+
+    @property
     def within(self) -> range:
         """Ages of the commands that may take effect within a period, the oldest first."""
         return range(self.oldest - 1, self.newest - 1, -1)

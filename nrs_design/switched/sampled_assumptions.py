@@ -25,6 +25,7 @@ from nrs_design.switched.assumptions import (
     ranges_text,
     rule_texts,
 )
+from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.gain_box import RangedLaw
 from nrs_design.switched.loop_assumptions import kept_by_laws
 from nrs_design.switched.sampled_frame import Frame
@@ -87,8 +88,9 @@ def assume_sampled(
     inputs = "sampled-position" if "under force control" in loss else "sampled"
     return (
         *_period_texts(sampling, design),
+        *_late_texts(frame.timing),
         _delay_text(*sampling.delay),
-        _motor_text(ranges),
+        _motor_text(ranges, frame.timing),
         say("unloaded.sampled"),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
@@ -112,6 +114,10 @@ def assume_sampled(
 def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[Assumption]:
     """Say when what is computed."""
     period, outer = exact_text(sampling.period.exact), exact_text(sampling.outer)
+    if sampling.jitter is not None:
+        jitter = exact_text(sampling.unsteady)
+        yield say("period.jitter", f"{period} s +- {jitter} s", period=period, jitter=jitter)
+        return
     if sampling.round == 1:
         yield say("period.single", f"{period} s, exactly", period=period)
         return
@@ -121,10 +127,23 @@ def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[
     yield say("period.order", "the order that is named")
 
 
-def _motor_text(ranges: ActuatorRanges) -> Assumption:
+def _late_texts(timing: CommandTiming) -> Iterator[Assumption]:
+    """Say when commands take effect, unless they do so at once."""
+    earliest, late = exact_text(timing.earliest), exact_text(timing.latest)
+    if not timing.latest:
+        return
+    if timing.earliest == timing.latest:
+        yield say("command-age.fixed", f"{late} s, exactly", late=late)
+    else:
+        yield say("command-age.range", f"{earliest} s to {late} s", earliest=earliest, late=late)
+
+
+def _motor_text(ranges: ActuatorRanges, timing: CommandTiming) -> Assumption:
     motor, tau = motor_text(ranges), ranges.time_constant
     corner = "a corner of that, of no motor of the range"
-    if tau.low == tau.high:
+    if timing.varies:
+        corner = "a corner of that, of no motor and no times of the ranges"
+    elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
     return say(
         "nominal-motor.sampled" if ranges.fixed else "motor.sampled",

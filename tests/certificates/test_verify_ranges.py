@@ -110,7 +110,7 @@ def test_nominal_gains_are_inside_their_ranges(issue, gain, value, said):
 
 def test_what_is_exported_are_the_nominal_gains_with_their_ranges_named(issue):
     _, _, result = issue("1.75")
-    record = build_record(result.design, result.certificate, None)
+    record = build_record(result.design, result.certificate, result.designed.spec)
     (controller,) = record.controllers
     exported = {gain.name: gain.exact for gain in controller.gains}
     assert exported == result.certificate.gains["insertion"]

@@ -48,7 +48,7 @@ def test_the_same_motor_in_volts(continuous_export):
     assert set(system.assumptions) - set(before.assumptions) == {
         "The motor takes commands in V: Kp of the motion controller is in V/rad, Kd in V*s/rad."
     }
-    Kp, Kd = build_record(found.design, found.certificate, None).motion.gains
+    Kp, Kd = build_record(found.design, found.certificate, found.designed.spec).motion.gains
     assert (Kd.name, Kd.exact, Kd.unit) == ("Kd", "8.046875", "V*s/rad")
     assert (Kp.exact, Kp.unit) == (exact_decimal(Fraction(117359.4375) / 256), "V/rad")
 
@@ -73,10 +73,10 @@ def test_certificate_of_other_gains_is_refused(continuous_export):
     design, certificate = continuous_export.design, continuous_export.certificate
     gains = {**certificate.gains, "insertion": {"Mt": "0.5", "Bt": "2"}}
     with pytest.raises(CertificateError, match="other gains of insertion"):
-        build_record(design, replace(certificate, gains=gains), None)
+        build_record(design, replace(certificate, gains=gains), continuous_export.spec)
     fewer = {"motion": certificate.gains["motion"]}
     with pytest.raises(CertificateError, match="other gains"):
-        build_record(design, replace(certificate, gains=fewer), None)
+        build_record(design, replace(certificate, gains=fewer), continuous_export.spec)
 
 
 def test_certificate_that_refutes_is_refused(continuous_export):
@@ -84,7 +84,7 @@ def test_certificate_that_refutes_is_refused(continuous_export):
 
     refuting = replace(continuous_export.certificate, statements=(staying("insertion"),))
     with pytest.raises(CertificateError, match="does not prove stability"):
-        build_record(continuous_export.design, refuting, None)
+        build_record(continuous_export.design, refuting, continuous_export.spec)
 
 
 def test_force_and_position_controllers():
@@ -120,5 +120,5 @@ def test_a_proof_without_rounding_says_so(sampled_export):
     assert not [text for text in sampled_export.record.outside if "Rounding" in text]
     kept = [item for item in certificate.evidence.multipliers if "rounding" not in item.fact]
     bare = replace(certificate.evidence, multipliers=tuple(kept))
-    found = build_record(design, replace(certificate, statements=(bare,)), None)
+    found = build_record(design, replace(certificate, statements=(bare,)), sampled_export.spec)
     assert found.outside[0].startswith("Rounding: the proof is about the law computed without it")

@@ -1,10 +1,12 @@
 """The sampled loop: its modes, what is taken for granted, and how contact is lost."""
 
+import re
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from benchmarks.single_precision import Choices, simulate_single_precision
 from nrs_design.certificates.bounds import bound_on
@@ -488,3 +490,83 @@ def test_runs_that_retune_their_gains_keep_the_certified_bound(tmp_path):
     law = build_law(motion, laws)
     forces = simulate_single_precision(law, 0.002, choices, np.zeros(runs), losable=False)
     assert bounds["point"] < np.abs(forces).max() <= bounds["ranged"]
+
+
+def radius(system, wanted="insertion"):
+    """Return the largest eigenvalue of the modes of one controller, by size."""
+    modes = [mode for mode in system.modes if mode.name.startswith(wanted)]
+    return max(abs(np.linalg.eigvals(mode.A.floats())).max() for mode in modes)
+
+
+def test_a_latency_of_nothing_is_none(tmp_path):
+    """The same modes, entry for entry."""
+    found, plain = (
+        system_of(tmp_path, f"{{period: 2 ms, delay: 1{more}}}") for more in (", latency: 0 s", "")
+    )
+    assert found.modes == plain.modes
+    assert found.states == plain.states
+
+
+def test_a_latency_of_a_whole_period_keeps_the_command_for_one(tmp_path):
+    """The motor takes the command of before; what the law makes of a sample is the same."""
+    late, plain = (
+        system_of(tmp_path, f"{{period: 2 ms, delay: 0{more}}}") for more in (", latency: 2 ms", "")
+    )
+    kept = [i for i, name in enumerate(late.states) if name != "u 1 before"]
+    at = late.states.index("u 1 before")
+    assert [late.states[i] for i in kept] == [*plain.states]
+    for one, other in zip(late.modes, plain.modes, strict=True):
+        A, B = np.array(one.A.floats()), np.array(other.A.floats())
+        omega, e = plain.states.index("omega [rad/s]"), plain.states.index("e [rad]")
+        drive = A[at, kept]
+        # What the last command did is what this one would have done.
+        through = np.outer(A[kept, at], drive)
+        np.testing.assert_allclose(A[np.ix_(kept, kept)] + through, B, rtol=1e-9, atol=1e-12)
+        assert A[kept, at][omega] > 0 > A[kept, at][e]
+        assert A[at, at] == 0
+
+
+@pytest.mark.parametrize("late", ["1 ms", "0.3 ms", "2.7 ms", "5 ms"])
+def test_a_constant_latency_has_the_roots_of_the_split_period(tmp_path, late):
+    """Each part of a period by its own exponential, in floating point and by hand."""
+    system = system_of(tmp_path, f"{{period: 2 ms, delay: 0, latency: {late}}}")
+    T, tau, Km, k = 0.002, 0.0351, 4.8417e-4, 768.17 * 0.24**2
+    L = float(late.split()[0]) / 1000
+    whole, part = divmod(L, T)
+    whole = round(whole)
+    A = np.array([[-1 / tau, 0.0], [1.0, 0.0]])
+
+    def over(time):
+        block = np.zeros((3, 3))
+        block[:2, :2], block[0, 2] = A * time, Km / tau * time
+        made = expm(block)
+        return made[:2, :2], made[:2, 2]
+
+    (F1, G1), (F2, G2) = over(part), over(T - part)
+    mode = next(mode for mode in system.modes if "insertion/soft/k-max" in mode.name)
+    numbers = {
+        name: float(value)
+        for text in [" ".join(system.assumptions)]
+        for name, value in re.findall(r"(Kp|Kd/T|\w of insertion) = ([0-9.]+[0-9])", text)
+    }
+    a, b, step = (numbers[f"{name} of insertion"] for name in "abT")
+    # State: reference, speed, angle, error before, velocity, commands before.
+    n, memory = 5 + whole + 1, 5
+    M = np.zeros((n, n))
+    Kp, D = numbers["Kp"], numbers["Kd/T"]
+    command = np.zeros(n)
+    command[[0, 2, 3]] = Kp + D, -(Kp + D), -D
+    older, newer = memory + whole, memory + whole - 1
+    into = np.zeros((2, n))
+    into[:, 1:3] = F2 @ F1
+    into += np.outer(F2 @ G1, np.eye(n)[older])
+    into += np.outer(G2, command if whole == 0 else np.eye(n)[newer])
+    M[1:3] = into
+    M[0, 0], M[0, 4] = 1, -step
+    M[3, 0], M[3, 2] = 1, -1
+    M[4, 4], M[4, 2] = a, b * k
+    M[memory] = command
+    for j in range(whole):
+        M[memory + 1 + j, memory + j] = 1
+    wanted = abs(np.linalg.eigvals(M)).max()
+    assert abs(np.linalg.eigvals(mode.A.floats())).max() == pytest.approx(wanted, abs=1e-9)

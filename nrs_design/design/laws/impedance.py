@@ -82,8 +82,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         for a sampled law.
     sampled : tuple of SampledBand
         The same for the law that is sampled, for every age of the force sample; empty where it is
-        not computed: without sampling, with two periods, a spring, a filter, or ranges of gains or
-        motor, and beside other axes.
+        not computed: without sampling, with two periods, a spring, a filter, late commands, or
+        ranges of gains or motor, and beside other axes.
     lever_arm : float or None
         Of everything that it touches, in m; None if there is none, or not the same for all.
     """
@@ -259,7 +259,8 @@ def _sampled_bands(
     if sampling is None or sampling.round > 1 or task.sensor.filter or _spring(given):
         return ()
     ranged = any(r.low != r.high for r in _gain_ranges(given, controller).values())
-    if ranged or not task.plant.actuator_ranges.fixed or task.spec.coupling is not None:
+    fixed = task.plant.actuator_ranges.fixed and task.spec.late_at is None
+    if ranged or not fixed or task.spec.coupling is not None:
         return ()
     law = controller.law.discretize(sampling.period.exact, sampling.admittance)
     assert law is not None, "an admittance has a program"

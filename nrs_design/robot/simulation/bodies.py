@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from nrs_design.errors import DesignError
 from nrs_design.models.plant import Plant
 from nrs_design.robot.simulation.mujoco_body import MujocoBody
 from nrs_design.robot.simulation.robot_body import Arm, RobotBody
@@ -27,7 +28,18 @@ def body_of(
         The robot of three axes.
     engine : {"sampled", "mujoco"}
         The sampled engine needs a robot; MuJoCo moves one axis, too.
+
+    Raises
+    ------
+    DesignError
+        If commands take effect later than at once: these bodies take them at their sample.
     """
+    if any(axis.late[1] for axis in axes):
+        raise DesignError(
+            "latency and dead time are simulated for the motor of one axis alone",
+            remedy="use --engine sampled without a robot, or leave latency and dead_time out",
+            at=("sampling", "latency"),
+        )
     if engine == MUJOCO:
         return MujocoBody(axes, plant, arm)
     assert arm is not None, "one axis of the sampled engine is a motor"

@@ -1,0 +1,78 @@
+"""A constant dead time of the drive: its border tends to the delay margin of the continuous loop.
+
+Soft tissue of the thesis (6.3.1), Mt = 0.01, nominal motor and stiffness. The margin is that of
+python-control for the loop cut where the dead time is: at the command of the motor, so that the PD
+loop around it is late as well. Cut at the force sensor it would be 51.2 ms and 10.7 ms: that is the
+border for a robot that closes its own motion loop and is late as a whole.
+"""
+
+from fractions import Fraction
+
+import control
+import numpy as np
+import pytest
+
+from nrs_design.controllers.laws import Admittance
+from nrs_design.controllers.step_law import StepFrame
+from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.switched.command_timing import CommandTiming
+from nrs_design.switched.held_motor import hold
+from nrs_design.switched.sampled_frame import Frame
+
+KM, TAU, KD = Fraction("4.8417e-4"), Fraction("0.0351"), Fraction(2060)
+KP, MT = KD * Fraction("56.9706"), Fraction("0.01")
+K = Fraction("747.1461") * Fraction("0.24") ** 2
+
+
+def delay_margin(Bt, *, at_motor):
+    """Return the delay margin in s, cut at the command of the motor or at the force."""
+    s = control.tf("s")
+    motor = float(KM) / (s * (float(TAU) * s + 1)) * (float(KP) + float(KD) * s)
+    felt = float(K) / (s * (float(MT) * s + float(Bt)))
+    loop = motor * (1 + felt) if at_motor else motor / (1 + motor) * felt
+    _, phase, _, _, crossing, _ = control.stability_margins(control.minreal(loop, verbose=False))
+    return np.radians(phase) / crossing
+
+
+def border(Bt, T):
+    """Return the dead time from which on the sampled loop has an eigenvalue outside, by bisection.
+
+    Everything but the eigenvalue is exact; the law is that of the period, not rounded.
+    """
+    a = Fraction(float(np.exp(-float(Bt * T / MT))))
+    law = Admittance.discrete(a, (1 - a) / Bt, T)
+    ranges = ActuatorRanges.point(Actuator(KM, TAU))
+
+    def is_stable(late):
+        timing = CommandTiming(T, late, late)
+        frame = Frame(timing, hold(ranges, timing), StepFrame(KP, KD / T), (law,), 0)
+        numbers = {symbol: interval.middle for symbol, interval in frame.motor.box.ranges.items()}
+        n = len(frame.states)
+        rows = frame.rows(law, 0, {**numbers, "k": K})[:n]
+        A = np.array([[float(v) for v in row[:n]] for row in rows])
+        return abs(np.linalg.eigvals(A)).max() < 1
+
+    low, high = Fraction(0), Fraction(1, 10)
+    while high - low > Fraction(1, 10**5):
+        middle = (low + high) / 2
+        low, high = (middle, high) if is_stable(middle) else (low, middle)
+    return float(low)
+
+
+def test_the_margins_of_the_loop_cut_at_the_force():
+    assert [delay_margin(Bt, at_motor=False) for Bt in (Fraction("2.15"), Fraction("1.04"))] == [
+        pytest.approx(0.0512, abs=5e-5),
+        pytest.approx(0.01066, abs=5e-6),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("Bt", "margin"), [(Fraction("2.15"), 0.01838), (Fraction("1.04"), 0.00769)]
+)
+def test_the_border_of_a_dead_time_tends_to_the_delay_margin(Bt, margin):
+    """It is short by about a period, which holding commands and forces takes, and a half."""
+    assert delay_margin(Bt, at_motor=True) == pytest.approx(margin, abs=5e-6)
+    missing = [margin - border(Bt, T) for T in (Fraction(1, 500), Fraction(1, 2000))]
+    for short, T in zip(missing, (0.002, 0.0005), strict=True):
+        assert 0.3 * T < short < 2.5 * T
+    assert missing[1] < 0.35 * missing[0]

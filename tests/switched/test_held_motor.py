@@ -1,0 +1,103 @@
+"""A motor under commands that take effect within a period: formulas, enclosures, known answers."""
+
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.interval import Interval
+from nrs_design.switched.command_timing import CommandTiming
+from nrs_design.switched.held_motor import Commands, MotorAtOnce, MotorInTime, hold
+
+F = Fraction
+T = F(1, 500)
+RANGES = ActuatorRanges(
+    Interval(F(1, 2), F(2, 5), F(3, 5)), Interval(F(7, 200), F(3, 100), F(1, 25)), "rpm"
+)
+
+
+def given_of(changes):
+    unit = [[F(int(i == j)) for j in range(2 + changes)] for i in range(2 + changes)]
+    return Commands(unit[0], unit[1], tuple(unit[2:]))
+
+
+def true_rest(span, time, tau):
+    """Return what is left of the way of one motor above the chord of a span, to 50 digits."""
+    with localcontext(prec=60):
+        lag = Decimal(tau.numerator) / tau.denominator
+        way = lag * (1 - (-Decimal(time.numerator) / time.denominator / lag).exp())
+        return F(way) - span.low - span.slope * (time - span.time.low)
+
+
+@given(st.fractions(0, 1), st.fractions(0, 1), st.fractions(0, 1), st.booleans())
+def test_every_motor_at_every_time_is_enclosed(at, when, start, known):
+    """And what encloses it is hardly wider than it must be."""
+    tau = Interval.point(F(7, 200)) if known else RANGES.time_constant
+    ranges = ActuatorRanges(RANGES.gain, tau, "rpm")
+    earliest = start * T / 2
+    motor = MotorInTime.of(ranges, CommandTiming(T, earliest, earliest + T / 3, T / 50))
+    for span in motor.spans:
+        times = span.time
+        time = times.low + when * (times.high - times.low)
+        rest = true_rest(span, time, tau.low + at * (tau.high - tau.low))
+        assert span.rest.low - F(1, 10**45) <= rest <= span.rest.high + F(1, 10**45)
+        # Of second order in the times, and of first in the ranges.
+        room = (times.high - times.low) ** 2 / tau.low
+        room += times.high**2 * (1 / tau.low - 1 / tau.high)
+        assert span.rest.high <= room + F(1, 10**12)
+
+
+def by_exponentials(Km, tau, pieces):
+    """Return what speed and way become: of the speed, and of each command for its time."""
+    A = np.array([[-1 / tau, 0.0], [1.0, 0.0]])
+    total, columns = np.eye(2), []
+    for length in pieces:
+        step = expm(np.block([[A, np.array([[Km / tau], [0.0]])], [np.zeros((1, 3))]]) * length)
+        columns = [step[:2, :2] @ c for c in columns] + [step[:2, 2]]
+        total = step[:2, :2] @ total
+    return total[:, 0], columns
+
+
+@pytest.mark.parametrize("tau", [0.03, 0.04])
+@pytest.mark.parametrize("lefts", [(), (0.0005,), (0.0015, 0.0003)])
+def test_the_motion_is_that_of_the_split_period(tau, lefts):
+    """Each piece by the exponential of its own time."""
+    Km, period = 0.5, float(T)
+    timing = CommandTiming(T, F(0), F(len(lefts)) * T * F(3, 4))
+    motor = MotorInTime.of(RANGES, timing)
+    spans = (motor.spans[0], *motor.spans[-len(lefts) :]) if lefts else motor.spans[:1]
+    motor = MotorInTime(motor.box, spans)
+    values = {"Km": F(Km), "g": F(1 / tau)}
+    for span, time in zip(spans, (period, *lefts), strict=True):
+        way = tau * (1 - np.exp(-time / tau))
+        chord = span.low + span.slope * (F(time) - span.time.low)
+        values |= dict(zip(span.symbols, (F(time), F(way) - chord), strict=True))
+    given = given_of(len(lefts))
+    speed, way = ([float(v) for v in f(given, values)] for f in (motor.speed, motor.way))
+    ends = [period, *lefts, 0.0]
+    free, columns = by_exponentials(Km, tau, [a - b for a, b in pairwise(ends)])
+    # A change lasts to the end of the period, the first command for all of it.
+    sums = np.cumsum(columns[::-1], axis=0)[::-1]
+    np.testing.assert_allclose(speed, [free[0], *(c[0] for c in sums)], rtol=1e-10, atol=1e-15)
+    np.testing.assert_allclose(way, [free[1], *(c[1] for c in sums)], rtol=1e-10, atol=1e-15)
+
+
+def test_whole_periods_are_those_of_a_command_at_once():
+    for periods in range(3):
+        motor = hold(RANGES, CommandTiming(T, periods * T, periods * T))
+        assert isinstance(motor, MotorAtOnce)
+        assert motor.box == MotorAtOnce.of(RANGES, T).box
+
+
+def test_a_motor_that_is_known_has_enclosures_that_are_one_number_in_doubles():
+    motor = hold(ActuatorRanges.point(Actuator(F(1, 2), F(7, 200))), CommandTiming(T, T / 3, T / 3))
+    assert [*motor.box.ranges] == ["Km", "g", "s", "s0"]
+    for symbol in ("s", "s0"):
+        interval = motor.box.ranges[symbol]
+        assert 0 < interval.high - interval.low < F(1, 10**18)

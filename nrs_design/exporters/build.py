@@ -33,7 +33,6 @@ from nrs_design.proof.evidence.fields import rate_text
 from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec, LoadedSpec
-from nrs_design.spec.build_plant import dead_time_of
 from nrs_design.spec.controllers import Offset
 
 
@@ -180,7 +179,7 @@ def _timing(spec: InteractionDesignSpec) -> str | None:
     sampling = spec.sampling
     if sampling is None or spec.late_at is None:
         return None
-    first, last = (exact_text(late + dead_time_of(spec)) for late in sampling.late)
+    first, last = map(exact_text, spec.late)
     late = f"{first} s" if first == last else f"{first} s to {last} s"
     said = f"commands take effect {late} after their sample"
     if sampling.jitter is None:

@@ -12,7 +12,6 @@ from nrs_design.simulation.sampled_axis import SampledAxis, Turns
 from nrs_design.simulation.scenario import Scenario
 from nrs_design.simulation.step_program import StepProgram
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.build_plant import dead_time_of
 
 
 def sampled_axis(
@@ -77,7 +76,6 @@ def sampled_axis(
     except DesignError as error:
         raise DesignError(error.message, remedy="use --engine exact", at=error.at) from None
     turns = Turns(int(period / sampling.step), int(outer / sampling.step))
-    dead = dead_time_of(spec)
-    shortest, longest = (float(late + dead) for late in sampling.late)
+    shortest, longest = map(float, spec.late)
     late = shortest, longest
     return SampledAxis(plant, design, scenario, program, sampling.step, sampling.delay, turns, late)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from fractions import Fraction
 
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment, touch_at_once
@@ -49,12 +48,6 @@ def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:
             yield touch_at_once(parts, losable=losable)
 
 
-def dead_time_of(spec: InteractionDesignSpec) -> Fraction:
-    """Return for how long a command does nothing, in s."""
-    written = spec.actuator.dead_time
-    return Fraction(0) if written is None else written.exact
-
-
 def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
     """Take from a spec what closing its loop needs beside plant and gains."""
     limits, disturbed, goals = spec.limits, spec.disturbances, spec.goals
@@ -67,7 +60,7 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         spec.idle_states,
         spec.offset,
         spec.sampling,
-        dead_time_of(spec),
+        spec.late,
         None if disturbed is None else disturbed.bounds(),
         None if angle is None else angle.not_below,
         limits.torque.exact,

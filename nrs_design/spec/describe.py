@@ -149,7 +149,7 @@ def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
         written = getattr(actuator, name)
         unit = _shown_unit(written.nominal)
         yield from _ranged(f"actuator.{name}", written, written, unit)
-    yield from describe_model(actuator.dead_time, "actuator.dead_time")
+    yield from _times("actuator.dead_time", actuator.dead_time)
     yield from describe_model(actuator.load_inertia, "actuator.load_inertia")
     if actuator.intervals is not None:
         for name in ("gain", "time_constant"):
@@ -158,16 +158,19 @@ def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
     yield from _identified("actuator", actuator, MOTOR_COVERS)
 
 
+def _times(key: str, times: tuple[Quantity, Quantity] | None) -> Iterator[Line]:
+    if times is not None:
+        first, last = (end.text for end in times)
+        yield Line(key, first if first == last else f"[{first}, {last}]", "", "")
+
+
 def _sampling(sampling: SamplingSpec) -> Iterator[Line]:
     yield from describe_model(sampling.period, "sampling.period")
     yield from describe_model(sampling.outer_period, "sampling.outer_period")
     least, most = sampling.delay
     delay = str(least) if least == most else f"[{least}, {most}]"
     yield Line("sampling.delay", delay, "", "samples")
-    if sampling.latency is not None:
-        first, last = (end.text for end in sampling.latency)
-        latency = first if first == last else f"[{first}, {last}]"
-        yield Line("sampling.latency", latency, "", "")
+    yield from _times("sampling.latency", sampling.latency)
     yield from describe_model(sampling.jitter, "sampling.jitter")
     yield Line("sampling.admittance", sampling.admittance, "", "")
     yield from _provenance("sampling", sampling)

@@ -50,12 +50,10 @@ class _Of:
 
 def _too_late(spec: Spec) -> tuple[str, int] | None:
     """Return the longest time to a command, where a dead time makes it too long, and the limit."""
-    dead, sampling = spec.actuator.dead_time, spec.sampling
-    if dead is None or sampling is None:
+    if spec.actuator.dead_time is None or spec.sampling is None:
         return None
-    late = sampling.late[1] + dead.exact
-    too_long = late > LONGEST_DELAY * sampling.period.exact
-    return (rounded_up(late), LONGEST_DELAY) if too_long else None
+    too_long = spec.late[1] > LONGEST_DELAY * spec.sampling.period.exact
+    return (rounded_up(spec.late[1]), LONGEST_DELAY) if too_long else None
 
 
 def _controllers(spec: Spec) -> Iterator[tuple[Location, _Of]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, ValidationInfo, field_validator
@@ -25,6 +26,7 @@ from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
 from nrs_design.spec.provenance import IdentifiedSpec
+from nrs_design.spec.quantity_fields import ends_of
 from nrs_design.spec.safety import SafetySpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
@@ -182,6 +184,13 @@ class AbstractInteractionSpec(SpecModel):
         keys = (("actuator", "dead_time"), ("sampling", "latency"), ("sampling", "jitter"))
         said = (at for at in keys if getattr(getattr(self, at[0]), at[1], None) is not None)
         return next(said, None)
+
+    @property
+    def late(self) -> tuple[Fraction, Fraction]:
+        """Shortest and longest time from a sample to where its command takes effect, in s."""
+        parts = (self.actuator.dead_time, None if self.sampling is None else self.sampling.latency)
+        shortest, longest = zip(*map(ends_of, parts), strict=True)
+        return sum(shortest, Fraction(0)), sum(longest, Fraction(0))
 
     @property
     def takes_motor_ranges(self) -> bool:

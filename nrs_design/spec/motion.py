@@ -26,6 +26,7 @@ from nrs_design.spec.quantity_fields import (
     RangedActuatorGain,
     RangedDuration,
     RotorInertia,
+    TimeRange,
     Torque,
     Zero,
 )
@@ -105,9 +106,9 @@ class ActuatorSpec(IdentifiedRangesSpec):
         "theta_m/delta = Km/(s (tau s + 1))"
     )
     time_constant: RangedDuration = Field(description="tau, mechanical time constant in s")
-    dead_time: Duration | None = optional(
-        "time in s for which a command does nothing before the motor follows it; it counts in "
-        "with the latency of `sampling`"
+    dead_time: TimeRange | None = optional(
+        "time in s for which a command does nothing before the motor follows it, one number or "
+        "[shortest, longest]; the proof adds it to the latency of `sampling`"
     )
     load_inertia: RotorInertia | None = optional(
         "inertia at the joint in kg*m^2 against which the torque of an environment "

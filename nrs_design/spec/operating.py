@@ -32,7 +32,7 @@ class OperatingConditions:
     idle: IdleStatesSpec | None  # What idle states do
     offset: Offset  # Where the offset of the force controllers is taken from
     sampling: SamplingSpec | None  # The processor; None in continuous time
-    dead_time: Fraction  # Of the motor in s
+    late: tuple[Fraction, Fraction]  # Shortest and longest time from a sample to its command, in s
     disturbances: Bounds | None  # None where nothing is said to disturb
     largest_angle: Fraction | None  # Of the joint in rad, rounded up
     torque: Fraction  # Limit about the pivot in N m

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
@@ -18,6 +19,7 @@ from nrs_design.spec.quantity import (
     Quantity,
     QuantityKind,
     checked_kind,
+    is_less,
     parse_quantity,
 )
 from nrs_design.spec.range_checks import BOUND_CHECKS, RANGE_CHECKS
@@ -230,6 +232,33 @@ def _pair_schema(kind: QuantityKind, keys: dict[str, str], required: list[str]) 
     return {"anyOf": [single, mapping]}
 
 
+def _read_times(value: object) -> tuple[Quantity, Quantity]:
+    """Read one time, or the shortest and the longest."""
+    ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
+    if len(ends) != 2:
+        raise fault("expected a time, or two of them", "write `0.4 ms`, or `[0.3 ms, 0.8 ms]`")
+    low, high = (read_quantity(end, kinds.DURATION, positive=False) for end in ends)
+    if is_less(high, low):
+        raise fault("the range of the times ends below its start", "write [shortest, longest]")
+    return low, high
+
+
+def ends_of(times: tuple[Quantity, Quantity] | None) -> tuple[Fraction, Fraction]:
+    """Return the shortest and the longest time in s; none is no time."""
+    return (times[0].exact, times[1].exact) if times else (Fraction(0), Fraction(0))
+
+
+_TIMES = {
+    "type": "array",
+    "items": quantity_schema(kinds.DURATION),
+    "minItems": 2,
+    "maxItems": 2,
+}
+# One time for both ends, or a range.
+TimeRange = Annotated[
+    tuple[Quantity, Quantity],
+    ReadBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES]}),
+]
 ActuatorGain = Annotated[Quantity, _one(kinds.ACTUATOR_GAIN)]
 RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN)]
 Duration = Annotated[Quantity, _one(kinds.DURATION)]

@@ -9,21 +9,19 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from nrs_design.proof.text import exact_text
-from nrs_design.spec import kinds
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import read_exact
 from nrs_design.spec.model import ReadBy, SpecModel, optional
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.quantity import Quantity, is_less
 from nrs_design.spec.quantity_fields import (
     Angle,
     AngularVelocity,
     Command,
     Duration,
+    TimeRange,
     Torque,
-    quantity_schema,
-    read_quantity,
+    ends_of,
 )
 from nrs_design.spec.units import command_unit
 
@@ -71,27 +69,6 @@ Delay = Annotated[
 ]
 
 
-def _read_latency(value: object) -> tuple[Quantity, Quantity]:
-    """Read one time, or the shortest and the longest."""
-    ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
-    if len(ends) != 2:
-        raise fault("expected a time, or two of them", "write `0.4 ms`, or `[0.3 ms, 0.8 ms]`")
-    low, high = (read_quantity(end, kinds.DURATION, positive=False) for end in ends)
-    if is_less(high, low):
-        raise fault("the range of the latency ends below its start", "write [shortest, longest]")
-    return low, high
-
-
-_TIME_SCHEMA = quantity_schema(kinds.DURATION)
-Latency = Annotated[
-    tuple[Quantity, Quantity],
-    ReadBy(
-        _read_latency,
-        {"anyOf": [_TIME_SCHEMA, {"type": "array", "items": _TIME_SCHEMA, "minItems": 2}]},
-    ),
-]
-
-
 class SamplingSpec(IdentifiedSpec):
     """The law as a processor runs it: once a period, with float32 coefficients.
 
@@ -104,7 +81,7 @@ class SamplingSpec(IdentifiedSpec):
         description="age of the force sample that the law uses, in samples: one number, or "
         "[smallest, largest] for a delay that may differ at every sample"
     )
-    latency: Latency | None = optional(
+    latency: TimeRange | None = optional(
         "time in s from a sample to where its command takes effect: one number, or [shortest, "
         "longest] for one that may differ at every sample; default: at once"
     )
@@ -145,8 +122,7 @@ class SamplingSpec(IdentifiedSpec):
     @property
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to its command, in s."""
-        ends = (self.latency[0].exact, self.latency[1].exact) if self.latency else None
-        return ends or (Fraction(0), Fraction(0))
+        return ends_of(self.latency)
 
     @property
     def unsteady(self) -> Fraction:

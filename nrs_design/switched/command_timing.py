@@ -74,15 +74,14 @@ class CommandTiming:
         return Interval(high, low, high)
 
 
-def timing_of(sampling: SamplingSpec, dead_time: Fraction) -> CommandTiming:
+def timing_of(sampling: SamplingSpec, late: tuple[Fraction, Fraction]) -> CommandTiming:
     """Return when commands of a processor take effect.
 
     Parameters
     ----------
     sampling : SamplingSpec
         The processor.
-    dead_time : Fraction
-        For which a motor does nothing, in s.
+    late : tuple of Fraction
+        Shortest and longest time from a sample to its command, in s.
     """
-    earliest, latest = (late + dead_time for late in sampling.late)
-    return CommandTiming(sampling.step, earliest, latest, sampling.unsteady)
+    return CommandTiming(sampling.step, *late, sampling.unsteady)

@@ -37,7 +37,6 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.build_plant import dead_time_of
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.coupled import AxesCoupling
@@ -369,8 +368,7 @@ def axis_of(
         return None
     if spec.coupling is not None and plant.load_inertia is not None:
         ranges = slowed_motor(ranges, AxesCoupling.of(spec.coupling, plant.load_inertia))
-    lates = tuple(late + dead_time_of(spec) for late in sampling.late)
-    places = tuple(_places(ranges, sampling.delay, lates))
+    places = tuple(_places(ranges, sampling.delay, spec.late))
     return ProcessorAxis(places, motion, sampling, low_pass)
 
 

@@ -93,7 +93,7 @@ def close_sampled_loop(
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
     ranges = plant.actuator_ranges
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
-    timing = timing_of(sampling, conditions.dead_time)
+    timing = timing_of(sampling, conditions.late)
     each = [item.law for item in laws.values()]
     frame = _frame(conditions.idle, sampling, design, each, slowed, timing)
     loop = _Loop(frame, sampling.delay)

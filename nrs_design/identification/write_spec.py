@@ -12,7 +12,6 @@ from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
 from nrs_design.identification.delay import DelayIdentification
-from nrs_design.identification.finding import Finding
 from nrs_design.identification.spec_document import SpecDocument
 from nrs_design.identification.statistics import Estimate, few_digits, span
 from nrs_design.identification.tissue import TissueIdentification
@@ -90,7 +89,7 @@ def merge_tissue(
     else:
         ends = span(found.tangent.low, found.tangent.high, "rad" if found.rotational else "m", 6)
         document.put(node, "linearized_about", f"deflections of {ends}")
-    _put_origin(document, node, found)
+    _put_origin(document, node, found.sources, found.caveats)
     document.put(node, "range_id", _rewritten(document, node).environments[name].values_id())
     return document.text()
 
@@ -215,10 +214,12 @@ def _put_power_law(
     return (*keys, *_POWER_KEYS)
 
 
-def _put_origin(document: SpecDocument, node: Any, found: Finding) -> None:
+def _put_origin(
+    document: SpecDocument, node: Any, sources: Sequence[Source], caveats: Sequence[str]
+) -> None:
     """Note files and doubts; a reason that was given for other doubts does not hold for them."""
-    document.put(node, "provenance", [_provenance(source) for source in found.sources])
-    texts = [_one_line(caveat) for caveat in found.caveats]
+    document.put(node, "provenance", [_provenance(source) for source in sources])
+    texts = [_one_line(caveat) for caveat in caveats]
     if len(texts) > MAX_DOUBTS:
         more = len(texts) - MAX_DOUBTS + 1
         texts = [*texts[: MAX_DOUBTS - 1], f"and {more} more"]
@@ -275,7 +276,12 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     else:
         document.drop(node, "range_covers")
         document.put(node, "intervals", intervals)
-    _put_origin(document, node, found)
+    document.drop(node, "dead_time")
+    caveats = found.caveats
+    if found.late is not None and spec.takes_dead_time:
+        document.put(node, "dead_time", _outwards(found.late, "s", _plain)["range"])
+        caveats = found.doubts
+    _put_origin(document, node, found.sources, caveats)
     rewritten = _rewritten(document, node)
     if covered:
         document.put(node, "range_id", rewritten.actuator.values_id())
@@ -344,7 +350,7 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     document = SpecDocument(loaded)
     node = document.root["sampling"]
     document.put(node, "delay", low if low == high else [low, high])
-    _put_origin(document, node, found)
+    _put_origin(document, node, found.sources, found.caveats)
     return document.text()
 
 
@@ -391,7 +397,7 @@ def merge_tool(loaded: LoadedSpec, found: ToolIdentification) -> str:
     for axis, estimate in zip("xyz", found.center, strict=True):
         _put_range(document, center, axis, _outwards(estimate, "m", _exponential))
     document.put(tool, "gravity", f"{found.gravity!r} m/s^2")
-    _put_origin(document, tool, found)
+    _put_origin(document, tool, found.sources, found.caveats)
     return document.text()
 
 

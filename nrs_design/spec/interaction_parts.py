@@ -186,6 +186,12 @@ class AbstractInteractionSpec(SpecModel):
         return next(said, None)
 
     @property
+    def takes_dead_time(self) -> bool:
+        """Whether a proof can be about commands that take effect later than at once."""
+        alone = self.coupling is None and self.safety is None
+        return alone and self.sampling is not None and self.sampling.round == 1
+
+    @property
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to where its command takes effect, in s."""
         parts = (self.actuator.dead_time, None if self.sampling is None else self.sampling.latency)

@@ -217,15 +217,23 @@ def test_intervals_where_no_proof_covers_ranges(tmp_path, motor, old, new):
     assert ("intervals" in again, "range_covers: confidence" in again) == (False, True)
 
 
-def test_a_dead_time_is_a_doubt_and_no_age_of_the_force(late):
-    """It acts in the motion loop, which no proof here delays."""
+def test_a_dead_time_is_no_age_of_the_force(late):
+    """It acts in the motion loop; where the law runs at samples, it has a place of its own."""
     loaded = read_spec(SAMPLED)
     written = parse_spec(merge_actuator(loaded, late))
-    assert late.doubts == ()
+    assert late.doubts == written.actuator.doubts == ()
+    first, last = (end.exact for end in written.actuator.dead_time)
+    assert float(first) <= late.late.low < late.late.high <= float(last)
+    assert written.sampling == loaded.spec.sampling
+
+
+def test_a_dead_time_is_a_doubt_where_no_proof_delays_the_motion_loop(late, tmp_path):
+    text = SOFT_TISSUE.read_text()
+    written = parse_spec(merge_actuator(merged(tmp_path, text), late))
+    assert written.actuator.dead_time is None
     (doubt,) = written.actuator.doubts
     assert "dead time of 0.007" in doubt
     assert "counted from the row that first holds a command" in doubt
-    assert written.sampling == loaded.spec.sampling
 
 
 @pytest.mark.slow

@@ -62,12 +62,17 @@ class ActuatorIdentification:
         return tuple(f"{r.name}: {r.pauses}" for r in self.records if r.pauses)
 
     @property
-    def caveats(self) -> tuple[str, ...]:
-        """Doubts, and a dead time, which a proof leaves out."""
+    def late(self) -> Estimate | None:
+        """The dead time in s, where it is clearly above zero."""
         late = self.chosen.dead_time
-        if late is None or late.low == 0.0:
+        return None if late is None or late.low == 0.0 else late
+
+    @property
+    def caveats(self) -> tuple[str, ...]:
+        """Doubts, and a dead time, for a spec that has no place for it."""
+        if self.late is None:
             return self.doubts
-        wide = late.outward(3)
+        wide = self.late.outward(3)
         return (
             *self.doubts,
             f"the motor has a dead time of {span(wide.low, wide.high, 's')} ({FROM_THE_ROW}), "

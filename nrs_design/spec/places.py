@@ -30,7 +30,7 @@ _OTHER_KEYS = {
     key: frozenset(words.split())
     for key, words in {
         "period": "sample_time sampling_time ts dt rate frequency",
-        "delay": "lag latency age dead_time",
+        "delay": "lag age",
         "time_constant": "tau t",
         "stiffness": "k spring elasticity",
         "damping": "d viscosity",

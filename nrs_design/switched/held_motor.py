@@ -112,7 +112,7 @@ class MotorAtOnce(HeldMotor):
 class MotorInTime(HeldMotor):
     """Under commands that take effect within the period, or for periods of several lengths."""
 
-    spans: tuple[Span, ...]  # The period, and what is left of it from each change on
+    spans: tuple[RestOfPeriod, ...]  # The period, and what is left of it from each change on
 
     @classmethod
     def of(cls, ranges: ActuatorRanges, timing: CommandTiming) -> MotorInTime:
@@ -127,8 +127,8 @@ class MotorInTime(HeldMotor):
         """
         tau = ranges.time_constant
         g = Interval(1 / tau.nominal, 1 / tau.high, 1 / tau.low)
-        later = (Span.of(timing.left(age), g, str(age)) for age in timing.within)
-        spans = (Span.of(timing.lengths, g), *later)
+        later = (RestOfPeriod.of(timing.left(age), g, str(age)) for age in timing.within)
+        spans = (RestOfPeriod.of(timing.lengths, g), *later)
         ranged = {name: ends for span in spans for name, ends in span.ranges.items()}
         return cls(Box({"Km": ranges.gain, "g": g, **ranged}), spans)
 
@@ -165,7 +165,7 @@ class MotorInTime(HeldMotor):
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class RestOfPeriod:
     """A time h until the end of a period, and ``s(h)`` for all motors.
 
     Where the time has a range, ``s(h) = low + slope (h - shortest) + r`` with r in a range: s is
@@ -180,7 +180,7 @@ class Span:
     slope: Fraction = ZERO
 
     @classmethod
-    def of(cls, time: Interval, rate: Interval, age: str = "") -> Span:
+    def of(cls, time: Interval, rate: Interval, age: str = "") -> RestOfPeriod:
         """Enclose the ways of motors.
 
         Parameters

@@ -66,6 +66,7 @@ CHANGES = {
     f.SAMPLED: {"sampling": SAMPLING},
     f.CONTINUOUS: {},
     f.TWO_PERIODS: {"sampling": SAMPLING | {"outer_period": "4 ms"}},
+    f.TIMED: {"actuator": {"dead_time": "1 ms"}},
     f.LOSABLE: {"contact": "losable"},
     f.NOT_KEPT: {"contact": "losable"},
     f.FORCE_COORDINATES: {"coordinates": "force"},

@@ -113,7 +113,7 @@ def test_the_largest_angle_may_stand_alone():
 @pytest.mark.parametrize(
     ("word", "meant"),
     [("perod", "period"), ("sample_time", "period"), ("Ts", "period"), ("rate", "period"),
-     ("delays", "delay"), ("lag", "delay"), ("latency", "delay"), ("age", "delay")],
+     ("delays", "delay"), ("lag", "delay"), ("age", "delay")],
 )  # fmt: skip
 def test_a_wrong_key_is_told_by_the_one_that_is_meant(word, meant):
     """Once, and not also as a key that is missing; what `identify` writes comes last."""

@@ -1,0 +1,358 @@
+"""Why a verdict is inconclusive: which lines of the spec keep it from being proved.
+
+Each line alone is changed to what asks for the least, the spec is taken all the way again, and
+where it is proved then, so is as much of what the line asks for as can be. What counts as proved
+has passed the exact check, of exactly the changed spec.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from nrs_design.certificates.certificate import (
+    Gains,
+    Verdict,
+    deciding,
+    granted,
+    verdict_of,
+)
+from nrs_design.errors import AssemblyError, DesignError, SpecError
+from nrs_design.pipeline.certification import Result, assemble_spec, gains_text, search_limits
+from nrs_design.pipeline.design import run_design
+from nrs_design.progress import Progress, silent
+from nrs_design.proof.evidence import AbstractEvidence
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
+from nrs_design.search.certification import Limits
+from nrs_design.search.method import Method
+from nrs_design.spec import LoadedSpec
+from nrs_design.spec.document import Position
+from nrs_design.spec.edits import changed, written
+from nrs_design.spec.load import respecified
+from nrs_design.spec.places import dotted
+from nrs_design.spec.relaxations import (
+    WITHOUT,
+    Edit,
+    Form,
+    Relaxation,
+    relaxations,
+)
+
+# Of the budget of the search, what may be spent here; no step that is begun goes far beyond it.
+SHARE = 0.45
+# Of that, what is for finding the lines; the rest is for how far they go.
+FINDING = 0.6
+# A look at single modes, in units.
+LOOK = 0.02
+MOST_LINES = 24
+# Lines that are printed, beside the one above and the one below them.
+SHOWN = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Blocking:
+    """One line of a spec that asks for less, and what is proved then."""
+
+    place: Position
+    line: str  # The keys that lead there, with dots
+    asked: str  # What it asks for
+    proved: str  # What of that is proved, in the same words; empty if it is left out
+    word: str  # Before it: up to, down to, within, with, without
+    write: str  # What to write there instead; empty if it is left out
+    other_loop: bool  # Whether that changes what the robot does, or what is taken for granted
+    left_out: tuple[str, ...] = ()  # Keys about the values as they were, which go as well
+
+
+@dataclass(frozen=True, slots=True)
+class Proved:
+    """A spec that asks for less, and is proved."""
+
+    lines: tuple[Blocking, ...]  # What it says otherwise: one line, or several together
+    claim: str  # What is proved
+    needs: tuple[str, ...]  # What that takes for granted, and the spec as it stands does not
+    sha256: str  # Of that spec
+    new_gains: bool  # Whether its gains are designed anew, and are others
+
+
+@dataclass(frozen=True, slots=True)
+class Blocked:
+    """What keeps a spec from being proved."""
+
+    proved: tuple[Proved, ...]  # What is proved instead, the least given up first
+    tried: int  # How many lines were looked at
+    lines: int  # How many there are
+    unbounded: bool  # Whether something disturbs, whose effect was left out of all of it
+    work: float  # Spent on it, in units
+    budget: float  # What was there
+
+
+@dataclass(frozen=True, slots=True)
+class _Decided:
+    """A changed spec for which there is a proof."""
+
+    loaded: LoadedSpec
+    system: SwitchedSystem
+    statements: tuple[AbstractEvidence, ...]
+    gains: Gains
+
+
+def find_blocked(
+    result: Result,
+    limits: Limits | None = None,
+    progress: Progress = silent,
+    method: Method = Method.AUTO,
+) -> Blocked | None:
+    """Find which lines of a spec keep it from being proved; None unless it is inconclusive.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    limits : Limits, optional
+        How far the search went; less than half of its budget is spent here. The decay rate is not
+        optimized, and no bound under disturbances is looked for.
+    progress : callable
+        Told each change before it is tried.
+    method : Method
+        By which the search went.
+
+    Raises
+    ------
+    ClockError
+        If the clock stopped a search.
+    """
+    if result.certification.verdict is not Verdict.INCONCLUSIVE:
+        return None
+    return _Search(result, limits or search_limits(result.loaded.spec), progress, method).run()
+
+
+class _Search:
+    """Tries changes of a spec one after the other, within a budget of work."""
+
+    def __init__(
+        self, result: Result, limits: Limits, progress: Progress, method: Method
+    ) -> None:
+        self._result, self._progress, self._method = result, progress, method
+        self._budget = SHARE * limits.budget
+        self._limits = replace(limits, optimize_rate=False)
+        self._spent = 0.0
+        self._found: dict[str, _Decided | None] = {}
+        self._gains = gains_text(result.designed)
+
+    def run(self) -> Blocked:
+        found = tuple(
+            relaxations(self._result.loaded, self._gains, self._result.certification.rate_limit)
+        )
+        lines = found[:MOST_LINES]
+        proved = self._single(lines)
+        if not proved:
+            proved = self._together(lines)
+        unbounded = bool(self._result.certification.system.channels)
+        return Blocked(proved, len(lines), len(found), unbounded, self._spent, self._budget)
+
+    def _single(self, lines: Sequence[Relaxation]) -> tuple[Proved, ...]:
+        """Return what is proved when one line asks for less."""
+        finding = FINDING * self._budget
+        blocking = []
+        for left, line in zip(range(len(lines), 0, -1), lines, strict=True):
+            if self._decide(line.edits(line.least, 0), (finding - self._spent) / left):
+                blocking.append(line)
+        found = []
+        for left, line in zip(range(len(blocking), 0, -1), blocking, strict=True):
+            form, step = self._furthest(line, (self._budget - self._spent) / left)
+            share = step / form.size if form.size else 0.0
+            # What changes the loop, or leaves something out, comes last.
+            rank = (line.other_loop, form.word == WITHOUT, -share)
+            found.append((rank, self._proved(((line, form, step),))))
+        return tuple(item for _, item in sorted(found, key=lambda pair: pair[0]))
+
+    def _furthest(self, line: Relaxation, budget: float) -> tuple[Form, int]:
+        """Return how much of what a line asks for is proved, by halving."""
+        until = self._spent + budget
+        form = line.least
+        steps = len(line.others) + max(form.size - 1, 0).bit_length()
+        for other in line.others:
+            if self._decide(line.edits(other, 0), (until - self._spent) / steps):
+                form = other
+                break
+            steps -= 1
+        low, high = 0, form.size
+        while high - low > 1:
+            middle = (low + high) // 2
+            left = (high - low - 1).bit_length()
+            if self._decide(line.edits(form, middle), (until - self._spent) / left):
+                low = middle
+            else:
+                high = middle
+        return form, low
+
+    def _together(self, lines: Sequence[Relaxation]) -> tuple[Proved, ...]:
+        """Return what is proved when several lines ask for less, and as few of them as is found.
+
+        All are changed at once; then one after the other is put back, the most drastic first, as
+        long as the rest is proved.
+        """
+        kept: list[Relaxation] = []
+        for line in lines:
+            if line.in_all and self._is_valid((*kept, line)):
+                kept.append(line)
+        if not self._decide(_least(kept), (self._budget - self._spent) / 2):
+            return ()
+        for left, line in zip(range(len(kept), 0, -1), reversed(tuple(kept)), strict=True):
+            fewer = [other for other in kept if other is not line]
+            if self._decide(_least(fewer), (self._budget - self._spent) / left):
+                kept = fewer
+        return (self._proved(tuple((line, line.least, 0) for line in kept)),)
+
+    def _is_valid(self, lines: Sequence[Relaxation]) -> bool:
+        try:
+            _edited(self._result.loaded, _least(lines))
+        except SpecError:
+            return False
+        return True
+
+    def _decide(self, edits: Sequence[Edit], budget: float) -> _Decided | None:
+        """Take a changed spec all the way; None without a proof, or where it makes no system."""
+        if budget <= 0:
+            return None
+        try:
+            loaded = _edited(self._result.loaded, edits)
+            if loaded.sha256 not in self._found:
+                self._progress(_told(edits))
+                self._found[loaded.sha256] = self._certified(loaded, budget)
+            return self._found[loaded.sha256]
+        except (SpecError, DesignError, AssemblyError):
+            # What is no valid spec, or has no design, shows nothing.
+            return None
+
+    def _certified(self, loaded: LoadedSpec, budget: float) -> _Decided | None:
+        from nrs_design.search.certify import certify, refuted_at_once
+        from nrs_design.search.fast_check import find_fault
+
+        designed = run_design(loaded)
+        system = assemble_spec(loaded, designed, self._result.coordinates)
+        bare = _bare(system)
+        if _same_search(bare, _bare(self._result.certification.system)):
+            return None
+        look = min(LOOK, budget / 4)
+        self._spent += look
+        if refuted_at_once(bare, replace(self._limits, budget=look)) is not None:
+            return None
+        limits = replace(self._limits, budget=budget - look)
+        decided = certify(bare, self._method, limits)
+        self._spent += sum(attempt.work for attempt in decided.attempts)
+        # What is left out for the search is no part of stability: the proof is one of the whole.
+        statements = decided.statements
+        if decided.verdict is not Verdict.PROVED or any(find_fault(s, system) for s in statements):
+            return None
+        if verdict_of(system, statements) is not Verdict.PROVED:
+            return None
+        return _Decided(loaded, system, statements, gains_text(designed))
+
+    def _proved(self, lines: Sequence[tuple[Relaxation, Form, int]]) -> Proved:
+        edits = [edit for line, form, step in lines for edit in line.edits(form, step)]
+        decided = self._found[_edited(self._result.loaded, edits).sha256]
+        assert decided is not None
+        evidence = deciding(decided.system, decided.statements)
+        assert evidence is not None
+        known = set(self._result.certification.granted)
+        needs = granted(decided.system, decided.statements)
+        return Proved(
+            tuple(self._blocking(*item) for item in lines),
+            evidence.claim(decided.system),
+            tuple(text for text in needs if text not in known),
+            decided.loaded.sha256,
+            any(self._gains.get(name) != gains for name, gains in decided.gains.items()),
+        )
+
+    def _blocking(self, line: Relaxation, form: Form, step: int) -> Blocking:
+        says = form.says(step)
+        key = line.at[-1]
+        return Blocking(
+            self._result.loaded.place(*line.at),
+            dotted(line.at),
+            form.asked,
+            form.reach(step),
+            form.word,
+            "" if says is None else f"{key}: {written(says)}",
+            line.other_loop,
+            tuple(dotted(at) for at in line.beside),
+        )
+
+
+def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
+    root = loaded.root
+    for at, said in edits:
+        root = changed(root, at, said)
+    return respecified(loaded, root)
+
+
+def _least(lines: Sequence[Relaxation]) -> list[Edit]:
+    return [edit for line in lines for edit in line.edits(line.least, 0)]
+
+
+def _told(edits: Sequence[Edit]) -> str:
+    said = (
+        f"without {dotted(at)}" if value is None else f"{dotted(at)}: {written(value)}"
+        for at, value in edits
+    )
+    return ", ".join(said)
+
+
+def _bare(system: SwitchedSystem) -> SwitchedSystem:
+    """Leave out what a proof of stability is not about: disturbances and limits."""
+    return replace(system, channels=(), outputs=(), saturation=None, safety=None)
+
+
+def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
+    """Tell whether two systems differ in words only."""
+    return replace(one, name="", assumptions=()) == replace(other, name="", assumptions=())
+
+
+def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
+    """Say what keeps a spec from being proved, in at most five lines.
+
+    Parameters
+    ----------
+    blocked : Blocked
+        As `find_blocked` finds it.
+    path : Path
+        The spec, as it was named.
+    """
+    some = counted(blocked.tried, "line")
+    some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
+    if not blocked.proved:
+        spent = f"{blocked.work:.2g} of work"
+        return (f"no cause found: changes of {some} of the spec were tried, and none helps ({spent})",)
+    alone = len(blocked.proved[0].lines) == 1
+    head = "each of these lines blocks the proof: changed alone, the rest is proved"
+    if not alone:
+        head = f"no line alone, of {some}, blocks the proof; changed together, these do not"
+    head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
+    lines = [_said(item, path) for item in blocked.proved]
+    if not alone:
+        lines = [_place(line, path) for line in blocked.proved[0].lines]
+    more = len(lines) - SHOWN
+    if more > 1:
+        lines = [*lines[:SHOWN], f"and {more} more (--json)"]
+    return (head, *lines)
+
+
+def _said(item: Proved, path: Path) -> str:
+    (line,) = item.lines
+    said = _place(line, path)
+    said += "; gains are designed anew then, and differ" if item.new_gains else ""
+    if line.other_loop and item.needs:
+        said += f"; takes {counted(len(item.needs), 'thing')} more for granted (--json)"
+    return said
+
+
+def _place(line: Blocking, path: Path) -> str:
+    at = f"{path}:{line.place.line}: {line.line}"
+    if line.word == WITHOUT:
+        return f"{at}: proved without it"
+    said = f"{at}: proved {line.word} {line.proved}; the spec asks {line.asked}"
+    write = "".join((f"write `{line.write}`", *(f", without {name}" for name in line.left_out)))
+    return f"{said} ({write})" if line.write else said

@@ -131,9 +131,7 @@ def find_blocked(
 class _Search:
     """Tries changes of a spec one after the other, within a budget of work."""
 
-    def __init__(
-        self, result: Result, limits: Limits, progress: Progress, method: Method
-    ) -> None:
+    def __init__(self, result: Result, limits: Limits, progress: Progress, method: Method) -> None:
         self._result, self._progress, self._method = result, progress, method
         self._budget = SHARE * limits.budget
         self._limits = replace(limits, optimize_rate=False)
@@ -325,7 +323,9 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
     some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
     if not blocked.proved:
         spent = f"{blocked.work:.2g} of work"
-        return (f"no cause found: changes of {some} of the spec were tried, and none helps ({spent})",)
+        return (
+            f"no cause found: changes of {some} of the spec were tried, and none helps ({spent})",
+        )
     alone = len(blocked.proved[0].lines) == 1
     head = "each of these lines blocks the proof: changed alone, the rest is proved"
     if not alone:
@@ -350,9 +350,13 @@ def _said(item: Proved, path: Path) -> str:
 
 
 def _place(line: Blocking, path: Path) -> str:
-    at = f"{path}:{line.place.line}: {line.line}"
+    return f"{path}:{line.place.line}: {line_text(line)}"
+
+
+def line_text(line: Blocking) -> str:
+    """Say how much of what a line asks for is proved, and what to write."""
     if line.word == WITHOUT:
-        return f"{at}: proved without it"
-    said = f"{at}: proved {line.word} {line.proved}; the spec asks {line.asked}"
+        return f"{line.line}: proved without it"
+    said = f"{line.line}: proved {line.word} {line.proved}; the spec asks {line.asked}"
     write = "".join((f"write `{line.write}`", *(f", without {name}" for name in line.left_out)))
-    return f"{said} ({write})" if line.write else said
+    return f"{said} ({write})"

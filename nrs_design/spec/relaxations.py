@@ -326,4 +326,3 @@ def _get(said: Data, at: Keys) -> Data | None:
         else:
             return None
     return said
-

@@ -11,33 +11,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from nrs_design.certificates.certificate import (
-    Gains,
-    Verdict,
-    deciding,
-    granted,
-    verdict_of,
-)
+from nrs_design.certificates.certificate import Gains, Verdict
 from nrs_design.errors import AssemblyError, DesignError, SpecError
 from nrs_design.pipeline.certification import Result, assemble_spec, gains_text, search_limits
 from nrs_design.pipeline.design import run_design
 from nrs_design.progress import Progress, silent
-from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
-from nrs_design.search.certification import Limits
+from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.document import Position
-from nrs_design.spec.edits import changed, written
+from nrs_design.spec.document import Position, to_data
+from nrs_design.spec.edits import Keys, changed, node_at, in_one_line
 from nrs_design.spec.load import respecified
 from nrs_design.spec.places import dotted
-from nrs_design.spec.relaxations import (
+from nrs_design.spec.concessions import (
     WITHOUT,
     Edit,
-    Form,
-    Relaxation,
-    relaxations,
+    Way,
+    Concession,
+    concessions,
 )
 
 # Of the budget of the search, what may be spent here; no step that is begun goes far beyond it.
@@ -93,8 +86,7 @@ class _Decided:
     """A changed spec for which there is a proof."""
 
     loaded: LoadedSpec
-    system: SwitchedSystem
-    statements: tuple[AbstractEvidence, ...]
+    certification: Certification
     gains: Gains
 
 
@@ -134,23 +126,24 @@ class _Search:
     def __init__(self, result: Result, limits: Limits, progress: Progress, method: Method) -> None:
         self._result, self._progress, self._method = result, progress, method
         self._budget = SHARE * limits.budget
-        self._limits = replace(limits, optimize_rate=False)
+        self._limits = replace(limits, optimize_rate=False, more=False)
         self._spent = 0.0
         self._found: dict[str, _Decided | None] = {}
         self._gains = gains_text(result.designed)
 
     def run(self) -> Blocked:
         found = tuple(
-            relaxations(self._result.loaded, self._gains, self._result.certification.rate_limit)
+            concessions(self._result.loaded, self._gains, self._result.certification.rate_limit)
         )
         lines = found[:MOST_LINES]
         proved = self._single(lines)
-        if not proved:
-            proved = self._together(lines)
+        # What is left out whole says little about the lines that are about numbers.
+        if all(item.lines[0].word == WITHOUT for item in proved):
+            proved += self._together(lines)
         unbounded = bool(self._result.certification.system.channels)
         return Blocked(proved, len(lines), len(found), unbounded, self._spent, self._budget)
 
-    def _single(self, lines: Sequence[Relaxation]) -> tuple[Proved, ...]:
+    def _single(self, lines: Sequence[Concession]) -> tuple[Proved, ...]:
         """Return what is proved when one line asks for less."""
         finding = FINDING * self._budget
         blocking = []
@@ -166,7 +159,7 @@ class _Search:
             found.append((rank, self._proved(((line, form, step),))))
         return tuple(item for _, item in sorted(found, key=lambda pair: pair[0]))
 
-    def _furthest(self, line: Relaxation, budget: float) -> tuple[Form, int]:
+    def _furthest(self, line: Concession, budget: float) -> tuple[Way, int]:
         """Return how much of what a line asks for is proved, by halving."""
         until = self._spent + budget
         form = line.least
@@ -186,13 +179,13 @@ class _Search:
                 high = middle
         return form, low
 
-    def _together(self, lines: Sequence[Relaxation]) -> tuple[Proved, ...]:
+    def _together(self, lines: Sequence[Concession]) -> tuple[Proved, ...]:
         """Return what is proved when several lines ask for less, and as few of them as is found.
 
         All are changed at once; then one after the other is put back, the most drastic first, as
         long as the rest is proved.
         """
-        kept: list[Relaxation] = []
+        kept: list[Concession] = []
         for line in lines:
             if line.in_all and self._is_valid((*kept, line)):
                 kept.append(line)
@@ -202,9 +195,12 @@ class _Search:
             fewer = [other for other in kept if other is not line]
             if self._decide(_least(fewer), (self._budget - self._spent) / left):
                 kept = fewer
-        return (self._proved(tuple((line, line.least, 0) for line in kept)),)
+        # One line alone was found already.
+        return (
+            () if len(kept) < 2 else (self._proved(tuple((line, line.least, 0) for line in kept)),)
+        )
 
-    def _is_valid(self, lines: Sequence[Relaxation]) -> bool:
+    def _is_valid(self, lines: Sequence[Concession]) -> bool:
         try:
             _edited(self._result.loaded, _least(lines))
         except SpecError:
@@ -227,57 +223,57 @@ class _Search:
 
     def _certified(self, loaded: LoadedSpec, budget: float) -> _Decided | None:
         from nrs_design.search.certify import certify, refuted_at_once
-        from nrs_design.search.fast_check import find_fault
 
         designed = run_design(loaded)
         system = assemble_spec(loaded, designed, self._result.coordinates)
-        bare = _bare(system)
-        if _same_search(bare, _bare(self._result.certification.system)):
+        if _same_search(system, self._result.certification.system):
             return None
         look = min(LOOK, budget / 4)
         self._spent += look
-        if refuted_at_once(bare, replace(self._limits, budget=look)) is not None:
+        if refuted_at_once(system, replace(self._limits, budget=look)) is not None:
             return None
         limits = replace(self._limits, budget=budget - look)
-        decided = certify(bare, self._method, limits)
+        decided = certify(system, self._method, limits)
         self._spent += sum(attempt.work for attempt in decided.attempts)
-        # What is left out for the search is no part of stability: the proof is one of the whole.
-        statements = decided.statements
-        if decided.verdict is not Verdict.PROVED or any(find_fault(s, system) for s in statements):
+        if decided.verdict is not Verdict.PROVED:
             return None
-        if verdict_of(system, statements) is not Verdict.PROVED:
-            return None
-        return _Decided(loaded, system, statements, gains_text(designed))
+        return _Decided(loaded, decided, gains_text(designed))
 
-    def _proved(self, lines: Sequence[tuple[Relaxation, Form, int]]) -> Proved:
+    def _proved(self, lines: Sequence[tuple[Concession, Way, int]]) -> Proved:
         edits = [edit for line, form, step in lines for edit in line.edits(form, step)]
         decided = self._found[_edited(self._result.loaded, edits).sha256]
         assert decided is not None
-        evidence = deciding(decided.system, decided.statements)
+        proof, evidence = decided.certification, decided.certification.evidence
         assert evidence is not None
         known = set(self._result.certification.granted)
-        needs = granted(decided.system, decided.statements)
         return Proved(
             tuple(self._blocking(*item) for item in lines),
-            evidence.claim(decided.system),
-            tuple(text for text in needs if text not in known),
+            evidence.claim(proof.system),
+            tuple(text for text in proof.granted if text not in known),
             decided.loaded.sha256,
             any(self._gains.get(name) != gains for name, gains in decided.gains.items()),
         )
 
-    def _blocking(self, line: Relaxation, form: Form, step: int) -> Blocking:
+    def _blocking(self, line: Concession, form: Way, step: int) -> Blocking:
         says = form.says(step)
         key = line.at[-1]
         return Blocking(
             self._result.loaded.place(*line.at),
-            dotted(line.at),
+            dotted(line.at) + self._name(line.at),
             form.asked,
             form.reach(step),
             form.word,
-            "" if says is None else f"{key}: {written(says)}",
+            "" if says is None else f"{key}: {in_one_line(says)}",
             line.other_loop,
             tuple(dotted(at) for at in line.beside),
         )
+
+    def _name(self, at: Keys) -> str:
+        """Return the name of an item of a list, which has no key."""
+        node = node_at(self._result.loaded.root, at) if isinstance(at[-1], int) else None
+        said = None if node is None else to_data(node)
+        name = said.get("name") if isinstance(said, dict) else said
+        return f" ({name})" if isinstance(name, str) else ""
 
 
 def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
@@ -287,21 +283,16 @@ def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
     return respecified(loaded, root)
 
 
-def _least(lines: Sequence[Relaxation]) -> list[Edit]:
+def _least(lines: Sequence[Concession]) -> list[Edit]:
     return [edit for line in lines for edit in line.edits(line.least, 0)]
 
 
 def _told(edits: Sequence[Edit]) -> str:
     said = (
-        f"without {dotted(at)}" if value is None else f"{dotted(at)}: {written(value)}"
+        f"without {dotted(at)}" if value is None else f"{dotted(at)}: {in_one_line(value)}"
         for at, value in edits
     )
     return ", ".join(said)
-
-
-def _bare(system: SwitchedSystem) -> SwitchedSystem:
-    """Leave out what a proof of stability is not about: disturbances and limits."""
-    return replace(system, channels=(), outputs=(), saturation=None, safety=None)
 
 
 def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
@@ -323,13 +314,11 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
     some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
     if not blocked.proved:
         spent = f"{blocked.work:.2g} of work"
-        return (
-            f"no cause found: changes of {some} of the spec were tried, and none helps ({spent})",
-        )
+        return (f"no cause found: {some} of the spec were changed, and nothing helps ({spent})",)
     alone = len(blocked.proved[0].lines) == 1
-    head = "each of these lines blocks the proof: changed alone, the rest is proved"
+    head = "proved with any one of these changes"
     if not alone:
-        head = f"no line alone, of {some}, blocks the proof; changed together, these do not"
+        head = f"proved with these changes together, and with none of {some} alone that was tried"
     head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
     lines = [_said(item, path) for item in blocked.proved]
     if not alone:
@@ -341,10 +330,9 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
 
 
 def _said(item: Proved, path: Path) -> str:
-    (line,) = item.lines
-    said = _place(line, path)
+    said = " together with ".join(_place(line, path) for line in item.lines)
     said += "; gains are designed anew then, and differ" if item.new_gains else ""
-    if line.other_loop and item.needs:
+    if item.needs and any(line.other_loop for line in item.lines):
         said += f"; takes {counted(len(item.needs), 'thing')} more for granted (--json)"
     return said
 
@@ -355,8 +343,8 @@ def _place(line: Blocking, path: Path) -> str:
 
 def line_text(line: Blocking) -> str:
     """Say how much of what a line asks for is proved, and what to write."""
+    beside = "".join(f", without {name}" for name in line.left_out)
     if line.word == WITHOUT:
-        return f"{line.line}: proved without it"
-    said = f"{line.line}: proved {line.word} {line.proved}; the spec asks {line.asked}"
-    write = "".join((f"write `{line.write}`", *(f", without {name}" for name in line.left_out)))
-    return f"{said} ({write})"
+        return f"without {line.line}{beside}"
+    said = f"{line.line}: {line.word} {line.proved}, where the spec asks {line.asked}"
+    return f"{said} (write `{line.write}`{beside})"

@@ -45,7 +45,8 @@ def changed(root: Node, at: Keys, said: Data | None) -> Node:
         before, after = root.items[:first], root.items[first + 1 :]
         item = _under(root.items[first], rest, said, root.position)
         return Sequence((*before, *(() if item is None else (item,)), *after), root.position)
-    assert isinstance(root, Mapping) and isinstance(first, str)
+    assert isinstance(root, Mapping)
+    assert isinstance(first, str)
     place = root.keys.get(first, root.position)
     value = _under(root.entries.get(first), rest, said, place)
     entries = {key: old for key, old in root.entries.items() if key != first or value is not None}
@@ -70,10 +71,10 @@ def _node(said: Data, place: Position) -> Node:
     return Mapping(entries, dict.fromkeys(entries, place), place)
 
 
-def written(said: Data) -> str:
+def in_one_line(said: Data) -> str:
     """Write a value in one line, as it may stand in a spec."""
     if isinstance(said, str):
         return said
     if isinstance(said, tuple):
-        return f"[{', '.join(map(written, said))}]"
-    return f"{{{', '.join(f'{key}: {written(value)}' for key, value in said.items())}}}"
+        return f"[{', '.join(map(in_one_line, said))}]"
+    return f"{{{', '.join(f'{key}: {in_one_line(value)}' for key, value in said.items())}}}"

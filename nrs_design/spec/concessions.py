@@ -15,7 +15,7 @@ from math import ceil, floor, log2
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.document import Data, to_data
-from nrs_design.spec.edits import Keys, written
+from nrs_design.spec.edits import Keys, in_one_line
 from nrs_design.spec.exact import parse_exact
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.load import LoadedSpec
@@ -25,11 +25,13 @@ from nrs_design.spec.units import parse_unit
 
 # Steps from the nominal value to an end of a range: six halvings.
 PARTS = 64
-# Steps from the longest dwell time that is tried down to the shortest, four to a factor of two.
-DWELLS = 64
-PER_OCTAVE = 4
-# The longest one over the time in which the slowest mode decays to 1/e, at least.
+# Steps from the longest dwell time that is tried down to the shortest, so many to a factor of two.
+DWELLS = 256
+PER_OCTAVE = 16
+# The longest one over the time in which the slowest mode decays to 1/e, at least; or over the one
+# that is declared, which is reached in so many steps.
 TIMES = 64
+LONGER = PER_OCTAVE * 6
 DWELL_DIGITS = 3
 MOST_STEPS = 32
 UP, DOWN, WITHIN, WITH, WITHOUT = "up to", "down to", "within", "with", "without"
@@ -39,7 +41,7 @@ Gains = Mapping[str, Mapping[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
-class Form:
+class Way:
     """One way in which a line asks for less: least at 0, all that it asks for at `size`."""
 
     word: str  # Before what is proved: up to, down to, within, with, without
@@ -50,25 +52,25 @@ class Form:
 
 
 @dataclass(frozen=True, slots=True)
-class Relaxation:
+class Concession:
     """A line of a spec, and how it could ask for less."""
 
     at: Keys  # The place
-    least: Form  # At 0, it asks for the least
+    least: Way  # At 0, it asks for the least
     # Ask for more than that at 0 already; the first one that is proved there is looked at further.
-    others: tuple[Form, ...] = ()
+    others: tuple[Way, ...] = ()
     beside: tuple[Keys, ...] = ()  # What holds of the values as they were, and is left out as well
     # Whether what is proved then is about another loop, or takes more for granted, rather than
     # about less of what was asked for.
     other_loop: bool = False
     in_all: bool = True  # Whether it is changed where all lines are that make sense together
 
-    def edits(self, form: Form, step: int) -> tuple[Edit, ...]:
+    def edits(self, form: Way, step: int) -> tuple[Edit, ...]:
         """Return what is written at a step."""
         return ((self.at, form.says(step)), *((at, None) for at in self.beside))
 
 
-def relaxations(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iterator[Relaxation]:
+def concessions(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iterator[Concession]:
     """Yield how single lines of a spec could ask for less, the mildest first.
 
     Parameters
@@ -91,7 +93,7 @@ def relaxations(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iter
 
 def _of_matrices(
     spec: SwitchedSystemSpec, said: dict[str, Data], slowest: float | None
-) -> Iterator[Relaxation]:
+) -> Iterator[Concession]:
     for name in spec.parameters:
         yield from _range(said, ("parameters", name))
     for name, parameter in spec.parameters.items():
@@ -104,7 +106,7 @@ def _of_matrices(
 
 def _of_interaction(
     spec: InteractionDesignSpec, said: dict[str, Data], gains: Gains, slowest: float | None
-) -> Iterator[Relaxation]:
+) -> Iterator[Concession]:
     for name in sorted(spec.touched):
         identified = _identified(said, ("environments", name))
         for key in ("exponent", *spec.environments[name].parameters()):
@@ -126,7 +128,7 @@ def _of_interaction(
     yield from _left_out(spec)
 
 
-def _left_out(spec: InteractionDesignSpec) -> Iterator[Relaxation]:
+def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
     """Yield what may be left out whole."""
     for name, controller in spec.controllers.items():
         for index in range(len(controller.contacts) if len(controller.contacts) > 1 else 0):
@@ -141,20 +143,25 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[Relaxation]:
     if spec.sensor is not None and spec.sensor.filter is not None:
         yield _without(("sensor", "filter"), other_loop=True)
     if spec.coupling is not None:
-        yield _without(("coupling",), other_loop=True)
-    if spec.sampling is not None:
-        if spec.sampling.outer_period is not None:
-            yield _without(("sampling", "outer_period"), other_loop=True)
-        yield _without(("sampling",), other_loop=True, in_all=False)
+        # In a sampled loop, an axis alone is modelled with a motor that nothing loads.
+        loaded = spec.sampling is not None and spec.actuator.load_inertia is not None
+        beside = (("actuator", "load_inertia"),) if loaded else ()
+        yield _without(("coupling",), beside, other_loop=True)
+        if spec.sampling is not None:
+            yield _without(("sampling",), other_loop=True, in_all=False)
+    if spec.sampling is not None and spec.sampling.outer_period is not None:
+        yield _without(("sampling", "outer_period"), other_loop=True)
 
 
-def _with(at: Keys, word: str, asked: str) -> Relaxation:
-    return Relaxation(at, Form(WITH, lambda _: word, lambda _: word, asked))
+def _with(at: Keys, word: str, asked: str) -> Concession:
+    return Concession(at, Way(WITH, lambda _: word, lambda _: word, asked))
 
 
-def _without(at: Keys, *, other_loop: bool = False, in_all: bool = True) -> Relaxation:
-    form = Form(WITHOUT, lambda _: None, lambda _: "", "")
-    return Relaxation(at, form, other_loop=other_loop, in_all=in_all)
+def _without(
+    at: Keys, beside: tuple[Keys, ...] = (), *, other_loop: bool = False, in_all: bool = True
+) -> Concession:
+    form = Way(WITHOUT, lambda _: None, lambda _: "", "")
+    return Concession(at, form, beside=beside, other_loop=other_loop, in_all=in_all)
 
 
 def _identified(said: dict[str, Data], at: Keys) -> tuple[Keys, ...]:
@@ -167,7 +174,7 @@ def _identified(said: dict[str, Data], at: Keys) -> tuple[Keys, ...]:
 
 def _range(
     said: dict[str, Data], at: Keys, beside: tuple[Keys, ...] = (), center: str | None = None
-) -> Iterator[Relaxation]:
+) -> Iterator[Concession]:
     """Yield the range of a quantity, if one is written; the center is by default its nominal."""
     part = _get(said, at)
     if not isinstance(part, dict) or not isinstance(part.get("range"), tuple):
@@ -180,23 +187,23 @@ def _range(
     up = partial(_ends, ends, (False, True))
     down = partial(_ends, ends, (True, False))
     both = partial(_ends, ends, (True, True))
-    others: tuple[Form, ...] = ()
+    others: tuple[Way, ...] = ()
     # The range of a gain is about the number that ships, which no decimal of few digits is.
     if center is None and _number(low, middle) < _number(middle) < _number(high, middle):
         others = (
-            Form(UP, up, lambda k: up(k)[1], high, PARTS),
-            Form(DOWN, down, lambda k: down(k)[0], low, PARTS),
+            Way(UP, up, lambda k: up(k)[1], high, PARTS),
+            Way(DOWN, down, lambda k: down(k)[0], low, PARTS),
         )
-    least = Form(WITHIN, both, lambda k: written(both(k)), written((low, high)), PARTS)
+    least = Way(WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS)
     if center is not None:
-        least = Form(
+        least = Way(
             WITHIN,
             lambda k: both(k) if k else None,
-            lambda k: written(both(k)) if k else "no range",
+            lambda k: in_one_line(both(k)) if k else "no range",
             least.asked,
             PARTS,
         )
-    yield Relaxation((*at, "range"), least, others, beside)
+    yield Concession((*at, "range"), least, others, beside)
 
 
 def _ends(ends: tuple[str, str, str], moved: tuple[bool, bool], step: int) -> tuple[str, str]:
@@ -247,62 +254,65 @@ def _in_unit_of(quantity: str, number: str) -> str:
     return f"{exact_text(Fraction(number) / parse_unit(unit.strip()).factor)} {unit}"
 
 
-def _delay(least: int, most: int) -> Iterator[Relaxation]:
+def _delay(least: int, most: int) -> Iterator[Concession]:
     at: Keys = ("sampling", "delay")
     if least < most:
 
         def says(step: int) -> Data:
             return (str(least), str(least + step))
 
-        form = Form(UP, says, lambda k: _samples(least + k), _samples(most), most - least)
-        yield Relaxation(at, form)
+        form = Way(UP, says, lambda k: _samples(least + k), _samples(most), most - least)
+        yield Concession(at, form)
     elif most:
-        form = Form(WITH, str, _samples, _samples(most), most)
-        yield Relaxation(at, form, other_loop=True)
+        form = Way(WITH, str, _samples, _samples(most), most)
+        yield Concession(at, form, other_loop=True)
 
 
 def _samples(count: int) -> str:
     return f"{count} sample{'' if count == 1 else 's'}"
 
 
-def _inertia(said: dict[str, Data]) -> Iterator[Relaxation]:
+def _inertia(said: dict[str, Data]) -> Iterator[Concession]:
     at: Keys = ("coupling", "inertia")
     ends = _get(said, at)
     assert isinstance(ends, tuple)
     low, high = map(str, ends)
     if _number(low) < _number(high, low):
-        up = partial(_ends, (low, high, low), (False, True))
-        yield Relaxation(at, Form(UP, up, lambda k: up(k)[1], high, PARTS))
+
+        def up(step: int) -> tuple[str, str]:
+            # Links without inertia are none, which is another model.
+            return _ends((low, high, low), (False, True), step + 1)
+
+        yield Concession(at, Way(UP, up, lambda k: up(k)[1], high, PARTS - 1))
 
 
 def _dwell(
     arbitrary: bool, said: dict[str, Data], slowest: float | None, discrete: bool
-) -> Iterator[Relaxation]:
+) -> Iterator[Concession]:
     """Yield a dwell time where there is none, or a longer one than the one for all modes."""
     at: Keys = ("switching",)
     given = _get(said, (*at, "dwell_time"))
     if arbitrary and said.get("switching") == "arbitrary":
         if discrete:
-            yield Relaxation(at, _dwell_form(MOST_STEPS - 2, _steps_at, "arbitrary"))
+            yield Concession(at, _dwell_form(MOST_STEPS - 2, _steps_at, "arbitrary"))
         elif slowest is not None and slowest > 0:
             longest = min(Fraction(2) ** ceil(log2(TIMES / slowest)), Fraction(LONGEST_DWELL))
-            yield Relaxation(at, _dwell_form(DWELLS, partial(_seconds_at, longest), "arbitrary"))
-    elif isinstance(given, str) and not discrete:
+            yield Concession(at, _dwell_form(DWELLS, partial(_seconds_at, longest), "arbitrary"))
+    elif isinstance(given, str) and not discrete and _number(given, "1 s") * TIMES < LONGEST_DWELL:
         shortest = _number(given, "1 s")
 
         def longer(step: int) -> str:
-            return _seconds_at(min(shortest * 2**16, Fraction(LONGEST_DWELL)), step)
+            return given if step == LONGER else _seconds_at(shortest * TIMES, step)
 
-        size = next((k for k in range(DWELLS) if _number(longer(k)) <= shortest), DWELLS)
-        form = Form(WITH, lambda k: given if k == size else longer(k), longer, given, size)
-        yield Relaxation((*at, "dwell_time"), form)
+        form = Way(WITH, longer, longer, given, LONGER)
+        yield Concession((*at, "dwell_time"), form)
 
 
-def _dwell_form(size: int, text: Callable[[int], str], asked: str) -> Form:
+def _dwell_form(size: int, text: Callable[[int], str], asked: str) -> Way:
     def says(step: int) -> Data:
         return "arbitrary" if step > size else {"dwell_time": text(step)}
 
-    return Form(WITH, says, lambda k: f"dwell_time: {text(k)}", asked, size + 1)
+    return Way(WITH, says, lambda k: f"dwell_time: {text(k)}", asked, size + 1)
 
 
 def _steps_at(step: int) -> str:

@@ -21,22 +21,23 @@ from nrs_design.proof.text import counted
 from nrs_design.search.certification import Certification, Limits
 from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.document import Position, to_data
-from nrs_design.spec.edits import Keys, changed, node_at, in_one_line
-from nrs_design.spec.load import respecified
-from nrs_design.spec.places import dotted
 from nrs_design.spec.concessions import (
     WITHOUT,
+    Concession,
     Edit,
     Way,
-    Concession,
     concessions,
 )
+from nrs_design.spec.document import Position, to_data
+from nrs_design.spec.edits import Keys, changed, in_one_line, node_at
+from nrs_design.spec.load import respecified
+from nrs_design.spec.places import dotted
 
-# Of the budget of the search, what may be spent here; no step that is begun goes far beyond it.
-SHARE = 0.45
-# Of that, what is for finding the lines; the rest is for how far they go.
-FINDING = 0.6
+# Of the budget of the search, what may be spent here: a step that is begun goes beyond it a little.
+SHARE = 0.4
+# Of that, up to where it may be spent on finding lines about numbers and words, on how far they go
+# (or, if there is none, on several together), and on what is left out whole.
+FIND, STRETCH = 0.4, 0.8
 # A look at single modes, in units.
 LOOK = 0.02
 MOST_LINES = 24
@@ -136,50 +137,62 @@ class _Search:
             concessions(self._result.loaded, self._gains, self._result.certification.rate_limit)
         )
         lines = found[:MOST_LINES]
-        proved = self._single(lines)
-        # What is left out whole says little about the lines that are about numbers.
-        if all(item.lines[0].word == WITHOUT for item in proved):
-            proved += self._together(lines)
+        mild = [line for line in lines if line.least.word != WITHOUT]
+        drastic = [line for line in lines if line.least.word == WITHOUT]
+        proved = self._single(mild, FIND * self._budget, STRETCH * self._budget)
+        several = () if proved else self._together(lines, STRETCH * self._budget)
+        proved += self._single(drastic, self._budget, self._budget) + several
         unbounded = bool(self._result.certification.system.channels)
         return Blocked(proved, len(lines), len(found), unbounded, self._spent, self._budget)
 
-    def _single(self, lines: Sequence[Concession]) -> tuple[Proved, ...]:
-        """Return what is proved when one line asks for less."""
-        finding = FINDING * self._budget
+    def _single(
+        self, lines: Sequence[Concession], find: float, stretch: float
+    ) -> tuple[Proved, ...]:
+        """Return what is proved when one line asks for less, the least given up first.
+
+        Parameters
+        ----------
+        lines : sequence of Concession
+            Each is changed alone.
+        find, stretch : float
+            Work in all up to which they are found, and up to which it is found how far they go.
+        """
         blocking = []
         for left, line in zip(range(len(lines), 0, -1), lines, strict=True):
-            if self._decide(line.edits(line.least, 0), (finding - self._spent) / left):
+            if self._decide(line.edits(line.least, 0), (find - self._spent) / left):
                 blocking.append(line)
         found = []
         for left, line in zip(range(len(blocking), 0, -1), blocking, strict=True):
-            form, step = self._furthest(line, (self._budget - self._spent) / left)
-            share = step / form.size if form.size else 0.0
-            # What changes the loop, or leaves something out, comes last.
-            rank = (line.other_loop, form.word == WITHOUT, -share)
-            found.append((rank, self._proved(((line, form, step),))))
+            way, step = self._furthest(line, (stretch - self._spent) / left)
+            share = step / way.size if way.size else 0.0
+            found.append(((line.other_loop, -share), self._proved(((line, way, step),))))
         return tuple(item for _, item in sorted(found, key=lambda pair: pair[0]))
 
     def _furthest(self, line: Concession, budget: float) -> tuple[Way, int]:
-        """Return how much of what a line asks for is proved, by halving."""
+        """Return how much of what a line asks for is proved, by halving.
+
+        The steps that matter most come first, and may take the most: of n that are left, each may
+        take 2 / (n + 1) of the rest.
+        """
         until = self._spent + budget
-        form = line.least
-        steps = len(line.others) + max(form.size - 1, 0).bit_length()
+        way = line.least
+        left = len(line.others) + max(way.size - 1, 0).bit_length()
         for other in line.others:
-            if self._decide(line.edits(other, 0), (until - self._spent) / steps):
-                form = other
+            if self._decide(line.edits(other, 0), 2 * (until - self._spent) / (left + 1)):
+                way = other
                 break
-            steps -= 1
-        low, high = 0, form.size
+            left -= 1
+        low, high = 0, way.size
         while high - low > 1:
             middle = (low + high) // 2
             left = (high - low - 1).bit_length()
-            if self._decide(line.edits(form, middle), (until - self._spent) / left):
+            if self._decide(line.edits(way, middle), 2 * (until - self._spent) / (left + 1)):
                 low = middle
             else:
                 high = middle
-        return form, low
+        return way, low
 
-    def _together(self, lines: Sequence[Concession]) -> tuple[Proved, ...]:
+    def _together(self, lines: Sequence[Concession], until: float) -> tuple[Proved, ...]:
         """Return what is proved when several lines ask for less, and as few of them as is found.
 
         All are changed at once; then one after the other is put back, the most drastic first, as
@@ -189,11 +202,11 @@ class _Search:
         for line in lines:
             if line.in_all and self._is_valid((*kept, line)):
                 kept.append(line)
-        if not self._decide(_least(kept), (self._budget - self._spent) / 2):
+        if len(kept) < 2 or not self._decide(_least(kept), (until - self._spent) / 2):
             return ()
         for left, line in zip(range(len(kept), 0, -1), reversed(tuple(kept)), strict=True):
             fewer = [other for other in kept if other is not line]
-            if self._decide(_least(fewer), (self._budget - self._spent) / left):
+            if self._decide(_least(fewer), (until - self._spent) / left):
                 kept = fewer
         # One line alone was found already.
         return (
@@ -314,11 +327,13 @@ def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
     some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
     if not blocked.proved:
         spent = f"{blocked.work:.2g} of work"
-        return (f"no cause found: {some} of the spec were changed, and nothing helps ({spent})",)
+        verb = "was" if blocked.tried == 1 else "were"
+        return (f"no cause found: {some} of the spec {verb} changed, and nothing helps ({spent})",)
     alone = len(blocked.proved[0].lines) == 1
     head = "proved with any one of these changes"
     if not alone:
         head = f"proved with these changes together, and with none of {some} alone that was tried"
+    head += f" ({blocked.work:.2g} of work: a larger --budget may reach further)"
     head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
     lines = [_said(item, path) for item in blocked.proved]
     if not alone:

@@ -124,7 +124,8 @@ def _of_interaction(
         yield from _inertia(said)
     if spec.contact == "losable":
         yield _with(("contact",), "kept", "losable")
-    yield from _dwell(spec.switching.is_arbitrary, said, slowest, discrete=False)
+    if spec.sampling is None:
+        yield from _dwell(spec.switching.is_arbitrary, said, slowest, discrete=False)
     yield from _left_out(spec)
 
 
@@ -181,7 +182,7 @@ def _range(
         return
     low, high = map(str, part["range"])
     middle = str(part.get("nominal", "")) if center is None else _in_unit_of(low, center)
-    if _number(low) >= _number(high, low):
+    if not middle or _number(low) >= _number(high, low):
         return
     ends = (low, high, middle)
     up = partial(_ends, ends, (False, True))

@@ -142,7 +142,9 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
     if spec.idle_states is not None and spec.idle_states.reset:
         yield _without(("idle_states", "reset"), other_loop=True)
     if spec.sensor is not None and spec.sensor.filter is not None:
-        yield _without(("sensor", "filter"), other_loop=True)
+        # A sensor of which nothing else is said goes whole.
+        alone = spec.sensor.model_fields_set == {"filter"}
+        yield _without(("sensor",) if alone else ("sensor", "filter"), other_loop=True)
     if spec.coupling is not None:
         # In a sampled loop, an axis alone is modelled with a motor that nothing loads.
         loaded = spec.sampling is not None and spec.actuator.load_inertia is not None

@@ -129,9 +129,9 @@ def test_the_age_of_the_force_sample(tmp_path):
         assert (verdict(tmp_path, text, 1) is Verdict.PROVED) is proved
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_loss_of_contact(tmp_path):
-    found = blocked(tmp_path, soft("20", "50"), 1.5)
+    found = blocked(tmp_path, soft("20", "50"), 4)
     assert "contact: with kept, where the spec asks losable (write `contact: kept`)" in texts(found)
     ranges = next(text for text in texts(found) if "stiffness" in text)
     assert re.search(r"up to 4[5-8](\.\d+)? N\*m/rad, where the spec asks 50 N\*m/rad", ranges)
@@ -167,6 +167,7 @@ def test_what_axes_do_to_each_other(tmp_path):
     assert verdict(tmp_path, text, 4) is Verdict.PROVED
 
 
+@pytest.mark.slow
 def test_a_dwell_time(tmp_path):
     found = blocked(tmp_path, PAIR, 2)
     (line,) = found.proved[0].lines
@@ -177,6 +178,7 @@ def test_a_dwell_time(tmp_path):
     assert texts(found)[1:] == ["without modes[0] (stiff)", "without modes[1] (soft)"]
 
 
+@pytest.mark.slow
 def test_arbitrary_switching(tmp_path):
     """Dayawansa and Martin 1999: stable, but only a polynomial of high degree shows it."""
     found = blocked(tmp_path, HARD, 1)
@@ -187,6 +189,7 @@ def test_arbitrary_switching(tmp_path):
     assert verdict(tmp_path, text, 1) is Verdict.PROVED
 
 
+@pytest.mark.slow
 def test_a_parameter_of_given_matrices(tmp_path):
     found = blocked(tmp_path, OSCILLATOR, 1)
     (line,) = found.proved[0].lines
@@ -217,6 +220,7 @@ def test_lines_that_block_together(tmp_path):
     assert head.startswith("proved with any one of these changes")
 
 
+@pytest.mark.slow
 def test_nothing_helps_against_a_spring_that_is_too_stiff(tmp_path):
     text = (ROOT / "docs/examples/pulling.nrs.yaml").read_text(encoding="utf-8")
     text = text.replace("58 N*m/rad", "90 N*m/rad").replace("delay: 2", "delay: 0")
@@ -226,6 +230,7 @@ def test_nothing_helps_against_a_spring_that_is_too_stiff(tmp_path):
     assert line.startswith("no cause found: 1 line of the spec was changed, and nothing helps")
 
 
+@pytest.mark.slow
 def test_the_same_is_found_each_time(tmp_path):
     first, second = (blocked(tmp_path, OSCILLATOR, 0.5) for _ in range(2))
     assert first == second
@@ -237,12 +242,14 @@ def test_what_is_decided_has_no_cause(path):
     assert find_blocked(run_certification(read_spec(path))) is None
 
 
+@pytest.mark.slow
 def test_a_change_that_is_no_spec_is_no_finding(tmp_path):
     """Rules that name a controller forbid to leave it out."""
     found = blocked(tmp_path, PAIR.replace("2.73 s", "{stiff: 2.73 s, soft: 2.73 s}"), 0.5)
     assert (found.proved, found.tried, found.work) == ((), 2, 0)
 
 
+@pytest.mark.slow
 def test_what_is_proved_is_the_spec_that_is_written(tmp_path):
     """Its hash is that of the file with the line that is advised."""
     found = blocked(tmp_path, PAIR, 2)

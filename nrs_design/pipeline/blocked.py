@@ -19,7 +19,6 @@ from nrs_design.progress import Progress, silent
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import counted
 from nrs_design.search.certification import Certification, Limits
-from nrs_design.search.method import Method
 from nrs_design.spec import LoadedSpec
 from nrs_design.spec.concessions import (
     WITHOUT,
@@ -92,10 +91,7 @@ class _Decided:
 
 
 def find_blocked(
-    result: Result,
-    limits: Limits | None = None,
-    progress: Progress = silent,
-    method: Method = Method.AUTO,
+    result: Result, limits: Limits | None = None, progress: Progress = silent
 ) -> Blocked | None:
     """Find which lines of a spec keep it from being proved; None unless it is inconclusive.
 
@@ -108,8 +104,6 @@ def find_blocked(
         optimized, and no bound under disturbances is looked for.
     progress : callable
         Told each change before it is tried.
-    method : Method
-        By which the search went.
 
     Raises
     ------
@@ -118,14 +112,14 @@ def find_blocked(
     """
     if result.certification.verdict is not Verdict.INCONCLUSIVE:
         return None
-    return _Search(result, limits or search_limits(result.loaded.spec), progress, method).run()
+    return _Search(result, limits or search_limits(result.loaded.spec), progress).run()
 
 
 class _Search:
     """Tries changes of a spec one after the other, within a budget of work."""
 
-    def __init__(self, result: Result, limits: Limits, progress: Progress, method: Method) -> None:
-        self._result, self._progress, self._method = result, progress, method
+    def __init__(self, result: Result, limits: Limits, progress: Progress) -> None:
+        self._result, self._progress = result, progress
         self._budget = SHARE * limits.budget
         self._limits = replace(limits, optimize_rate=False, more=False)
         self._spent = 0.0
@@ -246,7 +240,7 @@ class _Search:
         if refuted_at_once(system, replace(self._limits, budget=look)) is not None:
             return None
         limits = replace(self._limits, budget=budget - look)
-        decided = certify(system, self._method, limits)
+        decided = certify(system, limits=limits)
         self._spent += sum(attempt.work for attempt in decided.attempts)
         if decided.verdict is not Verdict.PROVED:
             return None

@@ -82,6 +82,17 @@ class Decision:
         """Every step of the search: what was tried, how it ended, and its time in s."""
         return self.result.certification.attempts
 
+    def why(self) -> tuple[str, ...]:
+        """Return which lines of the spec keep it from being proved; empty unless inconclusive.
+
+        Single lines are changed, and the spec is certified again each time: that takes up to half
+        of the budget of the spec. `nrs_design.pipeline.blocked.find_blocked` has all that is found.
+        """
+        from nrs_design.pipeline.blocked import blocked_lines, find_blocked
+
+        found = find_blocked(self.result)
+        return () if found is None else blocked_lines(found, self.result.loaded.path)
+
     def state_spaces(self) -> dict[str, Any]:
         """Return every mode by name, as a ``StateSpace`` of python-control.
 

@@ -10,7 +10,7 @@ import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.facts import certification_facts, margins_facts
+from nrs_design.cli.facts import blocked_facts, certification_facts, margins_facts
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
     MaxUpdates,
@@ -39,14 +39,6 @@ LargestBox = Annotated[
         "searched for 10 s at most.",
     ),
 ]
-Subsets = Annotated[
-    bool,
-    typer.Option(
-        "--subsets",
-        help="Where not all is proved, find what is with as little left out as possible: ranges, "
-        "ages of the force sample, loss of contact.",
-    ),
-]
 ShortestDwell = Annotated[
     bool, typer.Option("--shortest-dwell", help="Find the shortest dwell time with a proof.")
 ]
@@ -68,7 +60,6 @@ def certify_switching(
     memory: Memory = None,
     margin: LargestBox = False,
     shortest_dwell: ShortestDwell = False,
-    subsets: Subsets = False,
     relaxation: Relaxation = 1.0,
     radius: Radius = 1.0,
     start_mode: StartMode = None,
@@ -85,8 +76,9 @@ def certify_switching(
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import Overrides, find_relief, run_certification, search_limits
+    from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.margins import run_proof_margins
-    from nrs_design.pipeline.subsets import find_subsets, run_subsets
+    from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
@@ -114,12 +106,17 @@ def certify_switching(
     if wants_text():
         _print(result, verbose=verbose)
     asked = {"margin": margin, "shortest_dwell": shortest_dwell}
+    blocked = None
+    # One rung alone may be at a loss for what others prove.
+    if method is Method.AUTO:
+        with progress(f"why {loaded.spec.name} is not proved", lines=True) as step:
+            blocked = find_blocked(result, limits, step)
     what = "margins" if any(asked.values()) else "what else is proved"
     with progress(f"{what} of {loaded.spec.name}", lines=True) as step:
         margins = run_proof_margins(result, limits, step, **asked)
-        parts = (run_subsets if subsets else find_subsets)(result, limits, step)
+        parts = find_subsets(result, limits, step)
     relief = find_relief(result)
-    steps = _next_steps(result, parts, **asked)
+    steps = _next_steps(result, **asked)
 
     def facts() -> dict[str, Any]:
         more: dict[str, Any] = {"gradient_history": history} if history else {}
@@ -128,7 +125,8 @@ def certify_switching(
             certification_facts(result, written)
             | margins_facts(margins)
             | more
-            | _parts_facts(result, parts)
+            | _parts_facts(parts)
+            | ({} if blocked is None else blocked_facts(blocked, loaded.path))
         )
 
     def show() -> None:
@@ -140,7 +138,12 @@ def certify_switching(
 
             for line in margin_lines(margins, loaded):
                 say(f"  {line}")
-        _print_subsets(result, parts)
+        _print_parts(parts)
+        if blocked is not None:
+            from nrs_design.pipeline.blocked import blocked_lines
+
+            for line in blocked_lines(blocked, loaded.path):
+                say(f"  {line}")
         for line in steps:
             say(f"next: {line}")
 
@@ -161,37 +164,29 @@ def _write(result: Result, path: Path) -> Path | None:
     return path
 
 
-def _next_steps(result: Result, parts: tuple[Subset, ...] | None, **asked: bool) -> tuple[str, ...]:
+def _next_steps(result: Result, **asked: bool) -> tuple[str, ...]:
     if str(result.certification.verdict) == "proved":
         return ()
     from nrs_design.reporting.next_steps import next_steps
 
-    return next_steps(result, **asked, subsets=parts is not None, spec=result.loaded.path)
+    return next_steps(result, **asked, spec=result.loaded.path)
 
 
-def _parts_facts(result: Result, parts: tuple[Subset, ...] | None) -> dict[str, Any]:
+def _parts_facts(parts: tuple[Subset, ...] | None) -> dict[str, Any]:
     if parts is None:
         return {}
     found = [{"left_out": p.left_out, "claim": p.claim or None, "needs": p.needs} for p in parts]
-    return {"subsets": found, "subsets_without": list(_unlooked(result))}
+    return {"subsets": found}
 
 
-def _print_subsets(result: Result, parts: tuple[Subset, ...] | None) -> None:
-    if parts is None or (not parts and str(result.certification.verdict) == "proved"):
+def _print_parts(parts: tuple[Subset, ...] | None) -> None:
+    if parts is None:
         return
-    from nrs_design.pipeline.subsets import parts_title, subset_lines
+    from nrs_design.pipeline.subsets import PARTS_TITLE, subset_lines
 
-    say(f"  {parts_title(result)}:")
+    say(f"  {PARTS_TITLE}:")
     for line in subset_lines(parts):
         say(f"  {line}")
-    if unlooked := " and ".join(_unlooked(result)):
-        say(f"  decided without {unlooked}: no bound under them was looked at")
-
-
-def _unlooked(result: Result) -> tuple[str, ...]:
-    """Return the disturbance bounds that the list of parts ignores; a proof holds them."""
-    proved = str(result.certification.verdict) == "proved"
-    return ("disturbances",) if result.certification.system.channels and not proved else ()
 
 
 def _print(result: Result, *, verbose: bool) -> None:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from nrs_design.pipeline import Result
+    from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.search.certification import Certification
     from nrs_design.search.loop_margin import Bracket, MarginBrackets
@@ -94,6 +95,45 @@ def margins_facts(margins: ProofMargins) -> dict[str, Any]:
     if margins.loop is not None:
         content["loop_margins"] = loop_facts(margins.loop)
     return content
+
+
+def blocked_facts(blocked: Blocked, spec: Path) -> dict[str, Any]:
+    """Return the facts of what keeps a spec from being proved.
+
+    Parameters
+    ----------
+    blocked : Blocked
+        What was found.
+    spec : Path
+        The spec, as it was named.
+    """
+    from nrs_design.pipeline.blocked import line_text
+
+    return {
+        "blocked_by": [
+            {
+                "lines": [
+                    {
+                        "place": f"{spec}:{line.place.line}:{line.place.column}",
+                        "line": line.line,
+                        "text": line_text(line),
+                        "proved_up_to": line.proved or None,
+                        "asked": line.asked or None,
+                        "write": line.write or None,
+                        "left_out": line.left_out,
+                    }
+                    for line in item.lines
+                ],
+                "claim": item.claim,
+                "assumptions_besides": item.needs,
+                "gains_differ": item.new_gains,
+                "spec_sha256": item.sha256,
+            }
+            for item in blocked.proved
+        ],
+        "lines_tried": blocked.tried,
+        "lines_work": round(blocked.work, 6),
+    }
 
 
 def loop_facts(margins: MarginBrackets) -> dict[str, Any]:

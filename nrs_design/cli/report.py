@@ -199,6 +199,7 @@ def _build(
 ) -> tuple[Result, Report]:
     """Certify, look for all that is asked for, and lay out the page."""
     from nrs_design.pipeline import run_certification, run_comparison, run_recorded, search_limits
+    from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.stability_map import run_stability_map
     from nrs_design.pipeline.subsets import find_subsets
@@ -213,6 +214,7 @@ def _build(
         result, limits, step, margin=asked.margin, shortest_dwell=asked.shortest_dwell
     )
     subsets = find_subsets(result, limits, step)
+    blocked = find_blocked(result, limits, step)
     found = run_stability_map(result, limits, step) if asked.stability_map else None
     step("figures")
     runs = run_comparison(loaded, limits, progress=step)[1] if asked.compare_methods else ()
@@ -222,6 +224,7 @@ def _build(
         comparison=runs,
         margins=margins,
         subsets=subsets,
+        blocked=blocked,
         stability_map=found,
         times=asked.times,
         date=asked.date,

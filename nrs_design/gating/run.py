@@ -33,7 +33,8 @@ from nrs_design.pipeline import (
     run_verification,
     search_limits,
 )
-from nrs_design.pipeline.subsets import Subset, find_subsets, subset_lines
+from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
+from nrs_design.pipeline.subsets import Subset, find_subsets
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
 from nrs_design.wings import load_wing
@@ -208,8 +209,9 @@ def _examine(
     certification, certificate = result.certification, result.certificate
     examiner = Examiner.of(loaded)
     subsets = find_subsets(result, limits, progress)
+    blocked = find_blocked(result, limits, progress)
     tried = [f"{a.step}: {a.outcome}" for a in certification.attempts]
-    searched = "; ".join((*tried, *(() if subsets is None else subset_lines(subsets))))
+    searched = "; ".join((*tried, *(blocked_lines(blocked, loaded.path) if blocked else ())))
     obligations = examiner.stability(certification.system, certification.statements, searched)
     file = None if certificate is None else place
     if certificate is not None:
@@ -219,7 +221,7 @@ def _examine(
     bounds, on_trust = _bounds(loaded, files, examiner, progress, robots)
     recorded = hash_recorded(loaded)
     simulated = tuple(judge_scenarios(result, examiner, progress))
-    goals, cautions = _goals_and_report(result, examiner, files, progress, subsets)
+    goals, cautions = _goals_and_report(result, examiner, files, progress, subsets, blocked)
     outcome = examiner.outcome(
         certification,
         file,
@@ -257,6 +259,7 @@ def _goals_and_report(
     files: Files,
     progress: Progress,
     subsets: tuple[Subset, ...] | None,
+    blocked: Blocked | None,
 ) -> Findings:
     analysis, found = judge_margins(result, examiner, progress)
     if files.html:
@@ -266,6 +269,6 @@ def _goals_and_report(
 
         page = files.report(result.loaded.spec.name)
         origin = origin_of(result.loaded.path, page)
-        html = render_html(build_report(result, analysis, subsets=subsets), origin)
+        html = render_html(build_report(result, analysis, subsets=subsets, blocked=blocked), origin)
         write_output(page, html, replaces=PAGE)
     return found, (*examiner.contact(result.certificate), *examiner.cautions(analysis))

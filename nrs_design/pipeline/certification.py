@@ -120,7 +120,7 @@ def run_certification(
             spec_name=loaded.spec.name,
             spec_sha256=loaded.sha256,
             coordinates=coordinates,
-            gains=_gains(designed),
+            gains=gains_text(designed),
             system=system,
             statements=certification.statements,
             version=__version__,
@@ -161,7 +161,7 @@ def run_recorded(loaded: LoadedSpec, file: Path, progress: Progress = silent) ->
     start = perf_counter()
     kept = read_valid_certificate(file, loaded, designed)
     taken = perf_counter() - start
-    if {n: dict(g) for n, g in kept.gains.items()} != _gains(designed):
+    if {n: dict(g) for n, g in kept.gains.items()} != gains_text(designed):
         message = "it is about other gains than are designed here"
         raise CertificateError(message, path=file, remedy=_ANEW)
     outcome = f"{file.name}: each of its statements was checked again exactly"
@@ -256,7 +256,8 @@ def _assembled(
         return designed, coordinates, assemble_spec(loaded, designed, coordinates)
 
 
-def _gains(designed: Designed | None) -> Gains:
+def gains_text(designed: Designed | None) -> Gains:
+    """Return the gains that ship as exact decimals, by controller; none of given matrices."""
     if designed is None:
         return {}
     from nrs_design.controllers.gains import gains_of

@@ -20,7 +20,6 @@ def next_steps(
     *,
     margin: bool = False,
     shortest_dwell: bool = False,
-    subsets: bool = False,
     spec: Path | None = None,
 ) -> tuple[str, ...]:
     """Return next steps, the most promising first; none where stability is proved.
@@ -29,7 +28,7 @@ def next_steps(
     ----------
     result : Result
         Of the certification.
-    margin, shortest_dwell, subsets : bool
+    margin, shortest_dwell : bool
         What was looked for just now, and need not be told to be.
     spec : Path, optional
         The spec as it was named; else its file name alone, which is the same wherever it lies.
@@ -38,13 +37,11 @@ def next_steps(
     if verdict is Verdict.PROVED:
         return ()
     name = quote(str(spec or result.loaded.path.name))
-    steps = _steps(result, name, margin, shortest_dwell, subsets)
+    steps = _steps(result, name, margin, shortest_dwell)
     return (*steps, "Do not ship this design: a gate must treat it as a failure.")
 
 
-def _steps(
-    result: Result, name: str, margin: bool, shortest_dwell: bool, subsets: bool
-) -> Iterator[str]:
+def _steps(result: Result, name: str, margin: bool, shortest_dwell: bool) -> Iterator[str]:
     certification, spec = result.certification, result.loaded.spec
     command = f"nrs-design certify-switching {name}"
     evidence = certification.evidence
@@ -57,8 +54,6 @@ def _steps(
         )
     if certification.verdict is Verdict.INCONCLUSIVE:
         yield f"Search longer: {command} --budget 600 (or more --memory, or a --max-degree)"
-        if result.designed is not None and spec.has_ranges and not subsets:
-            yield f"Find what is proved with as little left out as possible: {command} --subsets"
     if spec.has_ranges and not margin:
         yield f"Find the largest ranges that are proved: {command} --margin"
     if not alone and not shortest_dwell and _takes_dwell(result):

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from nrs_design.design.analysis import DesignAnalysis
     from nrs_design.pipeline import Result
+    from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.stability_map import StabilityMap
     from nrs_design.pipeline.subsets import Subset
@@ -45,6 +46,7 @@ def build_report(
     comparison: Sequence[MethodRun] = (),
     margins: ProofMargins | None = None,
     subsets: tuple[Subset, ...] | None = None,
+    blocked: Blocked | None = None,
     stability_map: StabilityMap | None = None,
     times: bool = False,
     date: datetime.date | None = None,
@@ -63,7 +65,9 @@ def build_report(
     margins : ProofMargins, optional
         As `nrs_design.pipeline.margins.run_proof_margins` gives them.
     subsets : tuple of Subset, optional
-        As `nrs_design.pipeline.subsets.run_subsets` gives them.
+        As `nrs_design.pipeline.subsets.find_subsets` gives them.
+    blocked : Blocked, optional
+        As `nrs_design.pipeline.blocked.find_blocked` gives it.
     stability_map : StabilityMap, optional
         As `nrs_design.pipeline.stability_map.run_stability_map` gives it.
     times : bool
@@ -81,7 +85,7 @@ def build_report(
     system = certification.system
     sections = (
         proof_section(result),
-        remedies_section(result, margins, subsets),
+        remedies_section(result, margins, subsets, blocked),
         stability_map_section(result.loaded, stability_map) if stability_map else None,
         *(design_sections(designed, analysis) if designed else ()),
         goals_section(result, analysis),

@@ -30,6 +30,7 @@ class Limits:
     budget: float = DEFAULT_BUDGET
     memory: float = DEFAULT_MEMORY  # Steps that are predicted to need more bytes are not begun
     optimize_rate: bool = True  # Look for the largest provable decay rate, not only for some
+    more: bool = True  # Look for bounds under disturbances and the like, where stability is proved
     gradient: Gradient = field(default_factory=Gradient)  # Settings of the gradient iteration
 
 

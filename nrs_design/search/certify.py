@@ -106,7 +106,7 @@ def certify(
     kept, tried = _safety(system, allowance, progress)
     statements += kept
     result = replace(result, attempts=(*result.attempts, *tried))
-    if result.verdict is Verdict.PROVED:
+    if result.verdict is Verdict.PROVED and limits.more:
         bounds, attempts = _bounds(system, allowance, progress)
         settled, more = _settling(system, allowance, progress)
         held, last = _saturated(system, allowance, progress)

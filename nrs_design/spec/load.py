@@ -90,7 +90,28 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     """
     file = Path(path)
     _, text = read_source(file)
-    root, syntax = parse_with_faults(text, file)
+    return _loaded(file, text, *parse_with_faults(text, file))
+
+
+def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:
+    """Return what a spec would be if its file said what a changed document says.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec and where it came from.
+    root : Node
+        Its document, changed by `nrs_design.spec.edits.changed`.
+
+    Raises
+    ------
+    SpecError
+        If that is no valid spec.
+    """
+    return _loaded(loaded.path, loaded.text, root, ())
+
+
+def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> LoadedSpec:
     spec = _validate(root, syntax, file)
     sha256 = hash_meaning(to_data(root))
     used = ""

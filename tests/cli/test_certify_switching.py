@@ -616,19 +616,27 @@ def test_tissue_and_tool_touched_at_once(tmp_path):
     assert told["modes"] == ["withdrawal/soft+stiff/k-min", "withdrawal/soft+stiff/k-max"]
 
 
-AXES_ALONE = "what the axes do to each other"
-
-
 @pytest.mark.slow
-def test_coupled_axes_that_are_not_proved_are_answered_by_a_list(tmp_path):
-    """Axes, samples and a disturbance: `check` takes them, and nobody has to ask for the list."""
+def test_an_open_verdict_says_which_lines_block_it(tmp_path):
+    """Axes, samples and a disturbance: `check` takes them, and nobody has to ask."""
     path = tmp_path / "heavy.nrs.yaml"
     path.write_text(HEAVY, encoding="utf-8")
     run("check", path, cwd=tmp_path, code=0)
     said = run("certify-switching", path, cwd=tmp_path, code=3).stdout
     assert said.startswith("soft: INCONCLUSIVE")
-    _, listed = said.split("not proved together; with as little left out as possible:")
-    assert "proved without what the axes do to each other: Every solution" in listed
-    assert "decided without disturbances: no bound under them was looked at" in listed
-    told = document_of("certify-switching", path, cwd=tmp_path)["subsets"]
-    assert [one["left_out"] for one in told] == [[AXES_ALONE], ["the sampling"]]
+    _, listed = said.split("  proved with any one of these changes (")
+    assert "heavy.nrs.yaml:14: coupling.inertia: up to 1." in listed
+    assert "heavy.nrs.yaml:14: without coupling, without actuator.load_inertia" in listed
+    assert "bounds under disturbances were not looked for" in listed
+    told = document_of("certify-switching", path, cwd=tmp_path)
+    inertia, links, sampling = told["blocked_by"]
+    (line,) = inertia["lines"]
+    assert line["place"].endswith("heavy.nrs.yaml:14:12")
+    assert line["asked"] == "1.5 kg*m^2"
+    assert line["write"] == f"inertia: [0 kg*m^2, {line['proved_up_to']}]"
+    assert links["assumptions_besides"] == ["The axes of the robot do not act on each other."]
+    assert len(sampling["assumptions_besides"]) == 9
+    assert told["lines_work"] < 30
+    # What is advised is proved by the command.
+    path.write_text(HEAVY.replace("inertia: [0 kg*m^2, 1.5 kg*m^2]", line["write"]))
+    assert run("certify-switching", path, "--no-optimize-rate", cwd=tmp_path, code=0).stdout

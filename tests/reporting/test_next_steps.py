@@ -7,7 +7,6 @@ import pytest
 from nrs_design.pipeline import run_certification
 from nrs_design.reporting.next_steps import next_steps
 from nrs_design.search.certification import Limits
-from nrs_design.search.method import Method
 from nrs_design.spec import read_spec
 from tests.reporting.conftest import KINDS
 from tests.support import COMMUTING, ROOT, run
@@ -47,16 +46,6 @@ def test_what_was_just_searched_is_not_advised(tmp_path):
         result, option = run_certification(read_spec(spec)), f"--{asked.replace('_', '-')}"
         assert option in " ".join(next_steps(result))
         assert option not in " ".join(next_steps(result, **{asked: True}))
-
-
-def test_parts_of_an_open_design_are_looked_for(tmp_path):
-    path = tmp_path / "a.nrs.yaml"
-    text = (ROOT / "docs/examples/wide-range.nrs.yaml").read_text()
-    path.write_text(text + "sampling: {period: 2 ms, delay: 0}\n")
-    result = run_certification(read_spec(path), method=Method.GRADIENT)
-    assert str(result.certification.verdict) == "inconclusive"
-    assert "--subsets" in " ".join(next_steps(result))
-    assert "--subsets" not in " ".join(next_steps(result, subsets=True))
 
 
 @pytest.mark.parametrize("command", ["certify-switching", "report"])

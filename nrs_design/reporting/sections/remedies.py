@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline import find_relief
-from nrs_design.pipeline.subsets import parts_title, subset_lines
+from nrs_design.pipeline.blocked import blocked_lines
+from nrs_design.pipeline.subsets import PARTS_TITLE, subset_lines
 from nrs_design.reporting.document import Block, Bullets, Section, Sentence
 from nrs_design.reporting.margins import margin_lines
 from nrs_design.reporting.next_steps import next_steps
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
+    from nrs_design.pipeline.blocked import Blocked
     from nrs_design.pipeline.margins import ProofMargins
     from nrs_design.pipeline.subsets import Subset
 
@@ -26,7 +28,10 @@ _DESIGN = (
 
 
 def remedies_section(
-    result: Result, margins: ProofMargins | None, subsets: tuple[Subset, ...] | None = None
+    result: Result,
+    margins: ProofMargins | None,
+    subsets: tuple[Subset, ...] | None = None,
+    blocked: Blocked | None = None,
 ) -> Section | None:
     """Report the margins of the proof and the next steps; None without either.
 
@@ -38,20 +43,24 @@ def remedies_section(
         Where they were searched.
     subsets : tuple of Subset, optional
         What is proved of parts, where that was looked for.
+    blocked : Blocked, optional
+        What keeps the spec from being proved, where that was looked for.
     """
     blocks: list[Block] = []
     if relief := find_relief(result):
         blocks.append(Bullets("Gains that would hold", relief))
-    if subsets or (subsets is not None and result.certification.verdict is not Verdict.PROVED):
+    if subsets is not None:
         parts = tuple(f"{line[0].upper()}{line[1:]}" for line in subset_lines(subsets))
-        title = parts_title(result)
-        blocks.append(Bullets(f"{title[0].upper()}{title[1:]}", parts))
+        blocks.append(Bullets(PARTS_TITLE, parts))
+    if blocked is not None:
+        why = blocked_lines(blocked, Path(result.loaded.path.name))
+        blocks.append(Bullets("Why it is not proved", why))
     if margins is not None and (lines := tuple(margin_lines(margins, result.loaded))):
         said = tuple(map(_begun, lines))
         blocks.append(Bullets("How far a proof reaches", said))
     box = margins is not None and margins.box is not None
     dwell = margins is not None and margins.dwell is not None
-    steps = next_steps(result, margin=box, shortest_dwell=dwell, subsets=subsets is not None)
+    steps = next_steps(result, margin=box, shortest_dwell=dwell)
     if steps:
         blocks.append(Bullets("Next steps", (*steps[:-1], _DESIGN, steps[-1])))
     return Section(REMEDIES if steps else MARGINS, tuple(blocks)) if blocks else None

@@ -1,0 +1,359 @@
+"""Why a verdict is inconclusive: which lines of the spec keep it from being proved.
+
+Each line alone is changed to what asks for the least, the spec is taken all the way again, and
+where it is proved then, so is as much of what the line asks for as can be. What counts as proved
+has passed the exact check, of exactly the changed spec.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from nrs_design.certificates.certificate import Gains, Verdict
+from nrs_design.errors import AssemblyError, DesignError, SpecError
+from nrs_design.pipeline.certification import Result, assemble_spec, gains_text, search_limits
+from nrs_design.pipeline.design import run_design
+from nrs_design.progress import Progress, silent
+from nrs_design.proof.system import SwitchedSystem
+from nrs_design.proof.text import counted
+from nrs_design.search.certification import Certification, Limits
+from nrs_design.spec import LoadedSpec
+from nrs_design.spec.concessions import (
+    WITHOUT,
+    Concession,
+    Edit,
+    Way,
+    concessions,
+)
+from nrs_design.spec.document import Position, to_data
+from nrs_design.spec.edits import Keys, changed, in_one_line, node_at
+from nrs_design.spec.load import respecified
+from nrs_design.spec.places import dotted
+
+# Of the budget of the search, what may be spent here: a step that is begun goes beyond it a little.
+SHARE = 0.4
+# Of that, up to where it may be spent on finding lines about numbers and words, on how far they go
+# (or, if there is none, on several together), and on what is left out whole.
+FIND, STRETCH = 0.4, 0.8
+# A look at single modes, in units.
+LOOK = 0.02
+MOST_LINES = 24
+# Lines that are printed, beside the one above and the one below them.
+SHOWN = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Blocking:
+    """One line of a spec that asks for less, and what is proved then."""
+
+    place: Position
+    line: str  # The keys that lead there, with dots
+    asked: str  # What it asks for
+    proved: str  # What of that is proved, in the same words; empty if it is left out
+    word: str  # Before it: up to, down to, within, with, without
+    write: str  # What to write there instead; empty if it is left out
+    other_loop: bool  # Whether that changes what the robot does, or what is taken for granted
+    left_out: tuple[str, ...] = ()  # Keys about the values as they were, which go as well
+
+
+@dataclass(frozen=True, slots=True)
+class Proved:
+    """A spec that asks for less, and is proved."""
+
+    lines: tuple[Blocking, ...]  # What it says otherwise: one line, or several together
+    claim: str  # What is proved
+    needs: tuple[str, ...]  # What that takes for granted, and the spec as it stands does not
+    sha256: str  # Of that spec
+    new_gains: bool  # Whether its gains are designed anew, and are others
+
+
+@dataclass(frozen=True, slots=True)
+class Blocked:
+    """What keeps a spec from being proved."""
+
+    proved: tuple[Proved, ...]  # What is proved instead, the least given up first
+    tried: int  # How many lines were looked at
+    lines: int  # How many there are
+    unbounded: bool  # Whether something disturbs, whose effect was left out of all of it
+    work: float  # Spent on it, in units
+    budget: float  # What was there
+
+
+@dataclass(frozen=True, slots=True)
+class _Decided:
+    """A changed spec for which there is a proof."""
+
+    loaded: LoadedSpec
+    certification: Certification
+    gains: Gains
+
+
+def find_blocked(
+    result: Result, limits: Limits | None = None, progress: Progress = silent
+) -> Blocked | None:
+    """Find which lines of a spec keep it from being proved; None unless it is inconclusive.
+
+    Parameters
+    ----------
+    result : Result
+        Of the spec as it stands.
+    limits : Limits, optional
+        How far the search went; less than half of its budget is spent here. The decay rate is not
+        optimized, and no bound under disturbances is looked for.
+    progress : callable
+        Told each change before it is tried.
+
+    Raises
+    ------
+    ClockError
+        If the clock stopped a search.
+    """
+    if result.certification.verdict is not Verdict.INCONCLUSIVE:
+        return None
+    return _Search(result, limits or search_limits(result.loaded.spec), progress).run()
+
+
+class _Search:
+    """Tries changes of a spec one after the other, within a budget of work."""
+
+    def __init__(self, result: Result, limits: Limits, progress: Progress) -> None:
+        self._result, self._progress = result, progress
+        self._budget = SHARE * limits.budget
+        self._limits = replace(limits, optimize_rate=False, more=False)
+        self._spent = 0.0
+        self._found: dict[str, _Decided | None] = {}
+        self._gains = gains_text(result.designed)
+
+    def run(self) -> Blocked:
+        found = tuple(
+            concessions(self._result.loaded, self._gains, self._result.certification.rate_limit)
+        )
+        lines = found[:MOST_LINES]
+        mild = [line for line in lines if line.least.word != WITHOUT]
+        drastic = [line for line in lines if line.least.word == WITHOUT]
+        proved = self._single(mild, FIND * self._budget, STRETCH * self._budget)
+        several = () if proved else self._together(lines, STRETCH * self._budget)
+        proved += self._single(drastic, self._budget, self._budget) + several
+        unbounded = bool(self._result.certification.system.channels)
+        return Blocked(proved, len(lines), len(found), unbounded, self._spent, self._budget)
+
+    def _single(
+        self, lines: Sequence[Concession], find: float, stretch: float
+    ) -> tuple[Proved, ...]:
+        """Return what is proved when one line asks for less, the least given up first.
+
+        Parameters
+        ----------
+        lines : sequence of Concession
+            Each is changed alone.
+        find, stretch : float
+            Work in all up to which they are found, and up to which it is found how far they go.
+        """
+        blocking = []
+        for left, line in zip(range(len(lines), 0, -1), lines, strict=True):
+            if self._decide(line.edits(line.least, 0), (find - self._spent) / left):
+                blocking.append(line)
+        found = []
+        for left, line in zip(range(len(blocking), 0, -1), blocking, strict=True):
+            way, step = self._furthest(line, (stretch - self._spent) / left)
+            share = step / way.size if way.size else 0.0
+            found.append(((line.other_loop, -share), self._proved(((line, way, step),))))
+        return tuple(item for _, item in sorted(found, key=lambda pair: pair[0]))
+
+    def _furthest(self, line: Concession, budget: float) -> tuple[Way, int]:
+        """Return how much of what a line asks for is proved, by halving.
+
+        The steps that matter most come first, and may take the most: of n that are left, each may
+        take 2 / (n + 1) of the rest.
+        """
+        until = self._spent + budget
+        way = line.least
+        left = len(line.others) + max(way.size - 1, 0).bit_length()
+        for other in line.others:
+            if self._decide(line.edits(other, 0), 2 * (until - self._spent) / (left + 1)):
+                way = other
+                break
+            left -= 1
+        low, high = 0, way.size
+        while high - low > 1:
+            middle = (low + high) // 2
+            left = (high - low - 1).bit_length()
+            if self._decide(line.edits(way, middle), 2 * (until - self._spent) / (left + 1)):
+                low = middle
+            else:
+                high = middle
+        return way, low
+
+    def _together(self, lines: Sequence[Concession], until: float) -> tuple[Proved, ...]:
+        """Return what is proved when several lines ask for less, and as few of them as is found.
+
+        All are changed at once; then one after the other is put back, the most drastic first, as
+        long as the rest is proved.
+        """
+        kept: list[Concession] = []
+        for line in lines:
+            if line.in_all and self._is_valid((*kept, line)):
+                kept.append(line)
+        if len(kept) < 2 or not self._decide(_least(kept), (until - self._spent) / 2):
+            return ()
+        for left, line in zip(range(len(kept), 0, -1), reversed(tuple(kept)), strict=True):
+            fewer = [other for other in kept if other is not line]
+            if self._decide(_least(fewer), (until - self._spent) / left):
+                kept = fewer
+        # One line alone was found already.
+        return (
+            () if len(kept) < 2 else (self._proved(tuple((line, line.least, 0) for line in kept)),)
+        )
+
+    def _is_valid(self, lines: Sequence[Concession]) -> bool:
+        try:
+            _edited(self._result.loaded, _least(lines))
+        except SpecError:
+            return False
+        return True
+
+    def _decide(self, edits: Sequence[Edit], budget: float) -> _Decided | None:
+        """Take a changed spec all the way; None without a proof, or where it makes no system."""
+        if budget <= 0:
+            return None
+        try:
+            loaded = _edited(self._result.loaded, edits)
+            if loaded.sha256 not in self._found:
+                self._progress(_told(edits))
+                self._found[loaded.sha256] = self._certified(loaded, budget)
+            return self._found[loaded.sha256]
+        except (SpecError, DesignError, AssemblyError):
+            # What is no valid spec, or has no design, shows nothing.
+            return None
+
+    def _certified(self, loaded: LoadedSpec, budget: float) -> _Decided | None:
+        from nrs_design.search.certify import certify, refuted_at_once
+
+        designed = run_design(loaded)
+        system = assemble_spec(loaded, designed, self._result.coordinates)
+        if _same_search(system, self._result.certification.system):
+            return None
+        look = min(LOOK, budget / 4)
+        self._spent += look
+        if refuted_at_once(system, replace(self._limits, budget=look)) is not None:
+            return None
+        limits = replace(self._limits, budget=budget - look)
+        decided = certify(system, limits=limits)
+        self._spent += sum(attempt.work for attempt in decided.attempts)
+        if decided.verdict is not Verdict.PROVED:
+            return None
+        return _Decided(loaded, decided, gains_text(designed))
+
+    def _proved(self, lines: Sequence[tuple[Concession, Way, int]]) -> Proved:
+        edits = [edit for line, form, step in lines for edit in line.edits(form, step)]
+        decided = self._found[_edited(self._result.loaded, edits).sha256]
+        assert decided is not None
+        proof, evidence = decided.certification, decided.certification.evidence
+        assert evidence is not None
+        known = set(self._result.certification.granted)
+        return Proved(
+            tuple(self._blocking(*item) for item in lines),
+            evidence.claim(proof.system),
+            tuple(text for text in proof.granted if text not in known),
+            decided.loaded.sha256,
+            any(self._gains.get(name) != gains for name, gains in decided.gains.items()),
+        )
+
+    def _blocking(self, line: Concession, form: Way, step: int) -> Blocking:
+        says = form.says(step)
+        key = line.at[-1]
+        return Blocking(
+            self._result.loaded.place(*line.at),
+            dotted(line.at) + self._name(line.at),
+            form.asked,
+            form.reach(step),
+            form.word,
+            "" if says is None else f"{key}: {in_one_line(says)}",
+            line.other_loop,
+            tuple(dotted(at) for at in line.beside),
+        )
+
+    def _name(self, at: Keys) -> str:
+        """Return the name of an item of a list, which has no key."""
+        node = node_at(self._result.loaded.root, at) if isinstance(at[-1], int) else None
+        said = None if node is None else to_data(node)
+        name = said.get("name") if isinstance(said, dict) else said
+        return f" ({name})" if isinstance(name, str) else ""
+
+
+def _edited(loaded: LoadedSpec, edits: Sequence[Edit]) -> LoadedSpec:
+    root = loaded.root
+    for at, said in edits:
+        root = changed(root, at, said)
+    return respecified(loaded, root)
+
+
+def _least(lines: Sequence[Concession]) -> list[Edit]:
+    return [edit for line in lines for edit in line.edits(line.least, 0)]
+
+
+def _told(edits: Sequence[Edit]) -> str:
+    said = (
+        f"without {dotted(at)}" if value is None else f"{dotted(at)}: {in_one_line(value)}"
+        for at, value in edits
+    )
+    return ", ".join(said)
+
+
+def _same_search(one: SwitchedSystem, other: SwitchedSystem) -> bool:
+    """Tell whether two systems differ in words only."""
+    return replace(one, name="", assumptions=()) == replace(other, name="", assumptions=())
+
+
+def blocked_lines(blocked: Blocked, path: Path) -> tuple[str, ...]:
+    """Say what keeps a spec from being proved, in at most five lines.
+
+    Parameters
+    ----------
+    blocked : Blocked
+        As `find_blocked` finds it.
+    path : Path
+        The spec, as it was named.
+    """
+    some = counted(blocked.tried, "line")
+    some += f" out of {blocked.lines}" if blocked.tried < blocked.lines else ""
+    if not blocked.proved:
+        spent = f"{blocked.work:.2g} of work"
+        verb = "was" if blocked.tried == 1 else "were"
+        return (f"no cause found: {some} of the spec {verb} changed, and nothing helps ({spent})",)
+    alone = len(blocked.proved[0].lines) == 1
+    head = "proved with any one of these changes"
+    if not alone:
+        head = f"proved with these changes together, and with none of {some} alone that was tried"
+    head += f" ({blocked.work:.2g} of work: a larger --budget may reach further)"
+    head += "; bounds under disturbances were not looked for" if blocked.unbounded else ""
+    lines = [_said(item, path) for item in blocked.proved]
+    if not alone:
+        lines = [_place(line, path) for line in blocked.proved[0].lines]
+    more = len(lines) - SHOWN
+    if more > 1:
+        lines = [*lines[:SHOWN], f"and {more} more (--json)"]
+    return (head, *lines)
+
+
+def _said(item: Proved, path: Path) -> str:
+    said = " together with ".join(_place(line, path) for line in item.lines)
+    said += "; gains are designed anew then, and differ" if item.new_gains else ""
+    if item.needs and any(line.other_loop for line in item.lines):
+        said += f"; takes {counted(len(item.needs), 'thing')} more for granted (--json)"
+    return said
+
+
+def _place(line: Blocking, path: Path) -> str:
+    return f"{path}:{line.place.line}: {line_text(line)}"
+
+
+def line_text(line: Blocking) -> str:
+    """Say how much of what a line asks for is proved, and what to write."""
+    beside = "".join(f", without {name}" for name in line.left_out)
+    if line.word == WITHOUT:
+        return f"without {line.line}{beside}"
+    said = f"{line.line}: {line.word} {line.proved}, where the spec asks {line.asked}"
+    return f"{said} (write `{line.write}`{beside})"

@@ -1,0 +1,341 @@
+"""What each line of a spec could ask for instead, so that less has to be proved.
+
+Every change is one that a person could write into the file: an end of a range nearer to the nominal
+value, a shorter delay, a dwell time, a key left out. Whether the result is a valid spec is for
+`nrs_design.spec.load.respecified` to say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from math import ceil, floor, log2
+
+from nrs_design.proof.text import exact_text
+from nrs_design.spec.document import Data, to_data
+from nrs_design.spec.edits import Keys, in_one_line
+from nrs_design.spec.exact import parse_exact
+from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.load import LoadedSpec
+from nrs_design.spec.switched_system import SwitchedSystemSpec
+from nrs_design.spec.switching import LONGEST_DWELL
+from nrs_design.spec.units import parse_unit
+
+# Steps from the nominal value to an end of a range: six halvings.
+PARTS = 64
+# Steps from the longest dwell time that is tried down to the shortest, so many to a factor of two.
+DWELLS = 256
+PER_OCTAVE = 16
+# The longest one over the time in which the slowest mode decays to 1/e, at least; or over the one
+# that is declared, which is reached in so many steps.
+TIMES = 64
+LONGER = PER_OCTAVE * 6
+DWELL_DIGITS = 3
+MOST_STEPS = 32
+UP, DOWN, WITHIN, WITH, WITHOUT = "up to", "down to", "within", "with", "without"
+
+Edit = tuple[Keys, Data | None]
+Gains = Mapping[str, Mapping[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One way in which a line asks for less: least at 0, all that it asks for at `size`."""
+
+    word: str  # Before what is proved: up to, down to, within, with, without
+    says: Callable[[int], Data | None]  # What stands there at a step; None if nothing
+    reach: Callable[[int], str]  # That value in words
+    asked: str  # The same of the spec as it stands
+    size: int = 0  # Where nothing lies between, 0
+
+
+@dataclass(frozen=True, slots=True)
+class Concession:
+    """A line of a spec, and how it could ask for less."""
+
+    at: Keys  # The place
+    least: Way  # At 0, it asks for the least
+    # Ask for more than that at 0 already; the first one that is proved there is looked at further.
+    others: tuple[Way, ...] = ()
+    beside: tuple[Keys, ...] = ()  # What holds of the values as they were, and is left out as well
+    # Whether what is proved then is about another loop, or takes more for granted, rather than
+    # about less of what was asked for.
+    other_loop: bool = False
+    in_all: bool = True  # Whether it is changed where all lines are that make sense together
+
+    def edits(self, form: Way, step: int) -> tuple[Edit, ...]:
+        """Return what is written at a step."""
+        return ((self.at, form.says(step)), *((at, None) for at in self.beside))
+
+
+def concessions(loaded: LoadedSpec, gains: Gains, slowest: float | None) -> Iterator[Concession]:
+    """Yield how single lines of a spec could ask for less, the mildest first.
+
+    Parameters
+    ----------
+    loaded : LoadedSpec
+        The spec.
+    gains : mapping
+        Those that are designed, as decimals in SI, by controller and name: a range of a gain that
+        the spec leaves to the design is about this one.
+    slowest : float or None
+        Decay rate of the slowest mode in 1/s, or None: it says which dwell times are tried.
+    """
+    spec, said = loaded.spec, to_data(loaded.root)
+    assert isinstance(said, dict)
+    if isinstance(spec, SwitchedSystemSpec):
+        yield from _of_matrices(spec, said, slowest)
+    elif isinstance(spec, InteractionDesignSpec):
+        yield from _of_interaction(spec, said, gains, slowest)
+
+
+def _of_matrices(
+    spec: SwitchedSystemSpec, said: dict[str, Data], slowest: float | None
+) -> Iterator[Concession]:
+    for name in spec.parameters:
+        yield from _range(said, ("parameters", name))
+    for name, parameter in spec.parameters.items():
+        if parameter.varies and not parameter.fixed:
+            yield _with(("parameters", name, "varies"), "false", "true")
+    yield from _dwell(spec.switching.is_arbitrary, said, slowest, spec.time == "discrete")
+    for index in range(len(spec.modes) if len(spec.modes) > 1 else 0):
+        yield _without(("modes", index), in_all=False)
+
+
+def _of_interaction(
+    spec: InteractionDesignSpec, said: dict[str, Data], gains: Gains, slowest: float | None
+) -> Iterator[Concession]:
+    for name in sorted(spec.touched):
+        identified = _identified(said, ("environments", name))
+        for key in ("exponent", *spec.environments[name].parameters()):
+            yield from _range(said, ("environments", name, key), identified)
+    identified = _identified(said, ("actuator",))
+    for key in ("gain", "time_constant"):
+        yield from _range(said, ("actuator", key), identified)
+    for name, controller in spec.controllers.items():
+        for key, gain in controller.gains().items():
+            if gain.ranged:
+                yield from _range(said, ("controllers", name, key), center=gains[name].get(key))
+    if spec.sampling is not None:
+        yield from _delay(*spec.sampling.delay)
+    if spec.coupling is not None and spec.coupling.inertia is not None:
+        yield from _inertia(said)
+    if spec.contact == "losable":
+        yield _with(("contact",), "kept", "losable")
+    if spec.sampling is None:
+        yield from _dwell(spec.switching.is_arbitrary, said, slowest, discrete=False)
+    yield from _left_out(spec)
+
+
+def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
+    """Yield what may be left out whole."""
+    for name, controller in spec.controllers.items():
+        for index in range(len(controller.contacts) if len(controller.contacts) > 1 else 0):
+            yield _without(("controllers", name, "contacts", index), in_all=False)
+    if len(spec.controllers) > 1:
+        for name in spec.controllers:
+            yield _without(("controllers", name), in_all=False)
+    if spec.disturbances is not None:
+        yield _without(("disturbances",))
+    if spec.idle_states is not None and spec.idle_states.reset:
+        yield _without(("idle_states", "reset"), other_loop=True)
+    if spec.sensor is not None and spec.sensor.filter is not None:
+        # A sensor of which nothing else is said goes whole.
+        alone = spec.sensor.model_fields_set == {"filter"}
+        yield _without(("sensor",) if alone else ("sensor", "filter"), other_loop=True)
+    if spec.coupling is not None:
+        # In a sampled loop, an axis alone is modelled with a motor that nothing loads.
+        loaded = spec.sampling is not None and spec.actuator.load_inertia is not None
+        beside = (("actuator", "load_inertia"),) if loaded else ()
+        yield _without(("coupling",), beside, other_loop=True)
+        if spec.sampling is not None:
+            yield _without(("sampling",), other_loop=True, in_all=False)
+    if spec.sampling is not None and spec.sampling.outer_period is not None:
+        yield _without(("sampling", "outer_period"), other_loop=True)
+
+
+def _with(at: Keys, word: str, asked: str) -> Concession:
+    return Concession(at, Way(WITH, lambda _: word, lambda _: word, asked))
+
+
+def _without(
+    at: Keys, beside: tuple[Keys, ...] = (), *, other_loop: bool = False, in_all: bool = True
+) -> Concession:
+    form = Way(WITHOUT, lambda _: None, lambda _: "", "")
+    return Concession(at, form, beside=beside, other_loop=other_loop, in_all=in_all)
+
+
+def _identified(said: dict[str, Data], at: Keys) -> tuple[Keys, ...]:
+    """Return where it is said that values are those that were identified, if it is."""
+    part = _get(said, at)
+    if not isinstance(part, dict) or "range_id" not in part:
+        return ()
+    return tuple((*at, key) for key in ("range_id", "range_covers") if key in part)
+
+
+def _range(
+    said: dict[str, Data], at: Keys, beside: tuple[Keys, ...] = (), center: str | None = None
+) -> Iterator[Concession]:
+    """Yield the range of a quantity, if one is written; the center is by default its nominal."""
+    part = _get(said, at)
+    if not isinstance(part, dict) or not isinstance(part.get("range"), tuple):
+        return
+    low, high = map(str, part["range"])
+    middle = str(part.get("nominal", "")) if center is None else _in_unit_of(low, center)
+    if not middle or _number(low) >= _number(high, low):
+        return
+    ends = (low, high, middle)
+    up = partial(_ends, ends, (False, True))
+    down = partial(_ends, ends, (True, False))
+    both = partial(_ends, ends, (True, True))
+    others: tuple[Way, ...] = ()
+    # The range of a gain is about the number that ships, which no decimal of few digits is.
+    if center is None and _number(low, middle) < _number(middle) < _number(high, middle):
+        others = (
+            Way(UP, up, lambda k: up(k)[1], high, PARTS),
+            Way(DOWN, down, lambda k: down(k)[0], low, PARTS),
+        )
+    least = Way(WITHIN, both, lambda k: in_one_line(both(k)), in_one_line((low, high)), PARTS)
+    if center is not None:
+        least = Way(
+            WITHIN,
+            lambda k: both(k) if k else None,
+            lambda k: in_one_line(both(k)) if k else "no range",
+            least.asked,
+            PARTS,
+        )
+    yield Concession((*at, "range"), least, others, beside)
+
+
+def _ends(ends: tuple[str, str, str], moved: tuple[bool, bool], step: int) -> tuple[str, str]:
+    """Return the ends of a range, of which some are a part of the way from its center."""
+    low, high, middle = ends
+    return (
+        _between(middle, low, step) if moved[0] else low,
+        _between(middle, high, step) if moved[1] else high,
+    )
+
+
+def _between(middle: str, end: str, step: int) -> str:
+    """Return a decimal not beyond so many parts of the way from the center to an end."""
+    if step == PARTS:
+        return end
+    center, last = _number(middle, end), _number(end)
+    way = last - center
+    if not step or not way:
+        return middle
+    number = center + way * step / PARTS
+    # A unit of the last digit is no more than a tenth of a step.
+    unit = Fraction(10) ** _exponent(abs(way) / (10 * PARTS))
+    rounded = (floor(number / unit) if way > 0 else ceil(number / unit)) * unit
+    if (rounded - center) * way <= 0:
+        return middle
+    return " ".join((exact_text(rounded), *end.split(" ", 1)[1:]))
+
+
+def _exponent(number: Fraction) -> int:
+    """Return the largest n with ``10**n <= number``."""
+    n = len(str(number.numerator)) - len(str(number.denominator))
+    return n if Fraction(10) ** n <= number else n - 1
+
+
+def _number(text: str, unit_of: str = "") -> Fraction:
+    """Return the number of a quantity, in the unit of another one if that is named."""
+    number, _, unit = text.partition(" ")
+    value = parse_exact(number)
+    other = unit_of.partition(" ")[2]
+    if not unit or not other or unit.strip() == other.strip():
+        return value
+    return value * parse_unit(unit.strip()).factor / parse_unit(other.strip()).factor
+
+
+def _in_unit_of(quantity: str, number: str) -> str:
+    """Return a number in SI as a quantity in the unit of another one."""
+    unit = quantity.partition(" ")[2]
+    return f"{exact_text(Fraction(number) / parse_unit(unit.strip()).factor)} {unit}"
+
+
+def _delay(least: int, most: int) -> Iterator[Concession]:
+    at: Keys = ("sampling", "delay")
+    if least < most:
+
+        def says(step: int) -> Data:
+            return (str(least), str(least + step))
+
+        form = Way(UP, says, lambda k: _samples(least + k), _samples(most), most - least)
+        yield Concession(at, form)
+    elif most:
+        form = Way(WITH, str, _samples, _samples(most), most)
+        yield Concession(at, form, other_loop=True)
+
+
+def _samples(count: int) -> str:
+    return f"{count} sample{'' if count == 1 else 's'}"
+
+
+def _inertia(said: dict[str, Data]) -> Iterator[Concession]:
+    at: Keys = ("coupling", "inertia")
+    ends = _get(said, at)
+    assert isinstance(ends, tuple)
+    low, high = map(str, ends)
+    if _number(low) < _number(high, low):
+
+        def up(step: int) -> tuple[str, str]:
+            # Links without inertia are none, which is another model.
+            return _ends((low, high, low), (False, True), step + 1)
+
+        yield Concession(at, Way(UP, up, lambda k: up(k)[1], high, PARTS - 1))
+
+
+def _dwell(
+    arbitrary: bool, said: dict[str, Data], slowest: float | None, discrete: bool
+) -> Iterator[Concession]:
+    """Yield a dwell time where there is none, or a longer one than the one for all modes."""
+    at: Keys = ("switching",)
+    given = _get(said, (*at, "dwell_time"))
+    if arbitrary and said.get("switching") == "arbitrary":
+        if discrete:
+            yield Concession(at, _dwell_form(MOST_STEPS - 2, _steps_at, "arbitrary"))
+        elif slowest is not None and slowest > 0:
+            longest = min(Fraction(2) ** ceil(log2(TIMES / slowest)), Fraction(LONGEST_DWELL))
+            yield Concession(at, _dwell_form(DWELLS, partial(_seconds_at, longest), "arbitrary"))
+    elif isinstance(given, str) and not discrete and _number(given, "1 s") * TIMES < LONGEST_DWELL:
+        shortest = _number(given, "1 s")
+
+        def longer(step: int) -> str:
+            return given if step == LONGER else _seconds_at(shortest * TIMES, step)
+
+        form = Way(WITH, longer, longer, given, LONGER)
+        yield Concession((*at, "dwell_time"), form)
+
+
+def _dwell_form(size: int, text: Callable[[int], str], asked: str) -> Way:
+    def says(step: int) -> Data:
+        return "arbitrary" if step > size else {"dwell_time": text(step)}
+
+    return Way(WITH, says, lambda k: f"dwell_time: {text(k)}", asked, size + 1)
+
+
+def _steps_at(step: int) -> str:
+    return f"{MOST_STEPS - step} steps"
+
+
+def _seconds_at(longest: Fraction, step: int) -> str:
+    """Return the longest time, halved once in so many steps, rounded up to few digits."""
+    halves, rest = divmod(step, PER_OCTAVE)
+    time = longest / 2**halves * Fraction(2 * PER_OCTAVE - rest, 2 * PER_OCTAVE)
+    unit = Fraction(10) ** (_exponent(time) - DWELL_DIGITS + 1)
+    return f"{exact_text(ceil(time / unit) * unit)} s"
+
+
+def _get(said: Data, at: Keys) -> Data | None:
+    for part in at:
+        if isinstance(said, dict) and part in said:
+            said = said[str(part)]
+        elif isinstance(said, tuple) and isinstance(part, int) and part < len(said):
+            said = said[part]
+        else:
+            return None
+    return said

@@ -1,0 +1,80 @@
+"""A document with one place changed: what a person could have written instead."""
+
+from __future__ import annotations
+
+from nrs_design.spec.document import Data, Mapping, Node, Position, Scalar, Sequence
+
+Keys = tuple[str | int, ...]
+
+
+def node_at(root: Node, at: Keys) -> Node | None:
+    """Return what stands at a place, or None if the document does not have it.
+
+    Parameters
+    ----------
+    root : Node
+        The document.
+    at : tuple of str or int
+        Keys and indices from there.
+    """
+    node: Node | None = root
+    for part in at:
+        if isinstance(node, Mapping) and isinstance(part, str):
+            node = node.entries.get(part)
+        elif isinstance(node, Sequence) and isinstance(part, int) and part < len(node.items):
+            node = node.items[part]
+        else:
+            return None
+    return node
+
+
+def changed(root: Node, at: Keys, said: Data | None) -> Node:
+    """Return a document that says something else at one place; everything keeps its position.
+
+    Parameters
+    ----------
+    root : Node
+        The document.
+    at : tuple of str or int
+        Where; the mapping or list above it is there. A key that it lacks goes last.
+    said : Data or None
+        What it says there; None leaves the key or the item out.
+    """
+    first, rest = at[0], at[1:]
+    if isinstance(root, Sequence) and isinstance(first, int):
+        before, after = root.items[:first], root.items[first + 1 :]
+        item = _under(root.items[first], rest, said, root.position)
+        return Sequence((*before, *(() if item is None else (item,)), *after), root.position)
+    assert isinstance(root, Mapping)
+    assert isinstance(first, str)
+    place = root.keys.get(first, root.position)
+    value = _under(root.entries.get(first), rest, said, place)
+    entries = {key: old for key, old in root.entries.items() if key != first or value is not None}
+    if value is not None:
+        entries[first] = value
+    return Mapping(entries, {key: root.keys.get(key, place) for key in entries}, root.position)
+
+
+def _under(node: Node | None, rest: Keys, said: Data | None, place: Position) -> Node | None:
+    if rest:
+        assert node is not None
+        return changed(node, rest, said)
+    return None if said is None else _node(said, place if node is None else node.position)
+
+
+def _node(said: Data, place: Position) -> Node:
+    if isinstance(said, str):
+        return Scalar(said, place)
+    if isinstance(said, tuple):
+        return Sequence(tuple(_node(item, place) for item in said), place)
+    entries = {key: _node(value, place) for key, value in said.items()}
+    return Mapping(entries, dict.fromkeys(entries, place), place)
+
+
+def in_one_line(said: Data) -> str:
+    """Write a value in one line, as it may stand in a spec."""
+    if isinstance(said, str):
+        return said
+    if isinstance(said, tuple):
+        return f"[{', '.join(map(in_one_line, said))}]"
+    return f"{{{', '.join(f'{key}: {in_one_line(value)}' for key, value in said.items())}}}"

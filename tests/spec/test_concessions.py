@@ -1,0 +1,170 @@
+"""What each line of a spec could ask for instead."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nrs_design.spec import LoadedSpec, parse_spec
+from nrs_design.spec.concessions import PARTS, Concession, concessions
+from nrs_design.spec.document import parse_document, to_data
+from nrs_design.spec.edits import changed
+from nrs_design.spec.load import respecified
+from nrs_design.spec.weaker import find_changes
+from tests.pipeline.test_subsets import HEAVY
+from tests.support import ROOT, SOFT_TISSUE
+
+TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
+BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
+STIFFNESS = "environments.soft.stiffness.range"
+CONTROLLERS = ["controllers.insertion", "controllers.withdrawal"]
+# What a spec may have besides, and the line that it could be proved without.
+PARTS_OF = {
+    "sampling.outer_period": "\nsampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n",
+    "contact": "\ncontact: losable\n",
+    "sampling.delay": "\nsampling: {period: 2 ms, delay: [0, 3]}\n",
+    "disturbances": "\ndisturbances: {command: 8 deg/s}\n",
+    "sensor": "\nsensor: {filter: {cutoff: 30 Hz}}\n",
+    "sensor.filter": "\nsensor: {bias: 5 N*mm, filter: {cutoff: 30 Hz}}\n",
+    "coupling": (
+        "actuator:\n",
+        "coupling: {inertia: [0 kg*m^2, 0.6 kg*m^2]}\nactuator:\n  load_inertia: 1.213 kg*m^2\n",
+    ),
+    "actuator.time_constant.range": (
+        "time_constant: 0.0351 s",
+        "time_constant: {nominal: 0.0351 s, range: [0.034 s, 0.036 s]}",
+    ),
+    "controllers.insertion.Bt.range": (
+        f"{BT}}}\n  withdrawal",
+        f"{BT}, range: [1 N*m*s/rad, 3 N*m*s/rad]}}\n  withdrawal",
+    ),
+}
+
+
+def loaded(text: str) -> LoadedSpec:
+    root = parse_document(text)
+    return LoadedSpec(Path("a.nrs.yaml"), "", text, parse_spec(text), root)
+
+
+def lines_of(spec: LoadedSpec, slowest: float | None = None) -> dict[str, Concession]:
+    gains = {name: {"Bt": "2.15"} for name in getattr(spec.spec, "controllers", ())}
+    return {".".join(map(str, line.at)): line for line in concessions(spec, gains, slowest)}
+
+
+def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:
+    root = spec.root
+    for at, said in line.edits(line.least, 0):
+        root = changed(root, at, said)
+    return respecified(spec, root)
+
+
+@pytest.mark.parametrize("name", PARTS_OF)
+def test_a_line_is_named_where_it_is_there_and_a_spec_without_it_is_valid(name):
+    assert set(lines_of(loaded(TEXT))) == {STIFFNESS, *CONTROLLERS}
+    change = PARTS_OF[name]
+    text = TEXT.replace(*change, 1) if isinstance(change, tuple) else TEXT + change
+    spec = loaded(text)
+    line = lines_of(spec)[name]
+    assert name not in lines_of(at_least(spec, line))
+
+
+def test_less_is_asked_for_at_every_step_and_all_at_the_last():
+    spec = loaded(TEXT)
+    line = lines_of(spec)[STIFFNESS]
+    said = to_data(spec.root)
+    for way in (line.least, *line.others):
+        for step in range(way.size):
+            root = changed(spec.root, line.at, way.says(step))
+            found = list(find_changes(said, to_data(root)))
+            assert [change.weaker for change in found] == [True]
+        assert to_data(changed(spec.root, line.at, way.says(way.size))) == said
+
+
+def test_the_lengths_of_a_hand_are_decimals_of_its_unit():
+    line = lines_of(loaded(TEXT))[STIFFNESS]
+    up, down = line.others
+    assert (line.least.says(0), up.says(0)) == (
+        ("747.1461 N/m", "747.1461 N/m"),
+        ("720.56 N/m", "747.1461 N/m"),
+    )
+    # Half of the way to 768.17, rounded towards the nominal value.
+    assert up.says(PARTS // 2) == ("720.56 N/m", "757.65 N/m")
+    assert down.says(PARTS // 2) == ("733.86 N/m", "768.17 N/m")
+
+
+@given(
+    st.fractions(-1000, 1000, max_denominator=10**6),
+    st.fractions(Fraction(1, 10**6), 1000, max_denominator=10**6),
+    st.fractions(Fraction(1, 10**6), 1000, max_denominator=10**6),
+)
+def test_ends_are_rounded_towards_the_nominal_value_and_never_leave_the_range(center, below, above):
+    numbers = [f'"{number}"' for number in (center, center - below, center + above)]
+    text = "kind: switched-system\nname: a\ntime: continuous\nparameters:\n  k: "
+    text += f"{{nominal: {numbers[0]}, range: [{numbers[1]}, {numbers[2]}]}}\n"
+    text += "modes: [{name: m, A: [[k]]}]\nswitching: arbitrary\n"
+    line = lines_of(loaded(text))["parameters.k.range"]
+    both, up, down = line.least, *line.others
+    last = (center, center)
+    for step in (0, 1, 7, PARTS // 2, PARTS - 1, PARTS):
+        low, high = map(Fraction, both.says(step))
+        assert center - below <= low <= last[0] <= center <= last[1] <= high <= center + above
+        assert center - low <= below * step / PARTS
+        assert high - center <= above * step / PARTS
+        assert step == 0 or (high - center) > above * (step - Fraction(1, 2)) / PARTS
+        assert (Fraction(up.says(step)[1]), Fraction(down.says(step)[0])) == (high, low)
+        last = low, high
+
+
+def test_a_constant_delay_may_be_shorter():
+    line = lines_of(loaded(TEXT + "\nsampling: {period: 2 ms, delay: 2}\n"))["sampling.delay"]
+    assert [line.least.says(step) for step in range(3)] == ["0", "1", "2"]
+    assert line.least.reach(1) == "1 sample"
+    # Another delay is another loop.
+    assert line.other_loop
+
+
+def test_links_lose_their_load_with_them():
+    lines = lines_of(loaded(HEAVY))
+    assert lines["coupling"].beside == (("actuator", "load_inertia"),)
+    inertia = lines["coupling.inertia"].least
+    # Never without any inertia, which is another model.
+    assert inertia.says(0) == ("0 kg*m^2", "0.023 kg*m^2")
+    assert inertia.says(inertia.size) == ("0 kg*m^2", "1.5 kg*m^2")
+
+
+def test_a_dwell_time_begins_where_every_mode_has_decayed():
+    text = (ROOT / "specs/examples/commuting.nrs.yaml").read_text(encoding="utf-8")
+    line = lines_of(loaded(text), 0.5)["switching"]
+    times = [
+        Fraction(line.least.says(step)["dwell_time"].removesuffix(" s"))
+        for step in range(line.least.size)
+    ]
+    assert times == sorted(times, reverse=True)
+    assert times[0] == 128
+    assert times[-1] < Fraction(1, 100)
+    assert line.least.says(line.least.size) == "arbitrary"
+    assert "switching" not in lines_of(loaded(text))
+
+
+def test_a_longer_dwell_time_than_the_one_declared():
+    text = (ROOT / "specs/examples/geromel-colaneri.nrs.yaml").read_text(encoding="utf-8")
+    line = lines_of(loaded(text))["switching.dwell_time"]
+    assert line.least.says(line.least.size) == "2.76 s"
+    assert Fraction("2.76") < Fraction(line.least.says(line.least.size - 1)[:-2]) < 3
+
+
+def test_identified_ranges_lose_what_was_said_of_them():
+    """A range that was cut by hand does not hold what identification found."""
+    covers = "    lever_arm: 0.24 m\n    range_covers: tolerance\n"
+    text = TEXT.replace("    lever_arm: 0.24 m\n", covers)
+    values = parse_spec(text).environments["soft"].values_id()
+    text = text.replace(covers, f"{covers}    range_id: {values}\n")
+    spec = loaded(text)
+    line = lines_of(spec)[STIFFNESS]
+    assert line.beside == (
+        ("environments", "soft", "range_id"),
+        ("environments", "soft", "range_covers"),
+    )
+    assert at_least(spec, line).spec.environments["soft"].fixed

@@ -120,6 +120,10 @@ def _of_interaction(
                 yield from _range(said, ("controllers", name, key), center=gains[name].get(key))
     if spec.sampling is not None:
         yield from _delay(*spec.sampling.delay)
+        yield from _times(said, ("sampling", "latency"))
+        if spec.sampling.jitter is not None:
+            yield _without(("sampling", "jitter"), other_loop=True)
+    yield from _times(said, ("actuator", "dead_time"))
     if spec.coupling is not None and spec.coupling.inertia is not None:
         yield from _inertia(said)
     if spec.contact == "losable":
@@ -255,6 +259,17 @@ def _in_unit_of(quantity: str, number: str) -> str:
     """Return a number in SI as a quantity in the unit of another one."""
     unit = quantity.partition(" ")[2]
     return f"{exact_text(Fraction(number) / parse_unit(unit.strip()).factor)} {unit}"
+
+
+def _times(said: dict[str, Data], at: Keys) -> Iterator[Concession]:
+    """Yield a range of times, if one is written: what is asked for least is the shortest."""
+    part = _get(said, at)
+    if not isinstance(part, tuple) or len(part) != 2:
+        return
+    low, high = map(str, part)
+    if _number(low, high) < _number(high):
+        up = partial(_ends, (low, high, low), (False, True))
+        yield Concession(at, Way(UP, up, lambda k: up(k)[1], high, PARTS))
 
 
 def _delay(least: int, most: int) -> Iterator[Concession]:

@@ -25,6 +25,8 @@ PARTS_OF = {
     "sampling.outer_period": "\nsampling: {period: 2 ms, outer_period: 4 ms, delay: 0}\n",
     "contact": "\ncontact: losable\n",
     "sampling.delay": "\nsampling: {period: 2 ms, delay: [0, 3]}\n",
+    "sampling.latency": "\nsampling: {period: 2 ms, delay: 0, latency: [0.3 ms, 1 ms]}\n",
+    "sampling.jitter": "\nsampling: {period: 2 ms, delay: 0, jitter: 0.1 ms}\n",
     "disturbances": "\ndisturbances: {command: 8 deg/s}\n",
     "sensor": "\nsensor: {filter: {cutoff: 30 Hz}}\n",
     "sensor.filter": "\nsensor: {bias: 5 N*mm, filter: {cutoff: 30 Hz}}\n",
@@ -123,6 +125,16 @@ def test_a_constant_delay_may_be_shorter():
     assert line.least.reach(1) == "1 sample"
     # Another delay is another loop.
     assert line.other_loop
+
+
+def test_a_range_of_times_keeps_its_shortest():
+    text = TEXT + "\nsampling: {period: 2 ms, delay: 0, latency: [0.3 ms, 1 ms]}\n"
+    form = lines_of(loaded(text))["sampling.latency"].least
+    assert form.says(0) == ("0.3 ms", "0.3 ms")
+    assert form.says(PARTS) == ("0.3 ms", "1 ms")
+    assert (form.reach(PARTS // 2), form.asked) == ("0.65 ms", "1 ms")
+    one = TEXT + "\nsampling: {period: 2 ms, delay: 0, latency: 1 ms}\n"
+    assert "sampling.latency" not in lines_of(loaded(one))
 
 
 def test_links_lose_their_load_with_them():

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
+from nrs_design.certificates.certified_goal import CertifiedGoal
+from nrs_design.certificates.people import contact_goals
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
@@ -17,19 +18,8 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec
 
 
-@dataclass(frozen=True, slots=True)
-class CertifiedGoal:
-    """One goal of a spec that a certificate must show."""
-
-    key: str  # Of the goal in the spec, such as ``decay_rate``
-    said: str  # What is proved; numbers are rounded to their safe side
-    wanted: str  # As the spec writes it; ``largest`` and ``settles`` want no number
-    # Whether what is proved is enough. Where it is not, nothing is known: more may be true.
-    met: bool
-
-
 def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[CertifiedGoal]:
-    """Yield the goals of a spec that what is proved decides, in exact arithmetic.
+    """Yield the goals and limits that what is proved decides, in exact arithmetic.
 
     Parameters
     ----------
@@ -39,9 +29,17 @@ def certified_goals(spec: Spec, certificate: Certificate | None) -> Iterator[Cer
         Checked; None if nothing was shown.
     """
     # To name the class would load it, and all its parts, for specs that have no goals.
-    if spec.kind != "interaction-design" or spec.goals is None:
+    if spec.kind != "interaction-design":
         return
-    goals = spec.goals
+    yield from _of_goals(spec, certificate)
+    yield from contact_goals(spec, certificate)
+
+
+def _of_goals(
+    spec: InteractionDesignSpec, certificate: Certificate | None
+) -> Iterator[CertifiedGoal]:
+    if (goals := spec.goals) is None:
+        return
     if goals.peak_torque is not None:
         yield _peak_torque(goals.peak_torque.exact, goals.peak_torque.text, certificate)
     if goals.decay_rate is not None:

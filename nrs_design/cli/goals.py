@@ -84,7 +84,8 @@ def _say_unjudged(spec: InteractionDesignSpec) -> None:
     from nrs_design.spec.goals import OF_THE_CERTIFICATE
 
     given = () if spec.goals is None else (key for key, _ in spec.goals.given())
-    if keys := [key for key in given if key in OF_THE_CERTIFICATE]:
+    keys = [key for key in given if key in OF_THE_CERTIFICATE]
+    if keys := keys + ["limits.contact"] * bool(spec.limits.contact):
         say(f"Not judged here: {', '.join(keys)}. A proof decides: nrs-design certify-switching.")
 
 

@@ -266,14 +266,13 @@ class Examiner:
                 yield self.obligation(GOAL, subject, _met(found.met), message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
-        """Yield NRS108 for torque, rate, delay, rest and start that the spec wants to be proved."""
+        """Yield NRS108 for every goal, and limit of contact with people, to be proved."""
         for goal in certified_goals(self.loaded.spec, certificate):
             # What wants no number is said whole already.
             wanted = "" if goal.wanted in _NO_NUMBERS else f"; {goal.wanted} is wanted"
             status = Status.PROVED if goal.met else Status.INCONCLUSIVE
-            place = ("goals", goal.key)
-            subject = f"system: {goal.key}"
-            yield self.obligation(CERTIFIED_GOAL, subject, status, goal.said + wanted, place)
+            subject, said = f"system: {goal.key}", goal.said + wanted
+            yield self.obligation(CERTIFIED_GOAL, subject, status, said, goal.place)
 
     def scenario(self, name: str, simulated: Simulated) -> Iterator[Obligation]:
         """Yield NRS109 for every limit of a scenario, held against one of its runs."""

@@ -48,6 +48,9 @@ _SHOWN = (
     kinds.FORCE_GAIN,
     kinds.TORQUE,
     kinds.TORQUE_RATE,
+    kinds.FORCE,
+    kinds.PRESSURE,
+    kinds.LINEAR_STIFFNESS,
 )
 
 

@@ -75,6 +75,16 @@ def _named_environments(spec: Spec) -> Iterator[tuple[Location, Reference]]:
                     yield ("controllers", name, "contacts", index), reference(name=key)
 
 
+def _named_at_regions(spec: Spec) -> Iterator[tuple[Location, Reference]]:
+    """Yield the environments that regions of a body name: those that are proved."""
+    touched = {name for c in spec.controllers.values() for name in touched_in(c.contacts)}
+    choices = {name: one for name, one in spec.environments.items() if name in touched}
+    for index, region in enumerate(spec.limits.contact or ()):
+        if region.environment is not None:
+            at = ("limits", "contact", index, "environment")
+            yield at, Reference("environment", name=region.environment, choices=choices)
+
+
 def _contact_mix(spec: Spec) -> tuple[str, ...]:
     """Two kinds of controllers, and whose states others must say what to do with."""
     first_name, first = next(iter(spec.controllers.items()))
@@ -252,6 +262,7 @@ def _contacts(spec: Spec) -> set[object]:
 INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Names.
     *each(_named_environments, NO_SUCH),
+    *each(_named_at_regions, NO_SUCH),
     Row(
         "environments.free",
         lambda s: FREE in s.environments,

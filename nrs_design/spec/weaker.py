@@ -14,6 +14,7 @@ from fractions import Fraction
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
+from nrs_design.spec.contact_limits import CONTACT_LIMITS
 from nrs_design.spec.document import Data
 from nrs_design.spec.exact import is_number, parse_exact
 from nrs_design.spec.quantity import Quantity, is_less
@@ -30,6 +31,10 @@ _NAMED = frozenset({"environments", "controllers", "parameters", "modes", "scena
 _AT_MOST = frozenset({"peak_torque", "dwell_time", "hold", "slowest_speed", "shortest_contact"})
 _AT_LEAST = frozenset({"decay_rate", "delay", "initial_force", "longest_dwell_time"})
 _LIMITS = "limits"
+_PEOPLE = (_LIMITS, "contact")
+# Of a region of a body: what allows more the larger it is, what the smaller; of its mass, both.
+_ALLOWS_MORE = frozenset({*CONTACT_LIMITS, "contact_area", "min"})
+_ASSUMES_MORE = frozenset({"robot_mass", "stiffness", "body_speed", "max"})
 # Parts whose numbers must be borne: disturbances, errors of signals, the age of a sample, what the
 # axes do to each other. Of the sensor, those below it are parts of the loop.
 _BORNE = frozenset({"disturbances", "coupling", "sampling"})
@@ -49,7 +54,7 @@ _ABOUT_VALUES = _BESIDE | {
     *("doubts", "accept_doubt", "range_covers", "range_id", "linearized_about"),
 }
 # Ranges that stand alone, as lists of their ends.
-_RANGES = frozenset({"range", "delay", "preload", "inertia"})
+_RANGES = frozenset({"range", "delay", "latency", "dead_time", "preload", "inertia"})
 
 Place = tuple[str | int, ...]
 
@@ -211,6 +216,10 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
     goal = "goals" in path
     most = (goal and key.startswith("max_")) or not _AT_MOST.isdisjoint(path) or _is_limit(path)
     least = (goal and key.startswith("min_")) or not _AT_LEAST.isdisjoint(path) or _is_borne(path)
+    if at[:2] == _PEOPLE:
+        most, least = key in _ALLOWS_MORE, key in _ASSUMES_MORE
+        if key == "body_mass" and _number(before) != _number(after):
+            return True
     was, now = _number(before), _number(after)
     if was is None or now is None or was.dimension != now.dimension:
         # A limit that cannot be compared with that of before.
@@ -220,8 +229,8 @@ def _is_weaker(before: Data, after: Data, at: Place) -> bool:
 
 def _keys(at: Place) -> list[str]:
     """Return the words of ours on the way to a place, without names that somebody has given."""
-    named = at[:1] and at[0] in _NAMED
-    return [part for i, part in enumerate(at) if isinstance(part, str) and not (named and i == 1)]
+    place = 2 if at[:2] == _PEOPLE else 1 if at[:1] and at[0] in _NAMED else None
+    return [part for i, part in enumerate(at) if isinstance(part, str) and i != place]
 
 
 def _word(said: Data) -> Data:

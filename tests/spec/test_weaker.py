@@ -35,7 +35,7 @@ controllers:
   own: {environment: soft}
 goals: {max_sensitivity_peak: 2, min_gain_margin: 1.5, peak_torque: 0.5 N*m, delay: 2 ms}
 disturbances: {command: 8 deg/s}
-sampling: {period: 2 ms, delay: [0, 1]}
+sampling: {period: 2 ms, delay: [0, 1], latency: [0.3 ms, 1 ms], jitter: 0.1 ms}
 scenarios:
   hit: {limits: {torque: 0.5 N*m}, duration: 3 s, errors: {friction: 100 rpm}}
 mode_logic:
@@ -78,8 +78,15 @@ WEAKER = {
     "a controller": ("  withdrawal: {contacts: [soft]}\n", ""),
     "a contact": ("[soft, hard]", "[soft]"),
     "an environment": ("  hard:\n    stiffness: 900 N/m\n", ""),
-    "ages": ("delay: [0, 1]}", "delay: [0, 0]}"),
-    "sampling": ("sampling: {period: 2 ms, delay: [0, 1]}\n", ""),
+    "ages": ("delay: [0, 1]", "delay: [0, 0]"),
+    "times of commands": ("[0.3 ms, 1 ms]", "[0.3 ms, 0.9 ms]"),
+    "one time of commands": ("[0.3 ms, 1 ms]", "0.3 ms"),
+    "jitter": ("jitter: 0.1 ms", "jitter: 0.05 ms"),
+    "no jitter": (", jitter: 0.1 ms", ""),
+    "sampling": (
+        "sampling: {period: 2 ms, delay: [0, 1], latency: [0.3 ms, 1 ms], jitter: 0.1 ms}\n",
+        "",
+    ),
     "one value of what is touched": ("stiffness: 900 N/m", "stiffness: 9 N/m"),
     "law of what is touched": ("model: hunt-crossley", "model: elastic"),
     "preload": ("[0.1 m, 0.3 m]", "[0.2 m, 0.21 m]"),

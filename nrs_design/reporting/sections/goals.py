@@ -136,7 +136,7 @@ def _certified(result: Result) -> Iterator[Block]:
     rows = tuple(
         (
             goal.key,
-            linked(loaded, goal.wanted, "goals", goal.key),
+            linked(loaded, goal.wanted, *goal.place),
             goal.said,
             "proved" if goal.met else "NOT PROVED",
         )

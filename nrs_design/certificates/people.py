@@ -16,7 +16,6 @@ from nrs_design.certificates.certificate import Certificate
 from nrs_design.certificates.certified_goal import CertifiedGoal
 from nrs_design.models.impact import Impact
 from nrs_design.proof.bounds import rounded_down, rounded_up
-from nrs_design.proof.evidence.safety_layer import SafetyLayer
 from nrs_design.proof.mode import Time
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.contact_limits import CONTACT_LIMITS, IMPACT, LASTING, PRESSURES
@@ -94,9 +93,9 @@ def certified_speed(spec: InteractionDesignSpec, certificate: Certificate | None
     """
     found = []
     for item in () if certificate is None else certificate.statements:
-        if isinstance(item, SafetyLayer):
+        if item.kept_speed is not None:
             under = "whatever is commanded, by the safety layer, from rest"
-            found.append(Certified(item.limits.velocity, under))
+            found.append(Certified(item.kept_speed, under))
     bound, why = _bound(spec, certificate, "velocity")
     if bound is not None and spec.late_at is not None:
         # Between two samples the speed is then between theirs no longer.

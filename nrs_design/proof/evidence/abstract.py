@@ -184,6 +184,11 @@ class AbstractEvidence(ABC):
         """Return the rate of decay (alpha in 1/s, or rho per step), if it shows one."""
         return None
 
+    @property
+    def kept_speed(self) -> Fraction | None:
+        """Speed of the joint in rad/s that is kept whatever is commanded, if it shows one."""
+        return None
+
     def bound(self, system: SwitchedSystem) -> Bound | None:
         """Return the bound on an output, if it shows one."""
         return None

@@ -49,6 +49,11 @@ class SafetyLayer(AbstractEvidence):
         """Limits under a safety layer."""
         return Shows.SAFETY
 
+    @property
+    def kept_speed(self) -> Fraction:
+        """That of its limits."""
+        return self.limits.velocity
+
     def fits(self, switching: Switching) -> bool:
         """Tell that every switching is covered: a reset moves no angle and no reference."""
         return True

@@ -22,6 +22,8 @@ def with_loop(**changed):
 def test_it_holds_and_says_what_is_kept():
     assert EVIDENCE.find_fault(SYSTEM) is None
     assert EVIDENCE.shows is Shows.SAFETY
+    assert EVIDENCE.kept_speed == EVIDENCE.limits.velocity
+    assert genuine("common-quadratic")[1].kept_speed is None
     claim = EVIDENCE.claim(SYSTEM)
     for words in (
         "in contact of at most 0.5 N*m",

@@ -131,6 +131,12 @@ def _sampling(designed: Designed) -> SamplingSpec:
             remedy="leave outer_period out",
             at=("sampling", "outer_period"),
         )
+    if (late := designed.spec.late_at) is not None:
+        raise DesignError(
+            "the loop of a robot that follows its command by a lag takes commands at their sample",
+            remedy=f"leave {late[1]} out here, and count it into `delay` or the lag",
+            at=late,
+        )
     for controller in designed.design.controllers:
         gains = controller.law.gains
         if gains.keys() != {"Mt", "Bt"} or not gains["Mt"]:

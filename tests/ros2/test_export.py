@@ -152,6 +152,7 @@ def test_the_filter_is_written_out():
         ([("sampling: {period: 2 ms, delay: 1}\ncontact: losable\n", "")], "when its law runs"),
         ([("period: 2 ms", "period: 3 ms")], "no whole number of periods"),
         ([("delay: 1", "outer_period: 1 ms, delay: 1")], "has one period"),
+        ([("delay: 1", "delay: 1, latency: 1 ms")], "takes commands at their sample"),
         ([("delay: 1", "delay: [0, 1]")], "for one age of the force only"),
         ([("contact: losable", f"{FILTER}contact: losable"), ("order: 1", "order: 2")], "order 2"),
         (
@@ -164,7 +165,7 @@ def test_the_filter_is_written_out():
         ([("    Bt: {min", "    Kt: {nominal: 1 N*m/rad}\n    Bt: {min")], "a spring"),
         ([("Mt: {min: 0.01 kg*m^2", "Mt: {min: 5e-5 kg*m^2")], "mass: .* is not between 0.0001"),
     ],
-    ids=["sampling", "rate", "periods", "contact", "filter", "damping", "spring", "bounds"],
+    ids=["sampling", "rate", "periods", "late", "age", "filter", "damping", "spring", "bounds"],
 )
 def test_what_it_cannot_run(changes, message):
     with pytest.raises(DesignError, match=message) as caught:

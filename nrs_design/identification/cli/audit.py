@@ -136,7 +136,7 @@ def _proof_of(certificate: Path | None, loaded: LoadedSpec) -> tuple[str, bool]:
 
 # What a check that is not modelled takes for granted.
 _GRANTED = {
-    "delay": "the motion follows its command without dead time",
+    "delay": "the motion is no later behind its command than the spec says",
     "jitter": "the steps of time are even",
 }
 

@@ -56,6 +56,8 @@ class RunBounds:
     # What torque and angle keep in every row; a text says why that is not known.
     sector: Sector | str = ""
     oldest: float = 0.0  # How old a torque may be in its row, in s
+    # When commands take effect, in words, where that is not at their sample.
+    late: str = ""
     proved: bool = False  # Whether a valid certificate proves the spec; else it is only declared
 
     @property
@@ -146,7 +148,15 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         saturates=None if spec.limits.command is None else spec.limits.command.si,
         sector=sector_of(spec),
         oldest=0.0 if spec.sampling is None else float(spec.sampling.oldest),
+        late=_late(spec),
     )
+
+
+def _late(spec: InteractionDesignSpec) -> str:
+    if spec.late_at is None:
+        return ""
+    first, last = (f"{float(end):g} s" for end in spec.late)
+    return first if first == last else f"{first} to {last}"
 
 
 def _unseen(spec: InteractionDesignSpec) -> Iterator[Unseen]:

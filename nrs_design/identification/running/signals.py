@@ -84,10 +84,14 @@ def _holds_whole(step: float, period: float) -> bool:
 
 
 def _time_of(bounds: RunBounds) -> str:
-    """Say what time the model knows; there is no dead time of the motion in either."""
+    """Say what time the model knows."""
     model = "proof" if bounds.proved else "spec"
     if bounds.period is None:
         return f"none: the {model} is in continuous time"
+    if bounds.late:
+        return (
+            f"{bounds.late} from a sample to its command in the {model}, every {bounds.period:g} s"
+        )
     return (
         f"none: the {model} is about a motion without dead time, sampled every {bounds.period:g} s"
     )

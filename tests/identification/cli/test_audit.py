@@ -59,7 +59,7 @@ def test_a_good_run_is_not_inside_as_its_stiffness_is_estimated(tmp_path, proof)
     assert line.startswith("estimated, not judged: stiffness")
     assert line.endswith("shows in 100 % of the time")
     granted = "not covered: the proof takes for granted that"
-    assert f"{granted} the motion follows its command without dead time" in done.stdout
+    assert f"{granted} the motion is no later behind its command than the spec says" in done.stdout
     assert f"{granted} the steps of time are even" in done.stdout
     assert "UNPROVED" not in done.stdout
 

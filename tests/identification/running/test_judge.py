@@ -337,6 +337,8 @@ def test_steps_that_are_not_those_of_the_loop_are_said(tmp_path, period, said):
     jitter = check(judged(log(tmp_path), replace(SAMPLED, period=period)), "jitter")
     assert ("no whole number of periods" in jitter.measured) is said
     assert f"sampled every {period:g} s" in jitter.allowed
+    late = check(judged(log(tmp_path), replace(SAMPLED, period=period, late="0.001 s")), "jitter")
+    assert late.allowed.startswith("0.001 s from a sample to its command")
 
 
 def test_the_spec_may_say_where_the_driver_saturates(tmp_path):

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from nrs_design.search.certification import Certification
 
 _CONTINUOUS = "Sampling, delay and quantization of the controller: the proof is in continuous time."
-_JITTER, _ROUNDED = "Jitter of the samples.", "What the processor rounds."
+_OTHER_TIMES = "Periods, and times of commands, other than those that the spec says."
+_ROUNDED = "What the processor rounds."
 _KEPT = "Loss of contact: no mode describes a compliant controller in free motion."
 _ALONE = "Coupling between the axes of the robot."
 _UNBOUNDED = "The size of velocities and torques: the states decay, but no limit on them is proved."
@@ -117,7 +118,11 @@ def _not_covered_by_design(result: Result) -> tuple[str, ...]:
     driven = keeps_command(system, certification.statements)
     regional = any(item.shows is Shows.REGION for item in certification.statements)
     return (
-        *((_CONTINUOUS,) if system.time is Time.CONTINUOUS else (_JITTER, *(_ROUNDED,) * exact)),
+        *(
+            (_CONTINUOUS,)
+            if system.time is Time.CONTINUOUS
+            else (_OTHER_TIMES, *(_ROUNDED,) * exact)
+        ),
         *(() if covers else (_KEPT,)),
         *(() if evidence is not None and evidence.covers_coupling else (_ALONE,)),
         _IN_A_REGION if regional else _UNSATURATED if driven else _SATURATED,

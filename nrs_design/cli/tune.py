@@ -53,12 +53,20 @@ def tune(spec: SpecFile) -> Answer:
 
     Example: nrs-design tune specs/neuroboscope/force-limit.nrs.yaml
     """
+    from nrs_design.errors import DesignError
     from nrs_design.pipeline import run_analysis, run_interaction
     from nrs_design.spec import read_spec
 
     loaded = read_spec(spec)
     with progress(f"tuning {loaded.spec.name}"):
         designed = run_interaction(loaded, "has nothing to tune")
+        if designed.spec.motion_loop is None:
+            raise DesignError(
+                "the robot closes its own motion loop, so there is no motion gain to tune",
+                path=loaded.path,
+                remedy="nrs-design optimize chooses Mt and Bt",
+                at=("velocity_interface",),
+            )
         analysis = run_analysis(designed)
     return design_answer(
         designed,
@@ -71,6 +79,7 @@ def tune(spec: SpecFile) -> Answer:
 
 def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any]:
     wanted, reached = analysis.wanted, analysis.reached
+    assert wanted is not None, "there is a motion loop"
     return {
         "motion": {
             "wanted_poles": _pairs(wanted.wanted_poles),
@@ -146,6 +155,7 @@ def _motion_columns(command: str) -> tuple[str, ...]:
 
 def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[list[str]]:
     wanted, reached = analysis.wanted, analysis.reached
+    assert wanted is not None, "there is a motion loop"
     return [
         [
             "root locus",

@@ -344,6 +344,8 @@ def _print_sampled_derivative(certificate: Certificate, period: Fraction) -> Non
     from nrs_design.spec import parse_exact
 
     gains = {name: parse_exact(text) for name, text in certificate.gains[MOTION].items()}
+    if not gains:
+        return  # The robot closes its own motion loop.
     motion = ProportionalDerivative.of(gains)
     factor = motion.over(period)
     if factor * period != motion.Kd:

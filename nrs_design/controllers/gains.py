@@ -8,7 +8,7 @@ from fractions import Fraction
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
-from nrs_design.controllers.laws import LAWS, ProportionalDerivative
+from nrs_design.controllers.laws import LAWS, NO_MOTION, ProportionalDerivative
 from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.proof.taylor import exponential_between
@@ -58,16 +58,27 @@ def design_from_gains(
     expected = {MOTION, *spec.controllers}
     if set(gains) != expected:
         raise CertificateError(f"its gains are not those of {', '.join(sorted(expected))}")
+    motion = _motion(spec, gains)
+    controllers = tuple(
+        _controller(name, controller, gains) for name, controller in spec.controllers.items()
+    )
+    sensor = build_sensor(spec.sensor)
+    return ControllerDesign(motion, controllers, sensor, spec.command)
+
+
+def _motion(
+    spec: InteractionDesignSpec, gains: Mapping[str, Mapping[str, str]]
+) -> ProportionalDerivative:
+    """Return the motion controller; none where the robot has its own."""
+    if spec.motion_loop is None:
+        _numbers(gains, MOTION, ())
+        return NO_MOTION
     motion = ProportionalDerivative.of(_numbers(gains, MOTION, ("Kp", "Kd")))
     if motion.Kp <= 0 or motion.Kd <= 0:
         raise CertificateError("the gains of the motion controller are not positive")
     if not motion_gains_fixed_by(spec, motion):
         raise CertificateError("the gains of the motion controller are not what the spec fixes")
-    controllers = tuple(
-        _controller(name, controller, gains) for name, controller in spec.controllers.items()
-    )
-    sensor = build_sensor(spec.sensor)
-    return ControllerDesign(motion, controllers, sensor, spec.actuator.command)
+    return motion
 
 
 def idle_decay(idle: IdleStatesSpec) -> Fraction:
@@ -83,6 +94,7 @@ def idle_share(idle: IdleStatesSpec, period: Fraction) -> Fraction:
 def motion_gains_fixed_by(spec: InteractionDesignSpec, motion: ProportionalDerivative) -> bool:
     """Tell whether a motion controller has the gains that the spec fixes, if it fixes any."""
     loop = spec.motion_loop
+    assert loop is not None, "a robot with its own has no gains"
     if loop.derivative_gain is not None and motion.Kd != to_float32(loop.derivative_gain.exact):
         return False
     return loop.zero is None or motion.Kp == to_float32(motion.Kd * loop.zero.exact)

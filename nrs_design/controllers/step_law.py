@@ -47,7 +47,7 @@ class StepLimits:
 class StepFrame:
     """What all laws of a program have in common."""
 
-    # Of the motion controller, in rpm/rad: its Kp, and Kd over the period.
+    # Of the motion controller, in rpm/rad: its Kp, and Kd over the period; zero without one.
     Kp: Fraction
     D: Fraction
     # Through which the force passes on its way to the laws.
@@ -61,9 +61,14 @@ class StepFrame:
         return 0 if self.low_pass is None else self.low_pass.order
 
     @property
+    def streams(self) -> bool:
+        """Whether the command is a velocity: the robot closes its own motion loop."""
+        return self.Kp == self.D == 0
+
+    @property
     def numbers(self) -> dict[str, Fraction]:
         """The numbers of motion controller and filter, by the names of their coefficients."""
-        held = {"Kp": self.Kp, "Kd_over_T": self.D}
+        held = {} if self.streams else {"Kp": self.Kp, "Kd_over_T": self.D}
         return held | (
             {} if self.low_pass is None else {"p": self.low_pass.p, "q": self.low_pass.q}
         )
@@ -118,6 +123,9 @@ def build_law(
 ) -> StepLaw:
     """Write the laws of controllers out.
 
+    Without a motion controller, the command is the velocity that impedance controllers make of the
+    sample.
+
     Parameters
     ----------
     frame : StepFrame
@@ -128,6 +136,8 @@ def build_law(
         What a sample leaves of the states of laws that are not active.
     """
     limits, parts = frame.limits, step_parts(laws.values())
+    if frame.streams:
+        parts = tuple(map(_streamed, parts))
     places = [part.place for part in parts if part.place is not None]
     states = [state for part in reversed(parts) for state in part.states]
     inputs = {value.name: value for part in parts for value in part.inputs}
@@ -146,18 +156,19 @@ def build_law(
     lagging = {f"filtered_{i}": _lagged(i) for i in range(1, frame.order + 1)}
     following = {name: made for part in parts for name, made in part.following.items()}
     first = {place.name: following[place.name] for place in places}
+    motion = () if frame.streams else motion_operations(limits)
     operations = (
         *_filtered(frame.order),
         *_referred(parts, placed=placed),
-        *motion_operations(limits),
+        *motion,
         *(operation for part in reversed(parts) for operation in part.after),
     )
     return StepLaw(
         tuple(laws),
-        (*_measured(limits), *map(limits.within, inputs.values())),
+        (*_measured(limits)[frame.streams :], *map(limits.within, inputs.values())),
         (
             *map(limits.within, places),
-            error,
+            *(() if frame.streams else (error,)),
             *(limits.within(state) for state in states if state.stored),
             *_lags(frame.order),
             *(limits.within(state) for state in states if not state.stored),
@@ -168,9 +179,35 @@ def build_law(
             *(Coefficient(name, "", unit, (edge,)) for name, (edge, unit) in edges.items()),
         ),
         tuple(_with_force(operation, _lagged(frame.order)) for operation in operations),
-        {"command": "command" if limits.command is None else "limited_command"},
-        {**first, "error_before": "error", **lagging, **following},
+        {"command": _command(frame)},
+        {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
+    )
+
+
+def _command(frame: StepFrame) -> str:
+    if frame.streams:
+        return "relative"
+    return "command" if frame.limits.command is None else "limited_command"
+
+
+def _streamed(part: StepPart) -> StepPart:
+    """Return the part of an admittance that moves no reference: its velocity is the command.
+
+    It is that of after the sample, where it is a state.
+    """
+    newest = part.following.get("velocity", "velocity")
+    after = (
+        replace(operation, right=newest) if operation.name == "relative" else operation
+        for operation in part.after
+        if operation.name not in ("moved", "next_reference")
+    )
+    return replace(
+        part,
+        place=None,
+        gains=tuple(gain for gain in part.gains if gain.name != "T"),
+        after=tuple(after),
+        following={name: made for name, made in part.following.items() if name == "velocity"},
     )
 
 

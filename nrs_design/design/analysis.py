@@ -34,7 +34,8 @@ E = TypeVar("E", bound=AbstractControllerAnalysis)
 class DesignAnalysis:
     """Everything a person wants to see beside the gains."""
 
-    wanted: PdDesign  # What the root locus asks for
+    # What the root locus asks for; None where the robot closes its own motion loop.
+    wanted: PdDesign | None
     motion: TransferFunction  # The motion loop G in use
     motion_source: str  # Whether G follows from the PD gains, or the spec states it
     reached: MotionLoopResponse  # Poles, damping and overshoot that G really has
@@ -93,10 +94,15 @@ def analyze_design(
     return DesignAnalysis(
         wanted=root_locus_design(spec),
         motion=task.motion,
-        motion_source="designed" if spec.motion_loop.transfer_function is None else "given",
+        motion_source=_source(spec),
         reached=motion_loop_response(task.motion),
         measured=tuple(_measured(task, design)),
     )
+
+
+def _source(spec: InteractionDesignSpec) -> str:
+    stated = spec.motion_loop is None or spec.motion_loop.transfer_function is not None
+    return "given" if stated else "designed"
 
 
 def too_stiff(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import round_significant, to_float32
-from nrs_design.controllers.laws import ProportionalDerivative
+from nrs_design.controllers.laws import NO_MOTION, ProportionalDerivative
 from nrs_design.design.laws import LAW_DESIGNS
 from nrs_design.design.laws.law import Task, naming
 from nrs_design.design.root_locus import PdDesign, design_pd
@@ -38,22 +38,30 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
         controllers.append(
             Controller(name, law, given.environment, contact_names(given.contacts), optimum)
         )
-    return ControllerDesign(motion, tuple(controllers), task.sensor, spec.actuator.command)
+    return ControllerDesign(motion, tuple(controllers), task.sensor, spec.command)
 
 
-def root_locus_design(spec: InteractionDesignSpec) -> PdDesign:
-    """Return the PD that the root locus asks for, before any rounding or given value."""
+def root_locus_design(spec: InteractionDesignSpec) -> PdDesign | None:
+    """Return the PD that the root locus asks for, before any rounding or given value.
+
+    None where the robot closes its own motion loop.
+    """
+    motor, loop = spec.actuator, spec.motion_loop
+    if motor is None or loop is None:
+        return None
     return design_pd(
-        spec.actuator.gain.nominal.si,
-        spec.actuator.time_constant.nominal.si,
-        float(spec.motion_loop.damping_ratio),
-        spec.motion_loop.settling_time.si,
+        motor.gain.nominal.si,
+        motor.time_constant.nominal.si,
+        float(loop.damping_ratio),
+        loop.settling_time.si,
     )
 
 
 def _motion(spec: InteractionDesignSpec) -> ProportionalDerivative:
     given, digits = spec.motion_loop, spec.design.significant_digits
     wanted = root_locus_design(spec)
+    if wanted is None or given is None:
+        return NO_MOTION
     gain = given.derivative_gain
     Kd = round_significant(wanted.derivative_gain, digits) if gain is None else gain.exact
     zero = round_significant(wanted.zero, digits) if given.zero is None else given.zero.exact

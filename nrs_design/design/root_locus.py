@@ -96,12 +96,12 @@ def design_pd(
 
 
 def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
-    """Report poles, damping, overshoot and bandwidth of a stable closed loop of order >= 2.
+    """Report poles, damping, overshoot and bandwidth of a stable closed loop.
 
     Raises
     ------
     DesignError
-        If the loop is unstable, has no static gain or fewer than two poles.
+        If the loop is unstable, or has no static gain.
     """
     zeta, wn = dominant_pair(poles(tf))
     return MotionLoopResponse(
@@ -117,18 +117,11 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
     """Return damping ratio and natural frequency (rad/s) of the dominant pair of stable poles.
 
     The dominant pair is the rightmost complex pair; without one, the two rightmost real poles,
-    whose damping ratio is at least 1.
-
-    Raises
-    ------
-    DesignError
-        If there are fewer than two poles.
+    whose damping ratio is at least 1. A pole that is alone counts as two that are alike.
     """
-    if len(roots) < 2:
-        raise DesignError("a damping ratio needs a loop with at least two poles")
     ordered = sorted((complex(p) for p in roots), key=lambda p: -p.real)
     upper = next((p for p in ordered if p.imag > 1e-9 * abs(p)), None)
-    first, second = ordered[:2] if upper is None else (upper, upper.conjugate())
+    first, second = (*ordered, ordered[0])[:2] if upper is None else (upper, upper.conjugate())
     wn = math.sqrt(abs(first * second))
     return -(first + second).real / (2 * wn), wn
 

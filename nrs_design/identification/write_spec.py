@@ -255,6 +255,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
             "a spec has no place for a motor of second order",
             remedy="leave --write out, or record commands that a first order describes",
         )
+    assert spec.actuator is not None, "as has been checked"
     document = SpecDocument(loaded)
     node = document.root["actuator"]
     if found.unit != spec.actuator.command:
@@ -284,6 +285,7 @@ def merge_actuator(loaded: LoadedSpec, found: ActuatorIdentification) -> str:
     _put_origin(document, node, found.sources, caveats)
     rewritten = _rewritten(document, node)
     if covered:
+        assert rewritten.actuator is not None
         document.put(node, "range_id", rewritten.actuator.values_id())
     return document.text()
 
@@ -305,6 +307,12 @@ def check_actuator(loaded: LoadedSpec, unit: str) -> InteractionDesignSpec:
         If it is no interaction design, or its gains would be in the wrong unit.
     """
     spec = check_interaction(loaded)
+    if spec.actuator is None or spec.motion_loop is None:
+        raise SpecError(
+            "the spec has no actuator: its robot closes its own motion loop",
+            path=loaded.path,
+            remedy="leave --write out, and copy the time constant into velocity_interface",
+        )
     friction = None if spec.disturbances is None else spec.disturbances.friction
     written = {
         "derivative_gain": spec.motion_loop.derivative_gain,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment, touch_at_once
@@ -18,13 +19,19 @@ from nrs_design.spec.quantity_fields import RangedQuantity
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
     """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
-    gain, time_constant = map(_interval, (spec.actuator.gain, spec.actuator.time_constant))
-    ranges = ActuatorRanges(gain, time_constant, spec.actuator.command)
-    stated = spec.motion_loop.transfer_function
-    loop = None
-    if stated is not None:
-        loop = MotionLoop(stated.numerator, stated.denominator, given=True)
-    load = spec.actuator.load_inertia
+    followed, motor = spec.velocity_interface, spec.actuator
+    loop = load = None
+    if motor is None:
+        assert followed is not None, "a spec has one of them"
+        one, time_constant = Fraction(1), _interval(followed.time_constant)
+        ranges = ActuatorRanges(Interval.point(one), time_constant, spec.command)
+        loop = MotionLoop((one,), (time_constant.nominal, one), given=True)
+    else:
+        gain, time_constant = map(_interval, (motor.gain, motor.time_constant))
+        ranges, load = ActuatorRanges(gain, time_constant, spec.command), motor.load_inertia
+        stated = None if spec.motion_loop is None else spec.motion_loop.transfer_function
+        if stated is not None:
+            loop = MotionLoop(stated.numerator, stated.denominator, given=True)
     return Plant(
         ranges.nominal,
         tuple(build_environments(spec)),
@@ -66,7 +73,7 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         limits.torque.exact,
         limits.velocity.not_above,
         None if limits.command is None else limits.command.not_above,
-        spec.actuator.command,
+        spec.command,
         spec.coupling,
         spec.touched,
         {name: controller.gains() for name, controller in spec.controllers.items()},

@@ -44,6 +44,7 @@ from nrs_design.spec.features import (
     SATURATED,
     SEVERAL_CONTACTS,
     SPRUNG,
+    STREAMED,
     TIMED,
     TISSUE_RANGE,
     TWO_PERIODS,
@@ -109,6 +110,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(TWO_PERIODS, OTHERS, RULES),
     # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
     *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
+    # Its command is a velocity, and nothing stands where a reference would.
+    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS, SATURATED),
     # When a command takes effect within a period is known to the loop of one axis alone.
     *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED, SAFE),
     not_together(COMMAND, OTHERS, SAMPLED),

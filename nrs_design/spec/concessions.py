@@ -111,9 +111,8 @@ def _of_interaction(
         identified = _identified(said, ("environments", name))
         for key in ("exponent", *spec.environments[name].parameters()):
             yield from _range(said, ("environments", name, key), identified)
-    identified = _identified(said, ("actuator",))
-    for key in ("gain", "time_constant"):
-        yield from _range(said, ("actuator", key), identified)
+    for at in spec.motor_ranges:
+        yield from _range(said, at, _identified(said, at[:1]))
     for name, controller in spec.controllers.items():
         for key, gain in controller.gains().items():
             if gain.ranged:
@@ -123,7 +122,8 @@ def _of_interaction(
         yield from _times(said, ("sampling", "latency"))
         if spec.sampling.jitter is not None:
             yield _without(("sampling", "jitter"), other_loop=True)
-    yield from _times(said, ("actuator", "dead_time"))
+    for drive in ("actuator", "velocity_interface"):
+        yield from _times(said, (drive, "dead_time"))
     if spec.coupling is not None and spec.coupling.inertia is not None:
         yield from _inertia(said)
     if spec.contact == "losable":
@@ -151,7 +151,8 @@ def _left_out(spec: InteractionDesignSpec) -> Iterator[Concession]:
         yield _without(("sensor",) if alone else ("sensor", "filter"), other_loop=True)
     if spec.coupling is not None:
         # In a sampled loop, an axis alone is modelled with a motor that nothing loads.
-        loaded = spec.sampling is not None and spec.actuator.load_inertia is not None
+        carried = spec.actuator is not None and spec.actuator.load_inertia is not None
+        loaded = spec.sampling is not None and carried
         beside = (("actuator", "load_inertia"),) if loaded else ()
         yield _without(("coupling",), beside, other_loop=True)
         if spec.sampling is not None:

@@ -119,7 +119,14 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
 
 
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
-    yield from _actuator(spec.actuator)
+    if spec.actuator is not None:
+        yield from _actuator(spec.actuator)
+    if (followed := spec.velocity_interface) is not None:
+        yield from _ranged(
+            "velocity_interface.time_constant", followed.time_constant, followed.time_constant, "s"
+        )
+        yield from _times("velocity_interface.dead_time", followed.dead_time)
+        yield from _identified("velocity_interface", followed, MOTOR_COVERS)
     yield from describe_model(spec.motion_loop, "motion_loop")
     yield from describe_model(spec.limits, "limits")
     for name, environment in spec.environments.items():

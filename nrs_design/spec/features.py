@@ -74,8 +74,8 @@ def _first(names: Iterable[str]) -> str | None:
     return next(iter(names), None)
 
 
-def _motor_range(spec: Spec) -> str | None:
-    return _first(n for n in ("gain", "time_constant") if not getattr(spec.actuator, n).fixed)
+def _motor_range(spec: Spec) -> tuple[str, str] | None:
+    return next((at for at, item in spec.motor_ranges.items() if not item.fixed), None)
 
 
 def _bleeding(spec: Spec) -> str | None:
@@ -151,10 +151,16 @@ GIVEN_LOOP = _F(
     "leave transfer_function out",
     _given("motion_loop.transfer_function"),
 )
+STREAMED = _F(
+    "a velocity_interface",
+    "velocity_interface",
+    "write actuator and motion_loop",
+    _given("velocity_interface"),
+)
 MOTOR_RANGE = _F(
-    "a range of the {0} of the actuator",
-    "actuator.{0}",
-    "give the nominal {0} only",
+    "a range of the {0[1]} of the {0[0]}",
+    "{0[0]}.{0[1]}",
+    "give the nominal {0[1]} only",
     _motor_range,
 )
 LOADED = _F(
@@ -167,7 +173,7 @@ LOADED_ALONE = _F(
     "a load of the motor of one axis",
     "actuator.load_inertia",
     "leave load_inertia out",
-    lambda s: s.actuator.load_inertia is not None and s.coupling is None,
+    lambda s: LOADED.find(s) and s.coupling is None,
 )
 COUPLED = _F("axes that act on each other", "coupling", "leave coupling out", _given("coupling"))
 

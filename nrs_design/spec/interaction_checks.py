@@ -48,12 +48,12 @@ class _Of:
         return own is not None and own not in names and self.spec.environments.keys() >= set(names)
 
 
-def _too_late(spec: Spec) -> tuple[str, int] | None:
+def _too_late(spec: Spec) -> tuple[str, str, str, int] | None:
     """Return the longest time to a command, where a dead time makes it too long, and the limit."""
-    if spec.actuator.dead_time is None or spec.sampling is None:
+    if spec.late_at is None or spec.late_at[1] != "dead_time" or spec.sampling is None:
         return None
     too_long = spec.late[1] > LONGEST_DELAY * spec.sampling.period.exact
-    return (rounded_up(spec.late[1]), LONGEST_DELAY) if too_long else None
+    return (*spec.late_at, rounded_up(spec.late[1]), LONGEST_DELAY) if too_long else None
 
 
 def _controllers(spec: Spec) -> Iterator[tuple[Location, _Of]]:
@@ -212,7 +212,7 @@ def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
     """Yield what is about commands of the motor."""
     disturbances = spec.disturbances
     written: dict[Location, Quantity | None] = {
-        ("motion_loop", "derivative_gain"): spec.motion_loop.derivative_gain,
+        ("motion_loop", "derivative_gain"): getattr(spec.motion_loop, "derivative_gain", None),
         ("limits", "command"): spec.limits.command,
         ("disturbances", "friction"): None if disturbances is None else disturbances.friction,
     }
@@ -221,7 +221,7 @@ def _commands(spec: Spec) -> Iterator[tuple[Location, AboutCommands]]:
         written["scenarios", name, "errors", "friction"] = friction
     for at, quantity in written.items():
         if quantity is not None:
-            yield at, AboutCommands(spec.actuator.command, quantity)
+            yield at, AboutCommands(spec.command, quantity)
 
 
 def _unsafe(spec: Spec) -> tuple[str, str] | None:
@@ -260,6 +260,29 @@ def _contacts(spec: Spec) -> set[object]:
 
 
 INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
+    # The drive.
+    Row(
+        "{0}",
+        lambda s: next(
+            (k for k in ("actuator", "motion_loop") if s.velocity_interface and getattr(s, k)), None
+        ),
+        "{0} stands beside a velocity_interface, which closes its own motion loop",
+        "remove {0}, or velocity_interface",
+    ),
+    Row(
+        "",
+        lambda s: next(
+            (
+                k
+                for k in ("actuator", "motion_loop")
+                if not s.velocity_interface and not getattr(s, k)
+            ),
+            None,
+        ),
+        "the key `{0}` is missing",
+        "say how the robot moves: actuator and motion_loop, or velocity_interface for a robot that "
+        "takes velocities",
+    ),
     # Names.
     *each(_named_environments, NO_SUCH),
     *each(_named_at_regions, NO_SUCH),
@@ -349,9 +372,9 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "add `command: 8 deg/s`",
     ),
     Row(
-        "actuator.dead_time",
+        "{0}.{1}",
         _too_late,
-        "{0} s from a sample to its command, dead time and latency, is more than {1} periods, and "
+        "{2} s from a sample to its command, dead time and latency, is more than {3} periods, and "
         "is not modelled",
         "shorten them, or run the law less often",
     ),
@@ -380,8 +403,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "goals.initial_force",
         lambda s: SATURATED.find(s) and s.limits.command is None,
         "nothing says where the command of the motor saturates",
-        "add `command` to the limits, in {s.actuator.command}, for the error that the gains are "
-        "for",
+        "add `command` to the limits, in {s.command}, for the error that the gains are for",
     ),
     # Disturbances, sensor and the motor.
     Row(

@@ -24,9 +24,14 @@ from nrs_design.spec.fields import Digits, Label, Name, Title
 from nrs_design.spec.goals import GoalsSpec
 from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
-from nrs_design.spec.motion import ActuatorSpec, LimitsSpec, MotionLoopSpec
+from nrs_design.spec.motion import (
+    ActuatorSpec,
+    LimitsSpec,
+    MotionLoopSpec,
+    VelocityInterfaceSpec,
+)
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.quantity_fields import ends_of
+from nrs_design.spec.quantity_fields import RangedQuantity, ends_of
 from nrs_design.spec.safety import SafetySpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
@@ -37,6 +42,8 @@ from nrs_design.spec.threshold_logic import ThresholdLogicSpec
 MAX_ENTRIES = 64
 # The contact in the names of the modes of free motion.
 FREE = "free"
+# What a robot takes that closes its own motion loop.
+VELOCITY = "rad/s"
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
 ModeLogicSpec = Annotated[ThresholdLogicSpec | EstimatorSpec, Discriminator("type")]
@@ -57,8 +64,14 @@ class AbstractInteractionSpec(SpecModel):
     kind: Literal["interaction-design"] = Field(description="what this file describes")
     name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
     title: Title = Field(default="", description="one line for people, at most 200 characters")
-    actuator: ActuatorSpec = Field(description="the velocity-controlled motor")
-    motion_loop: MotionLoopSpec = Field(description="the position loop around the motor")
+    actuator: ActuatorSpec | None = optional(
+        "the velocity-controlled motor, with motion_loop around it"
+    )
+    motion_loop: MotionLoopSpec | None = optional("the position loop around the motor")
+    velocity_interface: VelocityInterfaceSpec | None = optional(
+        "a robot that closes its own motion loop and takes velocities, in the place of actuator "
+        "and motion_loop"
+    )
     limits: LimitsSpec = Field(description="what the interaction must respect")
     environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = Field(
         default_factory=dict, description="what the robot touches: name -> environment"
@@ -150,7 +163,10 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
         """What may have been identified from records, by the keys that lead to it."""
-        parts: dict[tuple[str, ...], IdentifiedSpec] = {("actuator",): self.actuator}
+        drives = {"actuator": self.actuator, "velocity_interface": self.velocity_interface}
+        parts: dict[tuple[str, ...], IdentifiedSpec] = {
+            (key,): drive for key, drive in drives.items() if drive is not None
+        }
         parts.update((("environments", name), item) for name, item in self.environments.items())
         if self.sampling is not None:
             parts["sampling",] = self.sampling
@@ -179,9 +195,29 @@ class AbstractInteractionSpec(SpecModel):
         return next((offset for offset in offsets if offset is not None), "none")
 
     @property
+    def command(self) -> str:
+        """Unit of what the drive takes."""
+        return VELOCITY if self.actuator is None else self.actuator.command
+
+    @property
+    def motor_ranges(self) -> dict[tuple[str, str], RangedQuantity]:
+        """The numbers of the drive, by the keys that lead to them."""
+        drives = {
+            "actuator": (self.actuator, ("gain", "time_constant")),
+            "velocity_interface": (self.velocity_interface, ("time_constant",)),
+        }
+        return {
+            (name, key): getattr(drive, key)
+            for name, (drive, keys) in drives.items()
+            if drive is not None
+            for key in keys
+        }
+
+    @property
     def late_at(self) -> tuple[str, str] | None:
         """The key that says that commands take effect later than at their sample, or None."""
-        keys = (("actuator", "dead_time"), ("sampling", "latency"), ("sampling", "jitter"))
+        drives = ((name, "dead_time") for name in ("actuator", "velocity_interface"))
+        keys = (*drives, ("sampling", "latency"), ("sampling", "jitter"))
         said = (at for at in keys if getattr(getattr(self, at[0]), at[1], None) is not None)
         return next(said, None)
 
@@ -194,7 +230,11 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to where its command takes effect, in s."""
-        parts = (self.actuator.dead_time, None if self.sampling is None else self.sampling.latency)
+        drive = self.actuator or self.velocity_interface
+        parts = (
+            None if drive is None else drive.dead_time,
+            None if self.sampling is None else self.sampling.latency,
+        )
         shortest, longest = zip(*map(ends_of, parts), strict=True)
         return sum(shortest, Fraction(0)), sum(longest, Fraction(0))
 
@@ -203,7 +243,7 @@ class AbstractInteractionSpec(SpecModel):
         """Whether a proof can be about ranges of the actuator."""
         driven = all(c.commands == "velocity" for c in self.controllers.values())
         dwells = any(True for _ in self.switching.dwell_times())
-        given = self.motion_loop.transfer_function is not None
+        given = self.motion_loop is not None and self.motion_loop.transfer_function is not None
         return not given and not dwells and (self.sampling is not None or driven)
 
     @property
@@ -211,7 +251,7 @@ class AbstractInteractionSpec(SpecModel):
         """Whether the actuator, a touched environment, a gain or the links have a range."""
         if self.coupling is not None:
             return True
-        if not (self.actuator.gain.fixed and self.actuator.time_constant.fixed):
+        if any(not item.fixed for item in self.motor_ranges.values()):
             return True
         return any(not self.environments[name].fixed for name in self.touched) or any(
             gain.ranged for c in self.controllers.values() for gain in c.gains().values()

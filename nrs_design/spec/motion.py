@@ -150,6 +150,24 @@ class ActuatorSpec(IdentifiedRangesSpec):
     )
 
 
+class VelocityInterfaceSpec(IdentifiedRangesSpec):
+    """A robot that closes its own motion loop, and follows a streamed velocity by a lag.
+
+    Its velocity omega follows the command u by ``tau omega' = u - omega``.
+    """
+
+    time_constant: RangedDuration = Field(
+        description="tau in s, with which the velocity of the robot follows its command"
+    )
+    dead_time: TimeRange | None = optional(
+        "time in s for which a command does nothing before the robot follows it, one number or "
+        "[shortest, longest]; the proof adds it to the latency of `sampling`"
+    )
+    range_covers: Coverage | None = optional(
+        "what the identified range holds: confidence, tolerance or prediction, each with 95 %"
+    )
+
+
 class TransferFunctionSpec(SpecModel):
     """Strictly proper transfer function, coefficients with the highest power first."""
 

@@ -173,8 +173,9 @@ def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     from nrs_design.spec.plausible import unusual
     from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
-    if spec.actuator.range_covers is not None:
-        yield _coverage("the actuator", MOTOR_COVERS[spec.actuator.range_covers], spec.actuator)
+    for name, drive in (("actuator", spec.actuator), ("robot", spec.velocity_interface)):
+        if drive is not None and drive.range_covers is not None:
+            yield _coverage(f"the {name}", MOTOR_COVERS[drive.range_covers], drive)
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:
             yield _coverage(name, COVERS[environment.range_covers], environment)

@@ -90,7 +90,7 @@ def assume_sampled(
         *_period_texts(sampling, design),
         *_late_texts(frame.timing),
         _delay_text(*sampling.delay),
-        _motor_text(ranges, frame.timing),
+        _motor_text(ranges, frame),
         say("unloaded.sampled"),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
@@ -103,7 +103,7 @@ def assume_sampled(
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
         *rule_texts(conditions.switching, "controller"),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
-        *command_texts(design.command),
+        *(() if frame.step.streams else command_texts(design.command)),
         *_retuned_texts(gains),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
         _angle_text(conditions.largest_angle),
@@ -138,18 +138,22 @@ def _late_texts(timing: CommandTiming) -> Iterator[Assumption]:
         yield say("command-age.range", f"{earliest} s to {late} s", earliest=earliest, late=late)
 
 
-def _motor_text(ranges: ActuatorRanges, timing: CommandTiming) -> Assumption:
-    motor, tau = motor_text(ranges), ranges.time_constant
+def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
+    motor, tau, timing = motor_text(ranges), ranges.time_constant, frame.timing
     corner = "a corner of that, of no motor of the range"
     if timing.varies:
         corner = "a corner of that, of no motor and no times of the ranges"
     elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
+    moving = "" if ranges.fixed else ", and may change at every sample, not in between"
+    if frame.step.streams:
+        lag = motor.partition(" and its time constant ")[2]
+        return say("motor.followed", lag, motor=lag, moving=moving, corner=corner)
     return say(
         "nominal-motor.sampled" if ranges.fixed else "motor.sampled",
         motor,
         motor=motor,
-        moving="" if ranges.fixed else ", and may change at every sample, not in between",
+        moving=moving,
         corner=corner,
     )
 
@@ -216,7 +220,8 @@ def _delay_text(least: int, most: int) -> Assumption:
 
 def _coefficients(frame: Frame, gains: Mapping[str, RangedLaw]) -> str:
     texts = [f"Kp = {exact_decimal(frame.step.Kp)}", f"Kd/T = {exact_decimal(frame.step.D)}"]
+    texts, known = [] if frame.step.streams else texts, frame.listed.law.coefficient
     for name, item in gains.items():
-        coefficients = item.law.coefficients.items()
+        coefficients = ((key, c) for key, c in item.law.coefficients.items() if key in known)
         texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in coefficients]
     return ", ".join(texts)

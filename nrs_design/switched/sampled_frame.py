@@ -13,7 +13,7 @@ that is held stands after e_before.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
@@ -123,12 +123,12 @@ class Frame:
     @property
     def listed(self) -> ListedLaw:
         """The list of operations of the law."""
-        return list_law(self.step.order, kinds_of(self.laws))
+        return list_law(self.step.order, kinds_of(self.laws), streams=self.step.streams)
 
     @property
     def _placing(self) -> tuple[str, ...]:
         """The terms of a reference that is computed within a sample."""
-        each = (results["error"] for results in self.listed.counts.values())
+        each = (results.get("error", {}) for results in self.listed.counts.values())
         names = dict.fromkeys(name for reference in each for name in reference)
         return tuple(name for name in names if name != ERROR)
 
@@ -152,7 +152,8 @@ class Frame:
         """Names and units of the states."""
         place, others = _around(self.stored)
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
-        motion = (OMEGA, self.stored[BEFORE], *((HELD,) if self.holds else ()), *self._sent)
+        kept = [self.stored[BEFORE]] if BEFORE in self.stored else []
+        motion = (OMEGA, *kept, *((HELD,) if self.holds else ()), *self._sent)
         return (*place, *motion, *others, *ages, DELTA)
 
     @property
@@ -200,7 +201,7 @@ class Frame:
         return [
             *reference,
             _speed(made, self.motor, turning),
-            made.after[BEFORE],
+            *([made.after[BEFORE]] if BEFORE in made.after else []),
             *([made.drive] if self.holds else []),
             *made.sent[:-1],
             *others,
@@ -275,9 +276,10 @@ def _sample(
     sizes: dict[str, LinearForm] = {}
     following = frame.listed.following
     if turn is not Turn.ADMITTANCE:
-        after[BEFORE] = step.result(following.pop(BEFORE), nothing)
         drive = step.command(nothing)
-        sizes |= step.motion_sizes()
+        if not frame.step.streams:
+            after[BEFORE] = step.result(following.pop(BEFORE), nothing)
+            sizes |= step.motion_sizes()
     following.pop(BEFORE, None)
     if turn is not Turn.MOTION:
         after |= {name: step.result(made, nothing) for name, made in following.items()}
@@ -324,8 +326,10 @@ def _slip(made: _Sample, motor: HeldMotor, numbers: Numbers) -> LinearForm:
     return motor.slip(made.given, dict(numbers))
 
 
-def _places(states: Iterable[str]) -> list[str]:
+def _places(states: Collection[str]) -> list[str]:
     """Return the reference among the states of a law, which comes before all others, or nothing."""
+    if BEFORE not in states:
+        return []
     return [*takewhile(lambda name: name != BEFORE, states)]
 
 

@@ -129,7 +129,7 @@ class ListedLaw:
 
 
 @lru_cache(maxsize=32)
-def list_law(order: int, kinds: Kinds) -> ListedLaw:
+def list_law(order: int, kinds: Kinds, *, streams: bool = False) -> ListedLaw:
     """Write the list out, and count its roundings.
 
     Parameters
@@ -138,6 +138,8 @@ def list_law(order: int, kinds: Kinds) -> ListedLaw:
         Lags of the filter of the force.
     kinds : tuple
         As `kinds_of` returns them.
+    streams : bool
+        Whether the robot closes its own motion loop, and takes velocities.
 
     Raises
     ------
@@ -146,7 +148,8 @@ def list_law(order: int, kinds: Kinds) -> ListedLaw:
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
-    law = build_law(StepFrame(ANY, ANY, low_pass), laws, ANY)
+    pd = Fraction(0) if streams else ANY
+    law = build_law(StepFrame(pd, pd, low_pass), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
     # What is commanded is zero in the loop of a proof, and angles count from there.
     given: dict[str, LinearForm] = {
@@ -215,9 +218,10 @@ class RoundedStep:
 
     def command(self, nothing: LinearForm) -> LinearForm:
         """Return the command with what it is rounded by, that of second order apart."""
-        again = (second(term.name) for term in self.terms["error"])
+        again = (second(term.name) for term in self.terms.get("error", ()))
         off = (self.rounded[name] for name in again if name in self.rounded)
-        return combine((ONE, self.result("command", nothing)), *((ONE, form) for form in off))
+        made = self.result(self.listed.law.outputs["command"], nothing)
+        return combine((ONE, made), *((ONE, form) for form in off))
 
     def motion_sizes(self) -> dict[str, LinearForm]:
         """Return what bounds the roundings of error and command, by their terms."""

@@ -15,7 +15,7 @@ from nrs_design.controllers.laws.law import (
     CompliantLaw,
     DiscreteLaw,
 )
-from nrs_design.controllers.laws.motion import ProportionalDerivative
+from nrs_design.controllers.laws.motion import NO_MOTION, ProportionalDerivative
 from nrs_design.controllers.laws.parallel import ParallelForce
 from nrs_design.controllers.laws.pi_force import IntegralForce
 from nrs_design.controllers.laws.position import PositionControl
@@ -34,6 +34,7 @@ LAWS: Mapping[str, type[CompliantLaw]] = MappingProxyType(
 
 __all__ = [
     "LAWS",
+    "NO_MOTION",
     "AbstractCompliantLaw",
     "AbstractLaw",
     "Admittance",

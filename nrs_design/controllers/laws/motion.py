@@ -22,6 +22,16 @@ class ProportionalDerivative(AbstractLaw):
     Kp: Fraction  # In rpm/rad, or whatever the motor takes instead of rpm
     Kd: Fraction  # In rpm s/rad, likewise
 
+    @property
+    def gains(self) -> Mapping[str, Fraction]:
+        """The gains by name; none where the robot closes its own motion loop."""
+        return {} if self.absent else {"Kp": self.Kp, "Kd": self.Kd}
+
+    @property
+    def absent(self) -> bool:
+        """Whether there is none: the robot closes its own motion loop, and takes velocities."""
+        return self.Kp == self.Kd == 0
+
     @staticmethod
     def units_in(command: str) -> Mapping[str, str]:
         """Return the units of the gains where commands are in that unit."""
@@ -41,3 +51,7 @@ class ProportionalDerivative(AbstractLaw):
             If it is beyond single precision.
         """
         return to_float32(self.Kd / period)
+
+
+# Of a robot that closes its own motion loop.
+NO_MOTION = ProportionalDerivative(Fraction(0), Fraction(0))

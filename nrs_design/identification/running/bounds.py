@@ -143,7 +143,7 @@ def bounds_of_spec(spec: InteractionDesignSpec) -> RunBounds:
         lever_arm=arms.pop() if len(arms) == 1 else None,
         period=_period(spec),
         losable=None if spec.contact is None else spec.contact == "losable",
-        command=spec.actuator.command,
+        command=spec.command,
         unseen=tuple(_unseen(spec)),
         saturates=None if spec.limits.command is None else spec.limits.command.si,
         sector=sector_of(spec),

@@ -24,6 +24,7 @@ from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
+    from nrs_design.design.root_locus import PdDesign
     from nrs_design.pipeline import Designed
 
 _NOMINAL = (
@@ -136,16 +137,25 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
         f"({polynomial_text(G.denominator, 6)}), from commanded to actual velocity. "
         f"{_source(spec, analysis)}"
     )
+    if (wanted := analysis.wanted) is None:
+        return Section(MOTION, (Paragraph(text),))
     return Section(
         MOTION,
-        (Paragraph(text), _motion_table(designed, analysis), _motion_locus(designed, analysis)),
+        (
+            Paragraph(text),
+            _motion_table(designed, analysis, wanted),
+            _motion_locus(designed, analysis, wanted),
+        ),
     )
 
 
 def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
+    if spec.velocity_interface is not None:
+        return "The robot closes this loop itself, and takes velocities: there are no motion gains."
     if analysis.motion_source == "given":
         return "The spec states this G itself; it need not be the one that the PD gains make."
     given = spec.motion_loop
+    assert given is not None
     names = [
         name
         for name, value in (("derivative gain", given.derivative_gain), ("zero", given.zero))
@@ -169,9 +179,9 @@ _MOTION_ROWS = (
 )
 
 
-def _motion_table(designed: Designed, analysis: DesignAnalysis) -> Table:
+def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Table:
     design = designed.design
-    wanted, reached, motion = analysis.wanted, analysis.reached, design.motion
+    reached, motion = analysis.reached, design.motion
     damping = -wanted.wanted_poles[0].real / wanted.natural_frequency
     wanted_Kp = wanted.derivative_gain * wanted.zero
     rows = (
@@ -204,7 +214,7 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis) -> Table:
     return Table("Motion loop: wanted and reached", columns, cells)
 
 
-def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
+def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign) -> Illustration:
     design, actuator = designed.design, designed.plant.actuator
     gain, zero, Kd = float(actuator.gain), float(design.motion.zero), float(design.motion.Kd)
     lag = float(actuator.time_constant)
@@ -217,7 +227,7 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis) -> Illustration:
     )
     if analysis.motion_source == "given":
         caption += " The G that the spec states has its own poles, given in the table."
-    figure = draw_root_locus(open_loop, Kd, analysis.wanted.wanted_poles, poles(closed).tolist())
+    figure = draw_root_locus(open_loop, Kd, wanted.wanted_poles, poles(closed).tolist())
     return Illustration("root-locus", "Root locus of the PD design", caption, figure)
 
 

@@ -184,7 +184,7 @@ def _provenance(result: Result) -> Iterator[tuple[str, str]]:
             accepted = f"accepted: {item.accept_doubt}" if item.accept_doubt else "NOT accepted"
             text = f"{shortened(list(item.doubts), 3)} ({accepted})"
             yield (f"Doubts about {name}", linked(loaded, text, *at, "doubts"))
-    if spec.actuator.range_covers is not None:
+    if spec.actuator is not None and spec.actuator.range_covers is not None:
         text = MOTOR_COVERS[spec.actuator.range_covers]
         yield ("Range of actuator holds", linked(loaded, text, "actuator", "range_covers"))
     for name, environment in spec.environments.items():

@@ -76,7 +76,6 @@ def certify_switching(
     from nrs_design.output import CERTIFICATE, check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import Overrides, find_relief, run_certification, search_limits
-    from nrs_design.pipeline.blocked import find_blocked
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets
     from nrs_design.spec import read_spec
@@ -108,7 +107,9 @@ def certify_switching(
     asked = {"margin": margin, "shortest_dwell": shortest_dwell}
     blocked = None
     # One rung alone may be at a loss for what others prove.
-    if method is Method.AUTO:
+    if method is Method.AUTO and str(result.certification.verdict) == "inconclusive":
+        from nrs_design.pipeline.blocked import find_blocked
+
         with progress(f"why {loaded.spec.name} is not proved", lines=True) as step:
             blocked = find_blocked(result, limits, step)
     what = "margins" if any(asked.values()) else "what else is proved"

@@ -49,7 +49,7 @@ def test_bands_of_the_worst_age():
 def test_what_is_not_computed_is_said_and_nothing_stands_in_its_place():
     rows, said = rows_of(SAMPLED)
     assert not {*LABELS} & {*rows}
-    assert "is not computed with two periods, a spring Kt, a filter" in said
+    assert "is not computed with two periods, a spring Kt, late commands, a filter" in said
 
 
 def test_nothing_is_said_without_sampling():

@@ -27,12 +27,26 @@ class TemplateOption(StrEnum):
     ROBOT = "robot"
 
 
+class DriveOption(StrEnum):
+    """What the robot of an interaction design takes."""
+
+    MOTOR = "motor"
+    VELOCITY = "velocity"
+
+
 @command("init", has_json=False)
 def init(
     template: Annotated[
         TemplateOption,
         typer.Argument(metavar="TEMPLATE", show_choices=True, help="What to start from."),
     ],
+    drive: Annotated[
+        DriveOption,
+        typer.Option(
+            help="Of an interaction-design: a motor with a loop around it, or a robot that takes "
+            "velocities."
+        ),
+    ] = DriveOption.MOTOR,
     out: Annotated[
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,
@@ -46,12 +60,17 @@ def init(
     Example: nrs-design init interaction-design --out my-robot.nrs.yaml
     """
     from nrs_design.output import write_output
-    from nrs_design.spec.templates import TEMPLATES
+    from nrs_design.spec.templates import TEMPLATES, VELOCITY_INTERFACE
 
+    chosen = str(template)
+    if drive is DriveOption.VELOCITY:
+        if template is not TemplateOption.INTERACTION_DESIGN:
+            raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
+        chosen = VELOCITY_INTERFACE
     path = out or Path(f"{template}.nrs.yaml")
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")
-    write_output(path, named_after(path, TEMPLATES[str(template)]))
+    write_output(path, named_after(path, TEMPLATES[chosen]))
     note(f"{path} written")
     _write_schema(path.with_name(SCHEMA))
     return Answer()

@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
@@ -197,8 +198,13 @@ def _streamed(part: StepPart) -> StepPart:
     It is that of after the sample, where it is a state.
     """
     newest = part.following.get("velocity", "velocity")
+    changes: dict[str, dict[str, Any]] = {
+        "relative": {"right": newest},
+        # What is used once counts as rounded with the command.
+        "velocity": {"rounding": "term", "symbol": ""},
+    }
     after = (
-        replace(operation, right=newest) if operation.name == "relative" else operation
+        replace(operation, **changes.get(operation.name, {}))
         for operation in part.after
         if operation.name not in ("moved", "next_reference")
     )

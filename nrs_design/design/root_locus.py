@@ -98,12 +98,15 @@ def design_pd(
 def motion_loop_response(tf: TransferFunction) -> MotionLoopResponse:
     """Report poles, damping, overshoot and bandwidth of a stable closed loop.
 
+    A pole that is alone counts as a pair of two that are alike.
+
     Raises
     ------
     DesignError
         If the loop is unstable, or has no static gain.
     """
-    zeta, wn = dominant_pair(poles(tf))
+    found = poles(tf)
+    zeta, wn = dominant_pair(np.repeat(found, 2) if len(found) == 1 else found)
     return MotionLoopResponse(
         poles=tuple(complex(p) for p in poles(tf)),
         damping_ratio=zeta,
@@ -117,11 +120,18 @@ def dominant_pair(roots: ComplexArray) -> tuple[float, float]:
     """Return damping ratio and natural frequency (rad/s) of the dominant pair of stable poles.
 
     The dominant pair is the rightmost complex pair; without one, the two rightmost real poles,
-    whose damping ratio is at least 1. A pole that is alone counts as two that are alike.
+    whose damping ratio is at least 1.
+
+    Raises
+    ------
+    DesignError
+        If there are fewer than two poles.
     """
+    if len(roots) < 2:
+        raise DesignError("a damping ratio needs a loop with at least two poles")
     ordered = sorted((complex(p) for p in roots), key=lambda p: -p.real)
     upper = next((p for p in ordered if p.imag > 1e-9 * abs(p)), None)
-    first, second = (*ordered, ordered[0])[:2] if upper is None else (upper, upper.conjugate())
+    first, second = ordered[:2] if upper is None else (upper, upper.conjugate())
     wn = math.sqrt(abs(first * second))
     return -(first + second).real / (2 * wn), wn
 

@@ -59,3 +59,15 @@ def test_the_schema_that_editors_look_for_is_there(tmp_path: Path) -> None:
     done = run("init", "switched-system", "--out", "specs/b.nrs.yaml", cwd=tmp_path)
     assert "is that of another version" in done.stderr
     assert schema.read_text() == "{}"
+
+
+def test_a_robot_that_takes_velocities_has_a_template_of_its_own(tmp_path: Path) -> None:
+    run("init", "interaction-design", "--drive", "velocity", "--out", "mine.nrs.yaml", cwd=tmp_path)
+    text = (tmp_path / "mine.nrs.yaml").read_text(encoding="utf-8")
+    assert "velocity_interface:" in text
+    assert "\nname: mine " in text
+    result = run("gate", "mine.nrs.yaml", "--no-reports", cwd=tmp_path, code=0)
+    assert "all fulfilled" in result.stdout
+    assert "warning" not in result.stderr
+    refused = run("init", "robot", "--drive", "velocity", cwd=tmp_path, code=2)
+    assert "interaction-design" in refused.stderr

@@ -193,13 +193,20 @@ def test_design_refuses_bad_input(arguments):
         design_pd(*arguments)
 
 
+def test_a_lag_of_first_order_is_no_faster_than_its_pole_and_does_not_overshoot():
+    found = motion_loop_response(TransferFunction((1.0,), (0.03, 1.0)))
+    assert found.poles == (pytest.approx(-1 / 0.03),)
+    assert (found.damping_ratio, found.overshoot) == (pytest.approx(1), 0)
+    assert found.natural_frequency == found.bandwidth == pytest.approx(1 / 0.03)
+
+
 def test_other_bad_input():
     with pytest.raises(DesignError, match="unstable"):
         step_overshoot(TransferFunction((1.0,), (1.0, -1.0)))
     with pytest.raises(DesignError, match="static gain"):
         step_overshoot(TransferFunction((1.0, 0.0), (1.0, 1.0)))
     with pytest.raises(DesignError, match="two poles"):
-        motion_loop_response(TransferFunction((1.0,), (1.0, 1.0)))
+        dominant_pair(np.array([-1.0 + 0j]))
     with pytest.raises(DesignError, match="infinity"):
         root_locus(TransferFunction((-1.0, 1.0), (1.0, 1.0)), [0.0, 1.0])
     with pytest.raises(DesignError, match="gain must be positive"):

@@ -138,6 +138,11 @@ CHANGES = {
     f.CONTACT_RULES: {"switching": {"transitions": [["first/soft", "second/soft"]]}},
     f.CONSTANT_FORCE: {"goals": {"constant_force": "settles"}},
     f.SATURATED: {"limits": {"command": "2000 rpm"}, "goals": {"initial_force": "0.1 N*m"}},
+    f.STREAMED: {
+        "actuator": None,
+        "motion_loop": None,
+        "velocity_interface": {"time_constant": "0.03 s"},
+    },
 }
 
 
@@ -145,7 +150,9 @@ def merged(tree, changes):
     """The text of a spec; a part that says its type or model takes the place of another."""
     if not (isinstance(tree, dict) and isinstance(changes, dict)) or "type" in changes:
         return changes
-    return tree | {key: merged(tree.get(key), value) for key, value in changes.items()}
+    kept = {key: value for key, value in tree.items() if changes.get(key, "") is not None}
+    given = {key: value for key, value in changes.items() if value is not None}
+    return kept | {key: merged(tree.get(key), value) for key, value in given.items()}
 
 
 def spec_with(*features):

@@ -65,3 +65,40 @@ def test_a_force_far_above_the_torque_limit_is_doubted(force, doubted):
     for doubt in doubts:
         assert doubt.at == ("goals", "initial_force")
         assert "more than 10 times limits.torque of 0.3 N*m: is that its unit?" in str(doubt)
+
+
+STREAMED = (ROOT / "docs/examples/ur-like.nrs.yaml").read_text("utf-8")
+LOOP = "motion_loop: {damping_ratio: 0.7, settling_time: 0.1 s}\n"
+MOTOR = "actuator: {gain: 1 rad/s/V, time_constant: 0.1 s, command: V}\n"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("limits:\n", f"{LOOP}limits:\n", "motion_loop stands beside a velocity_interface"),
+        ("limits:\n", f"{MOTOR}limits:\n", "actuator stands beside a velocity_interface"),
+        ("velocity_interface:\n", "velocity_interfaces:\n", "velocity_interface"),
+        ("[3 ms, 4 ms]", "20 ms", "more than 10 periods"),
+        ("[0.027 s, 0.033 s]}", "[0.033 s, 0.027 s]}", "below its start"),
+        ("nominal: 0.03 s", "nominal: -0.03 s", "must be positive"),
+        ("  bandwidth", "  command: 100 rpm\n  bandwidth", "the motor takes rad/s"),
+        ("sampling: {period: 2 ms, delay: 1, latency: 1 ms}\n", "", "beside continuous time"),
+        ("contact: losable\n", "disturbances: {friction: 100 rpm}\n", "the motor takes rad/s"),
+    ],
+)
+def test_a_robot_that_takes_velocities_has_no_other_drive(old, new, what):
+    assert old in STREAMED
+    with pytest.raises(SpecError) as caught:
+        parse_spec(STREAMED.replace(old, new))
+    said = [f"{fault.message} {fault.remedy}" for fault in caught.value.faults]
+    assert any(what in text for text in said or [str(caught.value)])
+
+
+def test_a_spec_says_how_its_robot_moves():
+    text = STREAMED.replace("velocity_interface:\n", "").replace("  time_constant: {n", "x: {n")
+    text = "\n".join(
+        line for line in text.splitlines() if not line.startswith(("x:", "  dead_time"))
+    )
+    with pytest.raises(SpecError, match="`actuator` is missing") as caught:
+        parse_spec(text)
+    assert "velocity_interface" in str(caught.value.faults[0].remedy)

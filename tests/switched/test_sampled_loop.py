@@ -570,3 +570,72 @@ def test_a_constant_latency_has_the_roots_of_the_split_period(tmp_path, late):
         M[memory + 1 + j, memory + j] = 1
     wanted = abs(np.linalg.eigvals(M)).max()
     assert abs(np.linalg.eigvals(mode.A.floats())).max() == pytest.approx(wanted, abs=1e-9)
+
+
+STREAMED = (ROOT / "docs/examples/ur-like.nrs.yaml").read_text(encoding="utf-8")
+SAMPLING = "{period: 2 ms, delay: 1, latency: 1 ms}"
+
+
+def streamed(path, sampling, *changes):
+    plain = (("[3 ms, 4 ms]", "3 ms"), ("{nominal: 0.03 s, range: [0.027 s, 0.033 s]}", "0.03 s"))
+    text = STREAMED.replace(f"sampling: {SAMPLING}\n", "")
+    assert text != STREAMED
+    return system_of(path, sampling, *plain, *changes, text=text)
+
+
+def numbers_of(system, controller, names):
+    said = " ".join(system.assumptions)
+    return [float(re.search(rf"{n} of {controller} = ([0-9.]+[0-9])", said)[1]) for n in names]
+
+
+@pytest.mark.parametrize("sampling", ["{period: 2 ms, delay: 0}", SAMPLING])
+@pytest.mark.parametrize("Mt", ["0.01", "0"])
+def test_a_streamed_velocity_has_the_roots_of_its_lag(tmp_path, sampling, Mt):
+    """The velocity of after the sample is the command; the rest is by exponentials and by hand."""
+    system = streamed(tmp_path, sampling, ("0.01 kg*m^2", f"{Mt} kg*m^2"))
+    T, tau, k = 0.002, 0.03, 780 * 0.24**2
+    late = 0.003 + (0.001 if "latency" in sampling else 0.0)
+    whole, part = (round(late // T), late % T)
+    old = int("delay: 1" in sampling)
+    A = np.array([[-1 / tau, 0.0], [1.0, 0.0]])
+
+    def over(time):
+        block = np.zeros((3, 3))
+        block[:2, :2], block[0, 2] = A * time, time / tau
+        made = expm(block)
+        return made[:2, :2], made[:2, 2]
+
+    (F1, G1), (F2, G2) = over(part), over(T - part)
+    a, b = (
+        numbers_of(system, "firm", "ab") if Mt != "0" else (0.0, *numbers_of(system, "firm", "b"))
+    )
+    # State: speed, angle, velocity of the admittance, force before, commands before.
+    n = 4 + whole + 1
+    M, unit = np.zeros((n, n)), np.eye(n)
+    force = unit[3] if old else k * unit[1]
+    velocity = a * unit[2] + b * force
+    M[2], M[3], M[4] = velocity, k * unit[1], -velocity
+    for j in range(whole):
+        M[5 + j, 4 + j] = 1
+    older, newer = unit[4 + whole], unit[3 + whole] if whole else -velocity
+    if not part:
+        older = newer
+    M[:2, :2] = F2 @ F1
+    M[:2] += np.outer(F2 @ G1, older) + np.outer(G2, newer)
+    wanted = abs(np.linalg.eigvals(M)).max()
+    assert radius(system, "firm/tissue/k-max") == pytest.approx(wanted, abs=1e-9)
+    assert system.states[0] == "omega [rad/s]"
+    assert "e [rad]" not in system.states
+
+
+def test_a_streamed_velocity_tends_to_the_continuous_loop(tmp_path):
+    """``tau omega' = u - omega, Mt vm' = k theta - Bt vm, u = -vm``, as the period gets short."""
+    changes = (
+        ("  dead_time: 3 ms\n", ""),
+        ("Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad}", "Bt: 2 N*m*s/rad"),
+    )
+    system = streamed(tmp_path, "{period: 0.05 ms, delay: 0}", *changes)
+    k = 780 * 0.24**2
+    A = np.array([[-1 / 0.03, 0, -1 / 0.03], [1, 0, 0], [0, k / 0.01, -2 / 0.01]])
+    slowest = np.linalg.eigvals(A).real.max()
+    assert np.log(radius(system, "firm/tissue/k-max")) / 5e-5 == pytest.approx(slowest, rel=2e-3)

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from importlib.resources import files
 from types import MappingProxyType
 
-_NAMES = ("interaction-design", "hybrid-force", "switched-system", "robot")
+# An interaction design of a robot that takes velocities.
+VELOCITY_INTERFACE = "velocity-interface"
+_NAMES = ("interaction-design", VELOCITY_INTERFACE, "hybrid-force", "switched-system", "robot")
 
 
 def _read(name: str) -> str:

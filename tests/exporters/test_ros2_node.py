@@ -88,9 +88,11 @@ def press(count):
     return [(float(angle), STIFFNESS * float(angle)) for angle in angles]
 
 
-def test_every_command_is_bit_for_bit_that_of_the_replica(package):
-    """600 samples with a torque of either age, and a velocity that is commanded on the way."""
-    export, folder = package()
+@pytest.mark.parametrize("name", ["sampled", "ur-like"])
+def test_every_command_is_bit_for_bit_that_of_the_replica(package, name):
+    """600 samples with a torque of any allowed age, and a velocity that is commanded on the way."""
+    export, folder = package(name)
+    youngest, oldest = export.record.delay
     law = program_of(export).law
     script, wanted = [], []
     state = {v.name: np.zeros(1, np.float32) for v in law.states}
@@ -98,9 +100,9 @@ def test_every_command_is_bit_for_bit_that_of_the_replica(package):
     for k, (angle, torque) in enumerate(run_in, 1):
         if k == 100:
             script.append(f"joint servo_jv {k * T} velocity a 0.01")
-        # Every other torque is that of the sample before.
-        old = T if k > 1 and k % 2 else 0
-        torque = run_in[k - 2][1] if old else torque
+        # Every other torque is that of the sample before, where it may be younger.
+        old = T if oldest and (youngest or (k > 1 and k % 2)) else 0
+        torque = run_in[max(k - 2, 0)][1] if old else torque
         script += sample(k, angle, torque, late=(k % 3) * 20_000, old=old)
         velocity = 0.01 if 100 <= k <= 150 else 0.0
         given = {"angle": angle, "torque": torque, "velocity_command": velocity}

@@ -93,7 +93,8 @@ ALL = [name if name in SMALL else pytest.param(name, marks=pytest.mark.slow) for
 # For each kind, the fields that may hold other numbers.
 NUMBERS = {
     "block-triangular": {"blocks", "parts"},
-    "constant-force": {"Q", "slope"},
+    # Q and the slope have one denominator, whatever it is.
+    "constant-force": {"Q", "slope", "denominator_log2"},
     "graph": {"nodes", "denominator_log2", "vanishing", "multipliers"},
     "parameter-quadratic": {"low", "high", "denominator_log2"},
     "saturated-ellipsoid": {"Q", "H", "level"},

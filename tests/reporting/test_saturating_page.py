@@ -31,7 +31,7 @@ def test_the_lead_says_both_rates_and_what_each_is_of(page):
     signals = "velocity command and motor command saturate"
     assert f"; where {signals}, motions that begin {start} die out" in lead
     assert lead.endswith(", and of others nothing is said.")
-    assert facts["Proved decay rate alpha"].startswith(whole)
+    assert facts["Proved decay rate alpha"] == f">= {whole} 1/s"
     assert facts["Proved where signals saturate"] == f"{cut} 1/s, for motions that begin {start}"
     assert float(cut) < float(whole)
     assert any(f"alpha >= {cut} 1/s" in remark for remark in page.remarks)

@@ -62,10 +62,10 @@ def tune(spec: SpecFile) -> Answer:
         designed = run_interaction(loaded, "has nothing to tune")
         if designed.spec.motion_loop is None:
             raise DesignError(
-                "the robot closes its own motion loop, so there is no motion gain to tune",
+                "there is no motion loop around a motor, so there is no motion gain to tune",
                 path=loaded.path,
-                remedy="nrs-design optimize chooses Mt and Bt",
-                at=("velocity_interface",),
+                remedy="nrs-design optimize chooses the gains of impedance controllers",
+                at=(*designed.spec.drives,),
             )
         analysis = run_analysis(designed)
     return design_answer(

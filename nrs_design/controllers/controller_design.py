@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
+from nrs_design.models.drive import Takes, taken_in
 
 # What lets the modes of all controllers share one state.
 SHARED_STATES = (
@@ -47,6 +48,11 @@ class ControllerDesign:
     controllers: tuple[Controller, ...]  # In the order of the spec
     sensor: Sensor = field(default_factory=Sensor)  # Of the force that they act on
     command: str = "rpm"  # Unit of the commands that the motor takes
+
+    @property
+    def takes(self) -> Takes | None:
+        """What the robot takes; None for the commands of a motor."""
+        return taken_in(self.command)
 
     @property
     def contacts(self) -> frozenset[str]:

@@ -17,6 +17,8 @@ from nrs_design.controllers.operations import Operation, Value
 BEYOND = Fraction(1_000_000)
 # The operand that stands for the force: the sample, or the last lag of its filter.
 FORCE = "force"
+# What a law takes of it off the torque that it commands.
+FORCE_GAIN = "Kf_torque"
 # What the hand commands, the position that is commanded, and the wanted force.
 HAND = Value("velocity_command", "v", "rad/s", BEYOND, "velocity that the hand commands")
 POSITION = Value("position", "X", "rad", BEYOND, "commanded position", "angle")

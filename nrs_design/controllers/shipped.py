@@ -79,7 +79,7 @@ def _step_law(
 ) -> StepLaw:
     low_pass = None if design.sensor.filter is None else design.sensor.filter.discretize(outer)
     motion = design.motion
-    frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec))
+    frame = StepFrame(motion.Kp, motion.over(period), low_pass, step_limits(spec), design.takes)
     if spec.offset != "none":
         first = next(c.name for c in design.controllers if c.law.commands == "position")
         because = "it jumps at every switch, and no proof of a law in steps covers that"

@@ -21,8 +21,9 @@ from typing import Any
 
 from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.operations import Coefficient, Operation, StepLaw, Value
-from nrs_design.controllers.parts import BEYOND, FORCE, HAND, POSITION, StepPart
+from nrs_design.controllers.parts import BEYOND, FORCE, FORCE_GAIN, HAND, POSITION, StepPart
 from nrs_design.controllers.sensor import DiscreteLowPass
+from nrs_design.models.drive import Takes
 
 UNITS = {"command": "rpm"}
 ZERO = Fraction(0)
@@ -48,13 +49,16 @@ class StepLimits:
 class StepFrame:
     """What all laws of a program have in common."""
 
-    # Of the motion controller, in rpm/rad: its Kp, and Kd over the period; zero without one.
+    # Of the motion controller, in rpm/rad: its Kp, and Kd over the period.
     Kp: Fraction
     D: Fraction
     # Through which the force passes on its way to the laws.
     low_pass: DiscreteLowPass | None = None
     # By default nothing saturates, and inputs are refused where no robot gets.
     limits: StepLimits = StepLimits()
+    # What the robot takes, if there is no motion controller of ours; a torque is what its laws make
+    # of the error of motion.
+    takes: Takes | None = None
 
     @property
     def order(self) -> int:
@@ -63,13 +67,13 @@ class StepFrame:
 
     @property
     def streams(self) -> bool:
-        """Whether the command is a velocity: the robot closes its own motion loop."""
-        return self.Kp == self.D == 0
+        """Whether the robot closes its own motion loop: it takes velocities or positions."""
+        return self.takes in (Takes.VELOCITY, Takes.POSITION)
 
     @property
     def numbers(self) -> dict[str, Fraction]:
         """The numbers of motion controller and filter, by the names of their coefficients."""
-        held = {} if self.streams else {"Kp": self.Kp, "Kd_over_T": self.D}
+        held = {} if self.takes else {"Kp": self.Kp, "Kd_over_T": self.D}
         return held | (
             {} if self.low_pass is None else {"p": self.low_pass.p, "q": self.low_pass.q}
         )
@@ -125,7 +129,7 @@ def build_law(
     """Write the laws of controllers out.
 
     Without a motion controller, the command is the velocity that impedance controllers make of the
-    sample.
+    sample, or the reference that they move by it.
 
     Parameters
     ----------
@@ -137,7 +141,7 @@ def build_law(
         What a sample leaves of the states of laws that are not active.
     """
     limits, parts = frame.limits, step_parts(laws.values())
-    if frame.streams:
+    if frame.takes is Takes.VELOCITY:
         parts = tuple(map(_streamed, parts))
     places = [part.place for part in parts if part.place is not None]
     states = [state for part in reversed(parts) for state in part.states]
@@ -157,10 +161,13 @@ def build_law(
     lagging = {f"filtered_{i}": _lagged(i) for i in range(1, frame.order + 1)}
     following = {name: made for part in parts for name, made in part.following.items()}
     first = {place.name: following[place.name] for place in places}
-    motion = () if frame.streams else motion_operations(limits)
+    referred = tuple(_referred(parts, placed=placed))
+    to_follow = "reference" if not placed or referred else "position"
+    takes_force = any(gain.name == FORCE_GAIN for part in parts for gain in part.gains)
+    motion = () if frame.streams else motion_operations(limits, to_follow, takes_force=takes_force)
     operations = (
         *_filtered(frame.order),
-        *_referred(parts, placed=placed),
+        *referred,
         *motion,
         *(operation for part in reversed(parts) for operation in part.after),
     )
@@ -180,16 +187,18 @@ def build_law(
             *(Coefficient(name, "", unit, (edge,)) for name, (edge, unit) in edges.items()),
         ),
         tuple(_with_force(operation, _lagged(frame.order)) for operation in operations),
-        {"command": _command(frame)},
+        {"command": _command(frame, takes_force=takes_force)},
         {**first, **({} if frame.streams else {"error_before": "error"}), **lagging, **following},
         UNITS,
     )
 
 
-def _command(frame: StepFrame) -> str:
+def _command(frame: StepFrame, *, takes_force: bool) -> str:
     if frame.streams:
-        return "relative"
-    return "command" if frame.limits.command is None else "limited_command"
+        return "relative" if frame.takes is Takes.VELOCITY else "next_reference"
+    if frame.limits.command is not None:
+        return "limited_command"
+    return "eased" if takes_force else "command"
 
 
 def _streamed(part: StepPart) -> StepPart:
@@ -249,19 +258,35 @@ def _referred(parts: Iterable[StepPart], *, placed: bool) -> Iterator[Operation]
         if part.adds and total:
             yield Operation(part.total, "add", part.adds, total)
         total = part.total if part.adds and total else part.adds or total
-    if placed:
+    if placed and total:
         yield Operation("reference", "add", "position", total, "angle")
 
 
-def motion_operations(limits: StepLimits) -> Iterator[Operation]:
-    """Yield the PD controller, from ``reference`` and ``angle`` to ``command``."""
-    yield Operation("error", "subtract", "reference", "angle", "own", "e")
+def motion_operations(
+    limits: StepLimits, reference: str = "reference", *, takes_force: bool = False
+) -> Iterator[Operation]:
+    """Yield the PD controller, from a reference and ``angle`` to ``command``.
+
+    Parameters
+    ----------
+    limits : StepLimits
+        Where the command saturates.
+    reference : str
+        Name of what it follows.
+    takes_force : bool
+        Whether a share of the force is added, which makes ``eased`` of ``command``.
+    """
+    yield Operation("error", "subtract", reference, "angle", "own", "e")
     yield Operation("proportional", "multiply", "Kp", "error")
     yield Operation("change", "subtract", "error", "error_before")
     yield Operation("derivative", "multiply", "Kd_over_T", "change")
     yield Operation("command", "add", "proportional", "derivative")
+    if takes_force:
+        yield Operation("easing", "multiply", FORCE_GAIN, FORCE)
+        yield Operation("eased", "subtract", "command", "easing")
     if limits.command is not None:
-        yield Operation("limited_command", "saturate", "command_limit", "command")
+        made = "eased" if takes_force else "command"
+        yield Operation("limited_command", "saturate", "command_limit", made)
 
 
 def _lags(order: int) -> Iterator[Value]:

@@ -19,6 +19,12 @@ class MotionLoop:
     denominator: tuple[Fraction, ...]
     given: bool = False  # Stated by the spec, instead of following from actuator and motion gains
 
+    @property
+    def delay(self) -> Fraction:
+        """By how much it is late for what is slow, in s: minus the slope of its phase at 0."""
+        (*_, b1, b0), (*_, a1, a0) = (Fraction(0), *self.numerator), self.denominator
+        return Fraction(0) if not a0 or not b0 else a1 / a0 - b1 / b0
+
 
 @dataclass(frozen=True, slots=True)
 class Realization:

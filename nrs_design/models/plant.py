@@ -8,6 +8,7 @@ from fractions import Fraction
 
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.drive import Drive
 from nrs_design.models.motion_loop import MotionLoop, close_motion_loop
 
 
@@ -23,6 +24,8 @@ class Plant:
     # Inertia at the joint in kg m^2 against which the torque of an environment works; None where
     # that torque is left out.
     load_inertia: Fraction | None = None
+    # What moves the joint, where that is no first-order motor whose velocity is commanded.
+    drive: Drive | None = None
 
     def motion_loop(self, Kp: Fraction, Kd: Fraction) -> MotionLoop:
         """Return G: the one that the spec states, else the one that the PD gains make.
@@ -58,4 +61,5 @@ class Plant:
             e.scaled(scale) if e.parts or e.name in touched else e for e in self.environments
         )
         ranges = self.actuator_ranges.scaled(scale)
-        return replace(self, environments=tuple(environments), actuator_ranges=ranges)
+        drive = None if self.drive is None else self.drive.scaled(scale)
+        return replace(self, environments=tuple(environments), actuator_ranges=ranges, drive=drive)

@@ -7,11 +7,19 @@ from fractions import Fraction
 
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment, touch_at_once
+from nrs_design.models.drive import (
+    Drive,
+    lagging_drive,
+    position_drive,
+    torque_drive,
+    velocity_drive,
+)
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec.environment import AbstractEnvironmentSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.motion import FollowingSpec, TorqueInterfaceSpec
 from nrs_design.spec.operating import OperatingConditions, Preload
 from nrs_design.spec.quantity import Quantity
 from nrs_design.spec.quantity_fields import RangedQuantity
@@ -19,16 +27,17 @@ from nrs_design.spec.quantity_fields import RangedQuantity
 
 def build_plant(spec: InteractionDesignSpec) -> Plant:
     """Convert the plant of a spec to exact SI numbers, environments as the pivot sees them."""
-    followed, motor = spec.velocity_interface, spec.actuator
-    loop = load = None
-    if motor is None:
-        assert followed is not None, "a spec has one of them"
-        one, time_constant = Fraction(1), _interval(followed.time_constant)
-        ranges = ActuatorRanges(Interval.point(one), time_constant, spec.command)
-        loop = MotionLoop((one,), (time_constant.nominal, one), given=True)
+    motor, load, loop, drive = spec.actuator, None, None, None
+    if spec.torque_interface is not None:
+        ranges, load, drive = _torque(spec.torque_interface, spec.command)
+    elif spec.followed is not None:
+        ranges, loop = _followed(spec.followed, spec.command)
+        drive = _drive(spec, loop)
     else:
+        assert motor is not None, "a spec has one of them"
         gain, time_constant = map(_interval, (motor.gain, motor.time_constant))
-        ranges, load = ActuatorRanges(gain, time_constant, spec.command), motor.load_inertia
+        ranges = ActuatorRanges(gain, time_constant, spec.command)
+        load = None if motor.load_inertia is None else motor.load_inertia.exact
         stated = None if spec.motion_loop is None else spec.motion_loop.transfer_function
         if stated is not None:
             loop = MotionLoop(stated.numerator, stated.denominator, given=True)
@@ -37,8 +46,38 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
         tuple(build_environments(spec)),
         ranges,
         loop,
-        None if load is None else load.exact,
+        load,
+        drive,
     )
+
+
+def _followed(robot: FollowingSpec, command: str) -> tuple[ActuatorRanges, MotionLoop]:
+    """Return the motion loop of a robot, and a lag about as slow where it is another."""
+    one, G = Fraction(1), robot.transfer_function
+    if robot.time_constant is not None:
+        lag = _interval(robot.time_constant)
+        loop = MotionLoop((one,), (lag.nominal, one), given=True)
+        return ActuatorRanges(Interval.point(one), lag, command), loop
+    assert G is not None, "a robot has one of them"
+    loop = MotionLoop(G.numerator, G.denominator, given=True)
+    lag = Interval.point(abs(loop.delay) or one)
+    return ActuatorRanges(Interval.point(one), lag, command), loop
+
+
+def _drive(spec: InteractionDesignSpec, loop: MotionLoop) -> Drive | None:
+    if spec.position_interface is not None:
+        lag = spec.position_interface.time_constant
+        return position_drive(loop) if lag is None else lagging_drive(_interval(lag))
+    assert spec.velocity_interface is not None
+    return velocity_drive(loop) if spec.velocity_interface.time_constant is None else None
+
+
+def _torque(robot: TorqueInterfaceSpec, command: str) -> tuple[ActuatorRanges, Fraction, Drive]:
+    """Return the joint, and what it is as a motor: of speed u/B, with the time constant J/B."""
+    J, B = _interval(robot.inertia), _interval(robot.friction)
+    gain = Interval(1 / B.nominal, 1 / B.high, 1 / B.low)
+    lag = Interval(J.nominal / B.nominal, J.low / B.high, J.high / B.low)
+    return ActuatorRanges(gain, lag, command), J.nominal, torque_drive(J, B)
 
 
 def build_environments(spec: InteractionDesignSpec) -> Iterator[Environment]:

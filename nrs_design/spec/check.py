@@ -151,3 +151,35 @@ def run_checks(checks: Sequence[Row[Any]], said: object) -> None:
     """Raise the faults that a table of checks finds, all of them as one error."""
     if found := find_faults(checks, said):
         raise as_error(found)
+
+
+def exclusive(one: str, other: str) -> tuple[Row[Any], ...]:
+    """Return the check that at most one of two keys is given."""
+    return (
+        Row(
+            other,
+            lambda s: getattr(s, one) is not None and getattr(s, other) is not None,
+            f"{one} and {other} exclude each other",
+            "keep one of them",
+        ),
+    )
+
+
+def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
+    """Return the checks that just one of two keys is given.
+
+    Parameters
+    ----------
+    ways : dict of str to str
+        How each key is written.
+    """
+    one, other = ways
+    return (
+        Row(
+            "",
+            lambda s: getattr(s, one) is None and getattr(s, other) is None,
+            f"neither {one} nor {other} is given",
+            f"add `{ways[one]}` or `{ways[other]}`",
+        ),
+        *exclusive(one, other),
+    )

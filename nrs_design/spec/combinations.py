@@ -47,6 +47,7 @@ from nrs_design.spec.features import (
     STREAMED,
     TIMED,
     TISSUE_RANGE,
+    TORQUES,
     TWO_PERIODS,
     UNPARALLEL,
     UNSPRUNG,
@@ -111,7 +112,10 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # The proof of the layer takes a motor that nothing loads, driven by its reference alone.
     *_beside(SAFE, LOADED, COUPLED, OTHERS, TWO_PERIODS, CONTINUOUS, GIVEN_LOOP, AT_ONCE),
     # Its command is a velocity, and nothing stands where a reference would.
-    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS, SATURATED),
+    *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, SAFE, TWO_PERIODS, SATURATED),
+    not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
+    # Its law makes the torque, and what is touched brakes the joint between two samples.
+    *_beside(TORQUES, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS, GAIN_RANGE),
     # When a command takes effect within a period is known to the loop of one axis alone.
     *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED, SAFE),
     not_together(COMMAND, OTHERS, SAMPLED),

@@ -122,7 +122,7 @@ def _of_interaction(
         yield from _times(said, ("sampling", "latency"))
         if spec.sampling.jitter is not None:
             yield _without(("sampling", "jitter"), other_loop=True)
-    for drive in ("actuator", "velocity_interface"):
+    for drive in spec.drives:
         yield from _times(said, (drive, "dead_time"))
     if spec.coupling is not None and spec.coupling.inertia is not None:
         yield from _inertia(said)

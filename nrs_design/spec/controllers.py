@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Literal, get_args
+from typing import Annotated, ClassVar, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -13,7 +13,7 @@ from pydantic import (
     Field,
 )
 
-from nrs_design.spec.check import Row
+from nrs_design.spec.check import Row, exactly_one, exclusive
 from nrs_design.spec.faults import fault
 from nrs_design.spec.fields import Contact, Label, Positive, TouchedAtOnce, UnitFraction, Weight
 from nrs_design.spec.gain_fields import DampingGain, GainSpec, InertiaGain, SpringGain
@@ -27,6 +27,8 @@ from nrs_design.spec.quantity_fields import (
     ForceGain,
     Impedance,
     IntegralForceGain,
+    NonnegativeImpedance,
+    RotationalStiffness,
 )
 
 _ENVIRONMENT = "name of the environment that the gains are designed for"
@@ -89,38 +91,6 @@ _TOUCHED = (
 )
 
 
-def exclusive(one: str, other: str) -> tuple[Row[Any], ...]:
-    """Return the check that at most one of two keys is given."""
-    return (
-        Row(
-            other,
-            lambda s: getattr(s, one) is not None and getattr(s, other) is not None,
-            f"{one} and {other} exclude each other",
-            "keep one of them",
-        ),
-    )
-
-
-def exactly_one(ways: dict[str, str]) -> tuple[Row[Any], ...]:
-    """Return the checks that just one of two keys is given.
-
-    Parameters
-    ----------
-    ways : dict of str to str
-        How each key is written.
-    """
-    one, other = ways
-    return (
-        Row(
-            "",
-            lambda s: getattr(s, one) is None and getattr(s, other) is None,
-            f"neither {one} nor {other} is given",
-            f"add `{ways[one]}` or `{ways[other]}`",
-        ),
-        *exclusive(one, other),
-    )
-
-
 class CostWeights(SpecModel):
     """Weights of the two parts of the impedance cost (thesis 6.7)."""
 
@@ -151,6 +121,8 @@ class AbstractControllerSpec(SpecModel):
     # Whether it holds a force against what it touches, or a position whatever it touches.
     holds_force: ClassVar[bool] = False
     holds_position: ClassVar[bool] = False
+    # Whether it makes the torques of a robot that takes some.
+    makes_torques: ClassVar[bool] = False
     # Whether it keeps a state that stays in the command of other controllers, and decays there.
     bleeds: ClassVar[bool] = False
 
@@ -340,6 +312,27 @@ class ParallelControllerSpec(AbstractControllerSpec):
     integral_gain: IntegralForceGain = Field(description="Ki in rad/(N*m*s)")
 
 
+class TorqueImpedanceSpec(AbstractControllerSpec):
+    """Impedance control of a robot that takes torques (thesis 2.2.6.1)."""
+
+    commands: ClassVar[Command] = "position"
+    makes_torques: ClassVar[bool] = True
+    goals: ClassVar[GoalsSpec | None] = None
+
+    type: Literal["torque-impedance"] = Field(
+        description="torque-impedance: the joint moves as one of inertia_ratio times its inertia "
+        "on a spring and a damper to the commanded position; for a torque_interface"
+    )
+    environment: Label = Field(description="name of the environment that it touches")
+    contacts: Annotated[tuple[TouchedAtOnce, ...], *_TOUCHED]
+    stiffness: RotationalStiffness = Field(description="of the spring, in N*m/rad")
+    damping: NonnegativeImpedance = Field(description="of the damper, in N*m*s/rad; 0 allowed")
+    inertia_ratio: Positive | None = optional(
+        "wanted inertia over that of the joint, no unit; other than 1 it takes the measured force; "
+        "default: 1"
+    )
+
+
 class PositionControllerSpec(AbstractControllerSpec):
     """Position mode of the hybrid scheme: the closed motion loop alone (thesis 6.3.3)."""
 
@@ -372,7 +365,8 @@ ControllerSpec = Annotated[
     | ForceControllerSpec
     | IntegralControllerSpec
     | ParallelControllerSpec
-    | PositionControllerSpec,
+    | PositionControllerSpec
+    | TorqueImpedanceSpec,
     Discriminator("type"),
 ]
 # The `type` of every controller.

@@ -15,6 +15,7 @@ from nrs_design.spec.controllers import (
 from nrs_design.spec.environment import AbstractEnvironmentSpec, EnvironmentSpec, unit_at_pivot
 from nrs_design.spec.gain_fields import GainSpec
 from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.interaction_parts import INTERFACES
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.motion import ActuatorSpec, LimitsSpec
 from nrs_design.spec.parameters import ParameterSpec
@@ -118,15 +119,23 @@ def _switching(switching: SwitchingSpec) -> Iterator[Line]:
         yield Line("switching.transitions", listed or "no switch", str(len(pairs)), "")
 
 
+# Of the numbers of a robot without a motor of the user's.
+DRIVE_UNITS = {"time_constant": "s", "inertia": "kg*m^2", "friction": "N*m*s/rad"}
+
+
 def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
     if spec.actuator is not None:
         yield from _actuator(spec.actuator)
-    if (followed := spec.velocity_interface) is not None:
-        yield from _ranged(
-            "velocity_interface.time_constant", followed.time_constant, followed.time_constant, "s"
+    for name, drive in spec.drives.items():
+        if name not in INTERFACES:
+            continue
+        for key, item in drive.ranges.items():
+            yield from _ranged(f"{name}.{key}", item, item, DRIVE_UNITS[key])
+        yield from describe_model(
+            getattr(drive, "transfer_function", None), f"{name}.transfer_function"
         )
-        yield from _times("velocity_interface.dead_time", followed.dead_time)
-        yield from _identified("velocity_interface", followed, MOTOR_COVERS)
+        yield from _times(f"{name}.dead_time", drive.dead_time)
+        yield from _identified(name, drive, MOTOR_COVERS)
     yield from describe_model(spec.motion_loop, "motion_loop")
     yield from describe_model(spec.limits, "limits")
     for name, environment in spec.environments.items():

@@ -109,7 +109,7 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
         contacts = [key for contact in controller.contacts for key in names_in(contact)]
         laws = ((key, spec.environments.get(key)) for key in contacts)
         damped = (key for key, law in laws if law is not None and not law.is_spring)
-        if controller.commands != "velocity" and (key := _first(damped)):
+        if controller.holds_force and (key := _first(damped)):
             return name, key
     return None
 
@@ -152,10 +152,22 @@ GIVEN_LOOP = _F(
     _given("motion_loop.transfer_function"),
 )
 STREAMED = _F(
-    "a velocity_interface",
-    "velocity_interface",
+    "a {0}",
+    "{0}",
     "write actuator and motion_loop",
-    _given("velocity_interface"),
+    lambda s: _first(k for k in s.drives if s.followed),
+)
+STREAMED_FUNCTION = _F(
+    "a transfer_function of a {0}",
+    "{0}.transfer_function",
+    "give a time_constant",
+    lambda s: _first(k for k in s.drives if s.followed and s.followed.transfer_function),
+)
+TORQUES = _F(
+    "a torque_interface",
+    "torque_interface",
+    "write actuator and motion_loop",
+    _given("torque_interface"),
 )
 MOTOR_RANGE = _F(
     "a range of the {0[1]} of the {0[0]}",

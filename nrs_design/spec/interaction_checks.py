@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import partial
 
+from nrs_design.models.drive import Takes
 from nrs_design.proof.bounds import rounded_up
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.combinations import COMBINATIONS
@@ -23,7 +24,7 @@ from nrs_design.spec.features import (
     touched,
 )
 from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec
-from nrs_design.spec.interaction_parts import FREE, MOTION
+from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.logic_checks import LOGIC_CHECKS
 from nrs_design.spec.motion import IN_ITS_UNIT, AboutCommands
@@ -264,24 +265,36 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     Row(
         "{0}",
         lambda s: next(
-            (k for k in ("actuator", "motion_loop") if s.velocity_interface and getattr(s, k)), None
+            (
+                (k, other)
+                for other in s.drives
+                for k in ("actuator", "motion_loop", *s.drives)
+                if other in INTERFACES and k != other and getattr(s, k)
+            ),
+            None,
         ),
-        "{0} stands beside a velocity_interface, which closes its own motion loop",
-        "remove {0}, or velocity_interface",
+        "{0} stands beside {1}, which says all of how the robot moves",
+        "remove {0}, or {1}",
     ),
     Row(
         "",
         lambda s: next(
-            (
-                k
-                for k in ("actuator", "motion_loop")
-                if not s.velocity_interface and not getattr(s, k)
-            ),
+            (k for k in ("actuator", "motion_loop") if not s.takes and not getattr(s, k)),
             None,
         ),
         "the key `{0}` is missing",
-        "say how the robot moves: actuator and motion_loop, or velocity_interface for a robot that "
-        "takes velocities",
+        "say how the robot moves: actuator and motion_loop, or velocity_interface, "
+        "position_interface or torque_interface for a robot that takes those",
+    ),
+    Row(
+        "controllers.{0}.type",
+        lambda s: next(
+            (n for n, c in s.controllers.items() if (s.takes is Takes.TORQUE) != c.makes_torques),
+            None,
+        ),
+        "{0!r} does not fit the drive: controllers of type torque-impedance are for a "
+        "torque_interface, and it takes no others",
+        "choose the type by what the robot takes",
     ),
     # Names.
     *each(_named_environments, NO_SUCH),

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
+from nrs_design.models.drive import COMMANDS, Takes
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,
@@ -26,8 +29,11 @@ from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.monitoring import MonitoringSpec
 from nrs_design.spec.motion import (
     ActuatorSpec,
+    FollowingSpec,
     LimitsSpec,
     MotionLoopSpec,
+    PositionInterfaceSpec,
+    TorqueInterfaceSpec,
     VelocityInterfaceSpec,
 )
 from nrs_design.spec.provenance import IdentifiedSpec
@@ -38,12 +44,14 @@ from nrs_design.spec.scenarios import ScenarioSpec
 from nrs_design.spec.sensor import SensorSpec
 from nrs_design.spec.switching import MODE_LOGIC, LogicalRule
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
+from nrs_design.spec.units import THESIS_COMMAND
 
 MAX_ENTRIES = 64
 # The contact in the names of the modes of free motion.
 FREE = "free"
-# What a robot takes that closes its own motion loop.
-VELOCITY = "rad/s"
+# Robots without a motor of the user's, by what they take.
+INTERFACES: Mapping[str, Takes] = MappingProxyType({f"{takes}_interface": takes for takes in Takes})
+DriveSpec = ActuatorSpec | FollowingSpec | TorqueInterfaceSpec
 # What the motion controller is called where gains are listed.
 MOTION = "motion"
 ModeLogicSpec = Annotated[ThresholdLogicSpec | EstimatorSpec, Discriminator("type")]
@@ -71,6 +79,13 @@ class AbstractInteractionSpec(SpecModel):
     velocity_interface: VelocityInterfaceSpec | None = optional(
         "a robot that closes its own motion loop and takes velocities, in the place of actuator "
         "and motion_loop"
+    )
+    position_interface: PositionInterfaceSpec | None = optional(
+        "the same of a robot that takes positions"
+    )
+    torque_interface: TorqueInterfaceSpec | None = optional(
+        "a robot that takes torques, in the place of actuator and motion_loop; its controllers are "
+        "of type torque-impedance"
     )
     limits: LimitsSpec = Field(description="what the interaction must respect")
     environments: Annotated[dict[Label, EnvironmentSpec], Field(max_length=MAX_ENTRIES)] = Field(
@@ -163,9 +178,8 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def identified(self) -> dict[tuple[str, ...], IdentifiedSpec]:
         """What may have been identified from records, by the keys that lead to it."""
-        drives = {"actuator": self.actuator, "velocity_interface": self.velocity_interface}
         parts: dict[tuple[str, ...], IdentifiedSpec] = {
-            (key,): drive for key, drive in drives.items() if drive is not None
+            (key,): drive for key, drive in self.drives.items()
         }
         parts.update((("environments", name), item) for name, item in self.environments.items())
         if self.sampling is not None:
@@ -195,28 +209,41 @@ class AbstractInteractionSpec(SpecModel):
         return next((offset for offset in offsets if offset is not None), "none")
 
     @property
+    def drives(self) -> dict[str, DriveSpec]:
+        """What turns commands into motion, by its key: just one in a spec without faults."""
+        found = {key: getattr(self, key) for key in ("actuator", *INTERFACES)}
+        return {key: drive for key, drive in found.items() if drive is not None}
+
+    @property
+    def followed(self) -> FollowingSpec | None:
+        """The robot that closes its own motion loop, if it does."""
+        return self.velocity_interface or self.position_interface
+
+    @property
+    def takes(self) -> Takes | None:
+        """What the robot takes; None for the commands of a motor."""
+        return next((INTERFACES[key] for key in self.drives if key in INTERFACES), None)
+
+    @property
     def command(self) -> str:
         """Unit of what the drive takes."""
-        return VELOCITY if self.actuator is None else self.actuator.command
+        if self.actuator is not None or self.takes is None:
+            return THESIS_COMMAND if self.actuator is None else self.actuator.command
+        return COMMANDS[self.takes]
 
     @property
     def motor_ranges(self) -> dict[tuple[str, str], RangedQuantity]:
         """The numbers of the drive, by the keys that lead to them."""
-        drives = {
-            "actuator": (self.actuator, ("gain", "time_constant")),
-            "velocity_interface": (self.velocity_interface, ("time_constant",)),
-        }
         return {
-            (name, key): getattr(drive, key)
-            for name, (drive, keys) in drives.items()
-            if drive is not None
-            for key in keys
+            (name, key): item
+            for name, drive in self.drives.items()
+            for key, item in drive.ranges.items()
         }
 
     @property
     def late_at(self) -> tuple[str, str] | None:
         """The key that says that commands take effect later than at their sample, or None."""
-        drives = ((name, "dead_time") for name in ("actuator", "velocity_interface"))
+        drives = ((name, "dead_time") for name in self.drives)
         keys = (*drives, ("sampling", "latency"), ("sampling", "jitter"))
         said = (at for at in keys if getattr(getattr(self, at[0]), at[1], None) is not None)
         return next(said, None)
@@ -230,9 +257,8 @@ class AbstractInteractionSpec(SpecModel):
     @property
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to where its command takes effect, in s."""
-        drive = self.actuator or self.velocity_interface
         parts = (
-            None if drive is None else drive.dead_time,
+            *(drive.dead_time for drive in self.drives.values()),
             None if self.sampling is None else self.sampling.latency,
         )
         shortest, longest = zip(*map(ends_of, parts), strict=True)

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from nrs_design.proof.text import quoted
-from nrs_design.spec.check import Row, each
+from nrs_design.spec.check import Row, each, exactly_one
 from nrs_design.spec.contact_limits import ContactLimitSpec
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Exact, UnitFraction
@@ -26,6 +26,9 @@ from nrs_design.spec.quantity_fields import (
     LargestCommand,
     RangedActuatorGain,
     RangedDuration,
+    RangedImpedance,
+    RangedInertia,
+    RangedQuantity,
     RotorInertia,
     TimeRange,
     Torque,
@@ -124,6 +127,11 @@ class ActuatorSpec(IdentifiedRangesSpec):
         "the nominal values"
     )
 
+    @property
+    def ranges(self) -> dict[str, RangedQuantity]:
+        """Its numbers with ranges, by key."""
+        return {"gain": self.gain, "time_constant": self.time_constant}
+
     def _about_commands(self) -> Iterator[tuple[Location, AboutCommands]]:
         yield ("gain",), AboutCommands(self.command, self.gain.nominal)
         for i, end in enumerate(self.intervals.gain if self.intervals else ()):
@@ -150,22 +158,11 @@ class ActuatorSpec(IdentifiedRangesSpec):
     )
 
 
-class VelocityInterfaceSpec(IdentifiedRangesSpec):
-    """A robot that closes its own motion loop, and follows a streamed velocity by a lag.
-
-    Its velocity omega follows the command u by ``tau omega' = u - omega``.
-    """
-
-    time_constant: RangedDuration = Field(
-        description="tau in s, with which the velocity of the robot follows its command"
-    )
-    dead_time: TimeRange | None = optional(
-        "time in s for which a command does nothing before the robot follows it, one number or "
-        "[shortest, longest]; the proof adds it to the latency of `sampling`"
-    )
-    range_covers: Coverage | None = optional(
-        "what the identified range holds: confidence, tolerance or prediction, each with 95 %"
-    )
+_DEAD_TIME = (
+    "time in s for which a command does nothing before the robot follows it, one number or "
+    "[shortest, longest]; the proof adds it to the latency of `sampling`"
+)
+_COVERS = "what the identified ranges hold: confidence, tolerance or prediction, each with 95 %"
 
 
 class TransferFunctionSpec(SpecModel):
@@ -192,6 +189,72 @@ class TransferFunctionSpec(SpecModel):
             "give the denominator a higher degree than the numerator",
         ),
     )
+
+
+class FollowingSpec(IdentifiedRangesSpec):
+    """A robot that closes its own motion loop, and follows what is streamed."""
+
+    time_constant: RangedDuration | None = optional(
+        "tau in s of 1/(tau s + 1), by which the robot follows its command"
+    )
+    transfer_function: TransferFunctionSpec | None = optional(
+        "by which the robot follows its command, in the place of time_constant; no unit"
+    )
+    dead_time: TimeRange | None = optional(_DEAD_TIME)
+    range_covers: Coverage | None = optional(_COVERS)
+
+    @property
+    def ranges(self) -> dict[str, RangedQuantity]:
+        """Its numbers with ranges, by key."""
+        return {} if self.time_constant is None else {"time_constant": self.time_constant}
+
+    checks = (
+        *IdentifiedRangesSpec.checks,
+        *exactly_one(
+            {
+                "time_constant": "time_constant: 0.03 s",
+                "transfer_function": "transfer_function: "
+                "{numerator: [900], denominator: [1, 60, 900]}",
+            }
+        ),
+    )
+
+
+class VelocityInterfaceSpec(FollowingSpec):
+    """A robot whose velocity follows a streamed velocity."""
+
+
+class PositionInterfaceSpec(FollowingSpec):
+    """A robot whose position follows a streamed position."""
+
+    def _restless(self) -> bool:
+        G = self.transfer_function
+        return G is not None and (G.numerator[-1] != G.denominator[-1] or not G.denominator[-1])
+
+    checks = (
+        *FollowingSpec.checks,
+        Row(
+            "transfer_function",
+            lambda s: s._restless(),
+            "the robot does not come to rest where it is commanded: its transfer function is not 1 "
+            "at s = 0",
+            "let the last coefficients of numerator and denominator be equal, and not zero",
+        ),
+    )
+
+
+class TorqueInterfaceSpec(IdentifiedRangesSpec):
+    """A robot that takes torques, its gravity compensated: ``J omega' = u - B omega - F``."""
+
+    inertia: RangedInertia = Field(description="J of the joint and all that it moves, in kg*m^2")
+    friction: RangedImpedance = Field(description="B, viscous friction of the joint, N*m*s/rad")
+    dead_time: TimeRange | None = optional(_DEAD_TIME)
+    range_covers: Coverage | None = optional(_COVERS)
+
+    @property
+    def ranges(self) -> dict[str, RangedQuantity]:
+        """Its numbers with ranges, by key."""
+        return {"inertia": self.inertia, "friction": self.friction}
 
 
 class MotionLoopSpec(SpecModel):

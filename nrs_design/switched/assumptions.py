@@ -104,7 +104,7 @@ def ranges_text(environments: Iterable[Environment]) -> str:
 def motor_text(ranges: ActuatorRanges) -> str:
     """Say where gain and time constant of the motor are."""
     texts = (
-        f"its {name} {_interval_text(interval)} {unit}"
+        f"its {name} {interval_text(interval)} {unit}"
         for name, interval, unit in (
             ("gain", ranges.gain, f"rad/s/{ranges.command}"),
             ("time constant", ranges.time_constant, "s"),
@@ -113,7 +113,8 @@ def motor_text(ranges: ActuatorRanges) -> str:
     return " and ".join(texts)
 
 
-def _interval_text(interval: Interval) -> str:
+def interval_text(interval: Interval) -> str:
+    """Say where a number is, after its name."""
     if interval.low == interval.high:
         return f"is {exact_text(interval.low)}"
     return f"stays in [{exact_text(interval.low)}, {exact_text(interval.high)}]"
@@ -170,11 +171,13 @@ def command_in(statements: Iterable[str]) -> str:
 
 def identified_texts(spec: InteractionDesignSpec) -> Iterator[Assumption]:
     """Say what identified ranges hold, and what is doubtful about identified values."""
+    from nrs_design.spec.interaction_parts import INTERFACES
     from nrs_design.spec.plausible import unusual
     from nrs_design.spec.provenance import COVERS, MOTOR_COVERS
 
-    for name, drive in (("actuator", spec.actuator), ("robot", spec.velocity_interface)):
-        if drive is not None and drive.range_covers is not None:
+    for key, drive in spec.drives.items():
+        name = "robot" if key in INTERFACES else key
+        if drive.range_covers is not None:
             yield _coverage(f"the {name}", MOTOR_COVERS[drive.range_covers], drive)
     for name, environment in spec.environments.items():
         if environment.range_covers is not None:

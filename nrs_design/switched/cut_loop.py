@@ -31,6 +31,7 @@ from nrs_design.controllers.sensor import LowPass, Sensor
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.contact.law import AbstractLinearLaw
+from nrs_design.models.drive import Drive, Takes
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.models.motion_loop import JointMotionLoop, Realization, realize
 from nrs_design.models.plant import Plant
@@ -40,6 +41,7 @@ from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.coupled import AxesCoupling
+from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import hold
 from nrs_design.switched.joint import Joint
 from nrs_design.switched.modes import ForceShare, position_mode, velocity_mode
@@ -240,11 +242,17 @@ class ProcessorAxis(AbstractAxis):
         The processor.
     low_pass : LowPass or None
         Through which the law gets the force.
+    takes : Takes or None
+        What the robot takes, if that is not the commands of a motor.
+    drive : Drive or None
+        What moves its joint, if that is no motor.
     """
 
     motion: ProportionalDerivative
     sampling: SamplingSpec
     low_pass: LowPass | None = None
+    takes: Takes | None = None
+    drive: Drive | None = None
 
     @property
     def period(self) -> Fraction:
@@ -316,6 +324,7 @@ class ProcessorAxis(AbstractAxis):
     ) -> Sequence[LinearForm]:
         # Of numbers that are enclosed, the middle.
         motor = {symbol: interval.middle for symbol, interval in frame.motor.box.ranges.items()}
+        motor |= dict.fromkeys(frame.motor.box.hull[0], ZERO)
         values = {**motor, "Km": place.motor.gain, "k": k, "b": b}
         n = len(frame.states)
         rows = [row[:n] for row in frame.rows(law, place.age, values)[:n]]
@@ -328,9 +337,11 @@ class ProcessorAxis(AbstractAxis):
     def _frame(self, law: DiscreteLaw, place: Place) -> Frame:
         low_pass = None if self.low_pass is None else self.low_pass.discretize(self.sampling.outer)
         D = self.motion.over(self.sampling.period.exact)
-        step = StepFrame(self.motion.Kp, D, low_pass)
+        step = StepFrame(self.motion.Kp, D, low_pass, takes=self.takes)
         timing = CommandTiming(self.sampling.step, place.late, place.late)
         motor = hold(ActuatorRanges.point(place.motor), timing)
+        if self.drive is not None:
+            motor = HeldDrive.of(self.drive.at({"tau": place.motor.time_constant}), timing)
         return Frame(timing, motor, step, (law,), place.age)
 
 
@@ -369,7 +380,7 @@ def axis_of(
     if spec.coupling is not None and plant.load_inertia is not None:
         ranges = slowed_motor(ranges, AxesCoupling.of(spec.coupling, plant.load_inertia))
     places = tuple(_places(ranges, sampling.delay, spec.late))
-    return ProcessorAxis(places, motion, sampling, low_pass)
+    return ProcessorAxis(places, motion, sampling, low_pass, spec.takes, plant.drive)
 
 
 def _places(

@@ -19,6 +19,7 @@ from fractions import Fraction
 from math import ceil
 
 from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.drive import OMEGA, Drive
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm, combine
 from nrs_design.proof.taylor import exponential_between
@@ -27,6 +28,8 @@ from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_motor import motor_box, way_between, way_unit
 
 ONE, ZERO = Fraction(1), Fraction(0)
+# A result beside the states: how far the joint goes in a period.
+WAY = "way"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +38,17 @@ class Commands:
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    omega: LinearForm  # Its speed when the period begins
+    # states, place: its states when the period begins, the speed first, and its deflection then.
+    states: tuple[LinearForm, ...]
+    place: LinearForm
     first: LinearForm  # The command that is then in force, less friction
     # By how much the command changes within the period, the oldest command first.
     changes: tuple[LinearForm, ...] = ()
+
+    @property
+    def omega(self) -> LinearForm:
+        """Its speed."""
+        return self.states[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,22 +60,50 @@ class HeldMotor(ABC):
     box: Box
 
     @property
-    @abstractmethod
-    def of_speed(self) -> frozenset[str]:
-        """Symbols of the numbers that `speed` takes."""
+    def drive(self) -> Drive | None:
+        """What it is, if that is no motor."""
+        return None
 
     @property
-    @abstractmethod
-    def of_way(self) -> frozenset[str]:
-        """Symbols of the numbers that `way` takes."""
+    def states(self) -> tuple[str, ...]:
+        """Names and units of its states, the speed first and the deflection left out."""
+        return (OMEGA,)
 
     @abstractmethod
-    def speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period, at values of the numbers by their symbols."""
+    def symbols_of(self, result: str) -> frozenset[str]:
+        """Return the symbols of the numbers that a result depends on.
+
+        Parameters
+        ----------
+        result : str
+            One of the states, or `WAY`.
+        """
 
     @abstractmethod
-    def way(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return how far the joint turns in the period."""
+    def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
+        """Return a state after the period, or how far the joint goes in it.
+
+        Parameters
+        ----------
+        name : str
+            One of the states, or `WAY`.
+        given : Commands
+            What acts on it.
+        values : mapping
+            The numbers by their symbols.
+        """
+
+    def touching(self, touched: Mapping[str, Interval], *, forced: bool) -> HeldMotor:
+        """Return the motor while it touches something: by default, that does not act on it.
+
+        Parameters
+        ----------
+        touched : mapping of str to Interval
+            Stiffness and damping.
+        forced : bool
+            Whether the law takes the force of the sample.
+        """
+        return self
 
     def slip(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         """Return the difference between the speed and its steady state under the first command."""
@@ -86,23 +124,19 @@ class MotorAtOnce(HeldMotor):
         known = tau.nominal if tau.low == tau.high else None
         return cls(motor_box(ranges, period), period, known)
 
-    @property
-    def of_speed(self) -> frozenset[str]:
-        """Symbols of the numbers that `speed` takes."""
-        return frozenset({"Km", "E"})
+    def symbols_of(self, result: str) -> frozenset[str]:
+        """Return the symbols of the numbers that a result depends on."""
+        return frozenset({"Km", "s" if result == WAY and self.time_constant is None else "E"})
 
-    @property
-    def of_way(self) -> frozenset[str]:
-        """Symbols of the numbers that `way` takes."""
-        return frozenset({"Km", "s" if self.time_constant is None else "E"})
+    def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
+        """Return the speed after the period, or how far the joint turns in it."""
+        return self._way(given, values) if name == WAY else self._speed(given, values)
 
-    def speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period."""
+    def _speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         E = values["E"]
         return combine((E, given.omega), (values["Km"] * (1 - E), given.first))
 
-    def way(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return how far the joint turns in the period."""
+    def _way(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         tau = self.time_constant
         s = values["s"] if tau is None else tau * (1 - values["E"])
         return combine((s, given.omega), (values["Km"] * (self.period - s), given.first))
@@ -132,18 +166,15 @@ class MotorInTime(HeldMotor):
         ranged = {name: ends for span in spans for name, ends in span.ranges.items()}
         return cls(Box({"Km": ranges.gain, "g": g, **ranged}), spans)
 
-    @property
-    def of_speed(self) -> frozenset[str]:
-        """Symbols of the numbers that `speed` takes."""
-        return frozenset(self.box.ranges)
+    def symbols_of(self, result: str) -> frozenset[str]:
+        """Return the symbols of the numbers that a result depends on."""
+        return frozenset(self.box.ranges) - ({"g"} if result == WAY else set())
 
-    @property
-    def of_way(self) -> frozenset[str]:
-        """Symbols of the numbers that `way` takes."""
-        return frozenset(self.box.ranges) - {"g"}
+    def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
+        """Return the speed after the period, or how far the joint turns in it."""
+        return self._way(given, values) if name == WAY else self._speed(given, values)
 
-    def speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period."""
+    def _speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         whole, *ways = (span.at(values)[1] for span in self.spans)
         Km, g = values["Km"], values["g"]
         changes = zip(ways, given.changes, strict=True)
@@ -153,8 +184,7 @@ class MotorInTime(HeldMotor):
             *((Km * g * s, change) for s, change in changes),
         )
 
-    def way(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return how far the joint turns in the period."""
+    def _way(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
         (T, whole), *later = (span.at(values) for span in self.spans)
         Km, changes = values["Km"], zip(later, given.changes, strict=True)
         return combine(

@@ -6,7 +6,8 @@ times that at the low end plus ``t`` times that at the high end, and so on along
 The weights are products of such shares: not negative, with sum one, the same for all entries.
 
 Two parameters in which it is affine together may be known to lie in a triangle; then its three
-corners suffice, for the same reason.
+corners suffice, for the same reason. So do the points of a hull, for any number of numbers in which
+it is affine together.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product, starmap
+from itertools import combinations, product, starmap
 from types import MappingProxyType
 
 from nrs_design.errors import InternalError
@@ -44,6 +45,29 @@ class Triangle:
     between: tuple[Fraction, Fraction]
 
 
+# Points of the space of some numbers, by their symbols.
+Points = tuple[Mapping[str, Fraction], ...]
+# Between the indices of two points of a hull, whose middle is meant.
+_BETWEEN = "~"
+
+
+def around(ranges: Mapping[str, Interval]) -> Points:
+    """Return the points of a simplex that holds a box of numbers: one more than there are numbers.
+
+    With n numbers that have a range, all of them at their low ends, and each of them alone n times
+    as far as its high end.
+
+    Parameters
+    ----------
+    ranges : mapping of str to Interval
+        By symbols.
+    """
+    lowest = {symbol: interval.low for symbol, interval in ranges.items()}
+    widths = {s: interval.high - interval.low for s, interval in ranges.items()}
+    moved = {symbol: width for symbol, width in widths.items() if width}
+    return (lowest, *(lowest | {s: lowest[s] + len(moved) * width} for s, width in moved.items()))
+
+
 @dataclass(frozen=True, slots=True)
 class Box:
     """Where the parameters of a matrix lie."""
@@ -54,6 +78,8 @@ class Box:
     inverse: frozenset[str] = frozenset()
     # Where two of the parameters are, instead of anywhere in their ranges.
     triangle: Triangle | None = None
+    # Points between which other numbers are, in which matrices are affine together.
+    hull: Points = ({},)
 
     def beside(self, other: Box) -> Box:
         """Return the box of the parameters of both.
@@ -61,14 +87,17 @@ class Box:
         Raises
         ------
         InternalError
-            If a symbol stands for two parameters, or both have a triangle.
+            If a symbol stands for two parameters, or both have a triangle or a hull.
         """
         if common := self.ranges.keys() & other.ranges.keys():
             raise InternalError(f"the symbol {min(common)} stands for two parameters")
         if self.triangle and other.triangle:
             raise InternalError("a box of parameters has two triangles")
+        if len(self.hull) > 1 and len(other.hull) > 1:
+            raise InternalError("a box of parameters has two hulls")
         ranges = {**self.ranges, **other.ranges}
-        return Box(ranges, self.inverse | other.inverse, self.triangle or other.triangle)
+        triangle, hull = self.triangle or other.triangle, max(self.hull, other.hull, key=len)
+        return Box(ranges, self.inverse | other.inverse, triangle, hull)
 
     def middle(self, symbol: str) -> Fraction:
         """Return the value halfway in the coordinate in which matrices are affine."""
@@ -80,12 +109,14 @@ class Box:
     def named_values(self, name: str) -> Iterator[tuple[str, dict[str, Fraction]]]:
         """Yield the corners of a mode, the last parameter turning fastest.
 
-        A corner is named after its ends, such as ``a/soft/k-min/Mt-max``; a point has the name of
-        the mode. With it are the values of the parameters.
+        A corner is named after its ends, such as ``a/soft/k-min/Mt-max``, and after the point of
+        the hull, such as ``hull-2``; a point has the name of the mode. With it are the values of
+        the parameters.
         """
         ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
-        for at in self._points(ends):
-            labels = (f"{symbol}-{end}" for symbol, end in zip(ends, at, strict=True) if end)
+        for at in self._points(ends, self._hull_labels()):
+            labels = [f"{symbol}-{end}" for symbol, end in zip(ends, at[:-1], strict=True) if end]
+            labels += [f"hull-{at[-1]}"] if len(self.hull) > 1 else []
             yield "/".join([name, *labels]), self._at(ends, at)
 
     def corners(self, rows_at: RowsAt, name: str) -> Iterator[tuple[str, Rows]]:
@@ -112,7 +143,8 @@ class Box:
         found = [(corner, rows_at(values)) for corner, values in self.named_values(name)]
         ends = {symbol: dict(interval.ends) for symbol, interval in self.ranges.items()}
         rows = (rows for _, rows in found)
-        self._check_corners_suffice(rows_at, dict(zip(self._points(ends), rows, strict=True)), name)
+        points = self._points(ends, self._hull_labels())
+        self._check_corners_suffice(rows_at, dict(zip(points, rows, strict=True)), name)
         yield from found
 
     def _check_corners_suffice(
@@ -124,31 +156,34 @@ class Box:
         the whole box rests on it: on all points of the grid of low end, middle and high end of
         every axis, the matrix must be the mean of its two neighbors along one axis on which it is
         in the middle; so it is the mean of the corners around it. For entries of a degree of at
-        most two in each coordinate, and in both of a triangle, this decides it: of that, the grid
-        has the corners and the middles of the sides.
+        most two in each coordinate, and in those of a triangle or a hull together, this decides it:
+        of these, the grid has the corners and the middles between any two.
         """
         known = dict(corners)
         values = {symbol: self._grid(symbol) for symbol in self.ranges}
+        pairs = combinations(self._hull_labels(), 2)
+        hull = [*self._hull_labels(), *map(_BETWEEN.join, pairs)]
         # Rows that are the same objects are compared once; kept here, no other gets their ids.
         compared: dict[tuple[int, ...], tuple[Sequence[Fraction], ...]] = {}
         # Neighbors are in the middle on one axis less, so they come first.
-        for at in sorted(self._points(values), key=lambda at: at.count(MIDDLE)):
-            if MIDDLE not in at:
+        for at in sorted(self._points(values, hull), key=_count_middles):
+            if not _count_middles(at):
                 continue
-            moved = self._moved(at)
-            low, high = (
-                known[tuple(end if i in moved else label for i, label in enumerate(at))]
-                for end in ("min", "max")
-            )
+            low, high = (known[beside] for beside in self._beside(at))
             found = known[at] = rows_at(self._at(values, at))
             triples = {tuple(map(id, rows)): rows for rows in zip(found, low, high, strict=True)}
             if not all(_is_mean(*triples[key]) for key in triples.keys() - compared.keys()):
                 raise InternalError(f"the matrix of mode {name} is not affine in each parameter")
             compared |= triples
 
-    def _points(self, values: Mapping[str, Mapping[str, Fraction]]) -> Iterator[tuple[str, ...]]:
-        """Yield the labels of the points of a grid, of a triangle those in it."""
-        for at in product(*values.values()):
+    def _hull_labels(self) -> list[str]:
+        return [*map(str, range(len(self.hull)))]
+
+    def _points(
+        self, values: Mapping[str, Mapping[str, Fraction]], hull: Sequence[str]
+    ) -> Iterator[tuple[str, ...]]:
+        """Yield the labels of the points of a grid, of a triangle those in it; the hull's last."""
+        for at in product(*values.values(), hull):
             x, y = self._shares(at)
             if x <= y:
                 yield at
@@ -157,7 +192,10 @@ class Box:
         self, values: Mapping[str, Mapping[str, Fraction]], at: Sequence[str]
     ) -> dict[str, Fraction]:
         """Return the values of all symbols where the labels of a point say."""
-        found = {symbol: values[symbol][label] for symbol, label in zip(values, at, strict=True)}
+        labels = zip(values, at[:-1], strict=True)
+        found = {symbol: values[symbol][label] for symbol, label in labels}
+        ends = [self.hull[int(label)] for label in at[-1].split(_BETWEEN)]
+        found |= {s: sum((end[s] for end in ends), Fraction(0)) / len(ends) for s in ends[0]}
         if self.triangle is not None:
             x, y = self._shares(at)
             both = (self.triangle.x, self.triangle.y)
@@ -166,10 +204,16 @@ class Box:
                 found[symbol] = low + y * (between - low) + x * (high - between)
         return found
 
-    def _moved(self, at: Sequence[str]) -> set[int]:
-        """Return along which axes a point has its two neighbors; across a triangle, both."""
+    def _beside(self, at: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+        """Yield the two neighbors of a point in the middle; across a triangle, along both axes."""
+        if _BETWEEN in at[-1]:
+            yield from ((*at[:-1], end) for end in at[-1].split(_BETWEEN))
+            return
         axes = self._triangle_axes()
-        return {*axes} if axes and all(at[i] == MIDDLE for i in axes) else {at.index(MIDDLE)}
+        across = axes and all(at[i] == MIDDLE for i in axes)
+        moved = axes if across else (at.index(MIDDLE),)
+        for end in ("min", "max"):
+            yield tuple(end if i in moved else label for i, label in enumerate(at))
 
     def _shares(self, at: Sequence[str]) -> tuple[Fraction, Fraction]:
         """Return how far a point is on the way from the third corner, and on that to it."""
@@ -185,6 +229,10 @@ class Box:
         """Return the labelled ends of a range, and the middle between two."""
         ends = dict(self.ranges[symbol].ends)
         return ends | ({MIDDLE: self.middle(symbol)} if len(ends) > 1 else {})
+
+
+def _count_middles(at: Sequence[str]) -> int:
+    return at.count(MIDDLE) + (_BETWEEN in at[-1])
 
 
 def _is_mean(row: Sequence[Fraction], a: Sequence[Fraction], b: Sequence[Fraction]) -> bool:

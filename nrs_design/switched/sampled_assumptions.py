@@ -11,6 +11,7 @@ from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
+from nrs_design.models.drive import Drive, Takes
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.operating import OperatingConditions
@@ -21,6 +22,7 @@ from nrs_design.switched.assumptions import (
     UNCOUPLED,
     command_texts,
     contact_texts,
+    interval_text,
     motor_text,
     ranges_text,
     rule_texts,
@@ -91,7 +93,7 @@ def assume_sampled(
         *_late_texts(frame.timing),
         _delay_text(*sampling.delay),
         _motor_text(ranges, frame),
-        say("unloaded.sampled"),
+        *([] if design.takes is Takes.TORQUE else [say("unloaded.sampled")]),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
         *_spring_texts(frame, design),
@@ -103,7 +105,7 @@ def assume_sampled(
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
         *rule_texts(conditions.switching, "controller"),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
-        *(() if frame.step.streams else command_texts(design.command)),
+        *(() if frame.step.takes else command_texts(design.command)),
         *_retuned_texts(gains),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
         _angle_text(conditions.largest_angle),
@@ -146,6 +148,8 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
     elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
     moving = "" if ranges.fixed else ", and may change at every sample, not in between"
+    if frame.motor.drive is not None:
+        return _drive_text(frame.motor.drive, moving)
     if frame.step.streams:
         lag = motor.partition(" and its time constant ")[2]
         return say("motor.followed", lag, motor=lag, moving=moving, corner=corner)
@@ -156,6 +160,19 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
         moving=moving,
         corner=corner,
     )
+
+
+def _drive_text(drive: Drive, moving: str) -> Assumption:
+    """Say how a robot moves that has no motor of the user's."""
+    if drive.takes is Takes.TORQUE:
+        inertia = f"{interval_text(drive.ranges['J'])} kg*m^2"
+        friction = f"{interval_text(drive.ranges['B'])} N*m*s/rad"
+        bound = f"J {inertia}, B {friction}"
+        return say("motor.torque", bound, inertia=inertia, friction=friction, moving=moving)
+    if "tau" in drive.ranges:
+        lag = f"{interval_text(drive.ranges['tau'])} s"
+        return say("motor.followed-position", lag, lag=lag, moving=moving)
+    return say("motor.followed-function", what=str(drive.takes))
 
 
 def _spring_texts(frame: Frame, design: ControllerDesign) -> Iterator[Assumption]:
@@ -220,8 +237,9 @@ def _delay_text(least: int, most: int) -> Assumption:
 
 def _coefficients(frame: Frame, gains: Mapping[str, RangedLaw]) -> str:
     texts = [f"Kp = {exact_decimal(frame.step.Kp)}", f"Kd/T = {exact_decimal(frame.step.D)}"]
-    texts, known = [] if frame.step.streams else texts, frame.listed.law.coefficient
+    texts, known = [] if frame.step.takes else texts, frame.listed.law.coefficient
     for name, item in gains.items():
-        coefficients = ((key, c) for key, c in item.law.coefficients.items() if key in known)
+        symbols = zip(item.law.numbers, item.law.coefficients.items(), strict=True)
+        coefficients = (said for key, said in symbols if key in known)
         texts += [f"{key} of {name} = {exact_decimal(c)}" for key, c in coefficients]
     return ", ".join(texts)

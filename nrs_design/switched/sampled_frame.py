@@ -25,9 +25,10 @@ from nrs_design.controllers.laws import DiscreteLaw
 from nrs_design.controllers.parts import StepPart
 from nrs_design.controllers.step_analysis import rounding_share
 from nrs_design.controllers.step_law import StepFrame, numbers_in_force, step_parts
+from nrs_design.models.drive import OMEGA, Takes
 from nrs_design.models.linear_form import ZERO, LinearForm, combine, coordinates, zero
 from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.held_motor import Commands, HeldMotor
+from nrs_design.switched.held_motor import WAY, Commands, HeldMotor
 from nrs_design.switched.sampled_law import (
     ERROR,
     IDLE_REFERENCE,
@@ -49,7 +50,7 @@ from nrs_design.switched.sampled_law import (
 # place the error of motion is a state.
 BEFORE, ALONE = "error_before", "reference"
 # States of every frame, and that of a command which outlasts a sample.
-OMEGA, DELTA, HELD = "omega [rad/s]", "delta [rad]", "u held"
+DELTA, HELD = "delta [rad]", "u held"
 # What the measured angle is the sum of, and an input.
 MEASURED = (DELTA, "encoder error", "rounding of the angle")
 REFERENCE = "rounding of the reference"
@@ -123,7 +124,7 @@ class Frame:
     @property
     def listed(self) -> ListedLaw:
         """The list of operations of the law."""
-        return list_law(self.step.order, kinds_of(self.laws), streams=self.step.streams)
+        return list_law(self.step.order, kinds_of(self.laws), self.step.takes)
 
     @property
     def _placing(self) -> tuple[str, ...]:
@@ -153,7 +154,7 @@ class Frame:
         place, others = _around(self.stored)
         ages = (f"F {j} before [N*m]" for j in range(1, self.longest_delay + 1))
         kept = [self.stored[BEFORE]] if BEFORE in self.stored else []
-        motion = (OMEGA, *kept, *((HELD,) if self.holds else ()), *self._sent)
+        motion = (*self.motor.states, *kept, *((HELD,) if self.holds else ()), *self._sent)
         return (*place, *motion, *others, *ages, DELTA)
 
     @property
@@ -193,14 +194,14 @@ class Frame:
         made = _sample(self, law, delay, seen, turn, retuned="a" in values)
         ages = [*([] if turn is Turn.MOTION else [_force(self, *contact)]), *made.at.samples]
         _, others = _around(made.after)
-        turning, moving = (
-            tuple((name, value) for name, value in values.items() if name in names)
-            for names in (self.motor.of_speed, self.motor.of_way)
-        )
-        reference, delta = _place(made, self.motor, moving)
+        taken = {
+            name: tuple(item for item in values.items() if item[0] in self.motor.symbols_of(name))
+            for name in (*self.motor.states, WAY)
+        }
+        reference, delta = _place(made, self.motor, taken.pop(WAY))
         return [
             *reference,
-            _speed(made, self.motor, turning),
+            *(_state(made, self.motor, name, numbers) for name, numbers in taken.items()),
             *([made.after[BEFORE]] if BEFORE in made.after else []),
             *([made.drive] if self.holds else []),
             *made.sent[:-1],
@@ -208,7 +209,7 @@ class Frame:
             *ages[: self.longest_delay],
             delta,
             *made.sizes,
-            _slip(made, self.motor, (("Km", values["Km"]),)),
+            _slip(made, self.motor, values.get("Km", ZERO)),
         ]
 
     def command(self) -> tuple[LinearForm, Sequence[LinearForm]]:
@@ -277,6 +278,8 @@ def _sample(
     following = frame.listed.following
     if turn is not Turn.ADMITTANCE:
         drive = step.command(nothing)
+        if frame.step.takes is Takes.POSITION:
+            drive = combine((ONE, drive), (ONE, at[REFERENCE]))
         if not frame.step.streams:
             after[BEFORE] = step.result(following.pop(BEFORE), nothing)
             sizes |= step.motion_sizes()
@@ -289,7 +292,8 @@ def _sample(
     sent = [drive, *(at[name] for name in frame._sent)]
     ages = frame.timing.within
     given = Commands(
-        at[OMEGA],
+        tuple(at[name] for name in frame.motor.states),
+        at[DELTA],
         combine((ONE, sent[-1]), (ONE, at["friction"])),
         tuple(combine((ONE, sent[age]), (-ONE, sent[age + 1])) for age in ages),
     )
@@ -306,8 +310,8 @@ def _force(frame: Frame, k: Fraction, b: Fraction) -> LinearForm:
 # Corners share what does not depend on all of their numbers: as one object, so that they are known
 # to be alike.
 @lru_cache(maxsize=256)
-def _speed(made: _Sample, motor: HeldMotor, numbers: Numbers) -> LinearForm:
-    return motor.speed(made.given, dict(numbers))
+def _state(made: _Sample, motor: HeldMotor, name: str, numbers: Numbers) -> LinearForm:
+    return motor.result(name, made.given, dict(numbers))
 
 
 @lru_cache(maxsize=256)
@@ -315,21 +319,21 @@ def _place(
     made: _Sample, motor: HeldMotor, numbers: Numbers
 ) -> tuple[list[LinearForm], LinearForm]:
     """Return the reference, if any, or the error of it, and the deflection after the period."""
-    delta = combine((ONE, made.at[DELTA]), (ONE, motor.way(made.given, dict(numbers))))
+    delta = combine((ONE, made.at[DELTA]), (ONE, motor.result(WAY, made.given, dict(numbers))))
     if ALONE in made.after:
         return [combine((ONE, made.after[ALONE]), (-ONE, delta))], delta
     return _around(made.after)[0], delta
 
 
 @lru_cache(maxsize=64)
-def _slip(made: _Sample, motor: HeldMotor, numbers: Numbers) -> LinearForm:
-    return motor.slip(made.given, dict(numbers))
+def _slip(made: _Sample, motor: HeldMotor, Km: Fraction) -> LinearForm:
+    return motor.slip(made.given, {"Km": Km})
 
 
 def _places(states: Collection[str]) -> list[str]:
     """Return the reference among the states of a law, which comes before all others, or nothing."""
     if BEFORE not in states:
-        return []
+        return [ALONE] if ALONE in states else []
     return [*takewhile(lambda name: name != BEFORE, states)]
 
 

@@ -19,6 +19,7 @@ from nrs_design.controllers.sensor import DiscreteLowPass
 from nrs_design.controllers.step_analysis import Term, counted_terms, rounded_terms
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import InternalError
+from nrs_design.models.drive import Takes
 from nrs_design.models.linear_form import LinearForm, combine, coordinates, zero
 
 ONE = Fraction(1)
@@ -129,7 +130,7 @@ class ListedLaw:
 
 
 @lru_cache(maxsize=32)
-def list_law(order: int, kinds: Kinds, *, streams: bool = False) -> ListedLaw:
+def list_law(order: int, kinds: Kinds, takes: Takes | None = None) -> ListedLaw:
     """Write the list out, and count its roundings.
 
     Parameters
@@ -138,8 +139,8 @@ def list_law(order: int, kinds: Kinds, *, streams: bool = False) -> ListedLaw:
         Lags of the filter of the force.
     kinds : tuple
         As `kinds_of` returns them.
-    streams : bool
-        Whether the robot closes its own motion loop, and takes velocities.
+    takes : Takes, optional
+        What the robot takes, if there is no motion controller of ours.
 
     Raises
     ------
@@ -148,8 +149,7 @@ def list_law(order: int, kinds: Kinds, *, streams: bool = False) -> ListedLaw:
     """
     laws = {law.name: DiscreteLaw(law, dict.fromkeys(names, ANY)) for law, names in kinds}
     low_pass = DiscreteLowPass(order, ANY, ANY) if order else None
-    pd = Fraction(0) if streams else ANY
-    law = build_law(StepFrame(pd, pd, low_pass), laws, ANY)
+    law = build_law(StepFrame(ANY, ANY, low_pass, takes=takes), laws, ANY)
     *unit, mark = coordinates(len(law.values) + 1)
     # What is commanded is zero in the loop of a proof, and angles count from there.
     given: dict[str, LinearForm] = {
@@ -228,14 +228,18 @@ class RoundedStep:
         shares, Kp, D = self.shares, self.numbers["Kp"], self.numbers["Kd_over_T"]
         summands = {term.name: self._exact(term.form) for term in self.terms["error"]}
         read = combine(*((ONE, form) for form in summands.values()))
-        (change,) = (self._exact(t.form) for t in self.terms["command"] if t.name == KD)
+        made = {term.name: self._exact(term.form) for term in self.terms[self._command]}
         # Of a sum of two sizes, the part that is of second order counts with another term.
         more = shares[KP] * Kp * (1 + shares[ERROR]) + shares[KD] * D * shares[ERROR]
         sizes: dict[str, LinearForm] = {
             ERROR: combine((shares[ERROR], read)),
             KP: combine((short(more), read)),
-            KD: _shortened(shares[KD], D, change),
         }
+        for name, form in made.items():
+            if name == KD:
+                sizes[KD] = _shortened(shares[KD], D, form)
+            elif name != KP and name in shares:
+                sizes[name] = combine((shares[name], form))
         for name in summands.keys() & shares.keys() - {ERROR}:
             sizes[name] = combine((shares[name], summands[name]))
             sizes[second(name)] = combine((shares[second(name)] * (Kp + D), summands[name]))
@@ -253,7 +257,7 @@ class RoundedStep:
         sizes: dict[str, LinearForm] = {}
         factors = {STEP: "T"} if retuned else {STEP: "T", KEPT: "a"}
         own = {*own_results(self.listed.law)}
-        for result in self.terms.keys() - {"error", "command"}:
+        for result in self.terms.keys() - {"error", self._command}:
             beyond = 1 + self.shares[STEP] if result in own else ONE
             for term in self.terms[result]:
                 if (share := self.shares.get(term.name)) is None:
@@ -266,6 +270,12 @@ class RoundedStep:
                     # Of a sum of two sizes, the part of second order counts with another term.
                     sizes[term.name] = combine((share * beyond, form))
         return sizes
+
+    @property
+    def _command(self) -> str:
+        """Name of the result that the command is, of a motion controller."""
+        command = self.listed.law.outputs["command"]
+        return command if "error" in self.terms else "command"
 
     def _exact(self, form: LinearForm) -> LinearForm:
         """Return what a form is without roundings."""

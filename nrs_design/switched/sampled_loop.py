@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from itertools import chain, product
@@ -11,9 +11,9 @@ from itertools import chain, product
 from nrs_design.controllers.controller_design import SHARED_STATES, Controller, ControllerDesign
 from nrs_design.controllers.gains import idle_share
 from nrs_design.controllers.laws import DiscreteLaw
+from nrs_design.controllers.parts import FORCE_GAIN
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.linear_form import LinearForm, coordinates
 from nrs_design.models.plant import Plant
@@ -38,7 +38,8 @@ from nrs_design.switched.free_motion import (
     outputs_of,
 )
 from nrs_design.switched.gain_box import GainBox, RangedLaw
-from nrs_design.switched.held_motor import hold
+from nrs_design.switched.held_drive import HeldDrive
+from nrs_design.switched.held_motor import HeldMotor, hold
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
@@ -95,7 +96,10 @@ def close_sampled_loop(
     slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
     timing = timing_of(sampling, conditions.late)
     each = [item.law for item in laws.values()]
-    frame = _frame(conditions.idle, sampling, design, each, slowed, timing)
+    motor = hold(slowed, timing)
+    if plant.drive is not None:
+        motor = HeldDrive.of(plant.drive, timing)
+    frame = _frame(conditions.idle, sampling, design, each, motor, timing)
     loop = _Loop(frame, sampling.delay)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
@@ -217,7 +221,7 @@ def _frame(
     sampling: SamplingSpec,
     design: ControllerDesign,
     laws: Sequence[DiscreteLaw],
-    ranges: ActuatorRanges,
+    motor: HeldMotor,
     timing: CommandTiming,
 ) -> Frame:
     if (odd := design.find_odd_states(mixed=idle is not None)) is not None:
@@ -229,8 +233,8 @@ def _frame(
     filtered = None if low_pass is None else low_pass.discretize(outer)
     return Frame(
         timing,
-        hold(ranges, timing),
-        StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered),
+        motor,
+        StepFrame(motion.Kp, motion.over(sampling.period.exact), filtered, takes=design.takes),
         tuple(laws),
         sampling.delay[1],
         None if idle is None else idle_share(idle, outer),
@@ -258,9 +262,12 @@ class _Loop:
             found += self._corners(gains, self.frame.motor.box, controller.name)
             environments = environments if self.frame.remembers else ()
         for environment in environments:
-            own = Box({"k": environment.stiffness, "b": damping_of(environment)})
+            touched = {"k": environment.stiffness, "b": damping_of(environment)}
+            forced = any(FORCE_GAIN in law.numbers for law in self.frame.laws)
+            motor = self.frame.motor.touching(touched, forced=forced)
+            loop = replace(self, frame=replace(self.frame, motor=motor))
             name = f"{controller.name}/{environment.name}"
-            found += self._corners(gains, own.beside(self.frame.motor.box), name)
+            found += loop._corners(gains, Box(touched).beside(motor.box), name)
         return tuple(found)
 
     def in_the_air(self, controller: str, gains: RangedLaw) -> tuple[SampledMode, ...]:

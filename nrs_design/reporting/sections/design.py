@@ -150,8 +150,9 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
 
 
 def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
-    if spec.velocity_interface is not None:
-        return "The robot closes this loop itself, and takes velocities: there are no motion gains."
+    if spec.followed is not None:
+        taken = "velocities" if spec.velocity_interface else "positions"
+        return f"The robot closes this loop itself, and takes {taken}: there are no motion gains."
     if analysis.motion_source == "given":
         return "The spec states this G itself; it need not be the one that the PD gains make."
     given = spec.motion_loop

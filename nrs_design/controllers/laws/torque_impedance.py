@@ -1,0 +1,82 @@
+"""Impedance control of a robot that takes torques: a spring and a damper to a position."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+from typing import ClassVar
+
+from nrs_design.controllers.float32 import to_float32
+from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
+from nrs_design.controllers.parts import FORCE_GAIN, POSITION, StepGain, StepPart
+from nrs_design.errors import InternalError
+from nrs_design.models.linear_form import LinearForm
+from nrs_design.spec.controllers import Command, TorqueImpedanceSpec
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
+    """Torque ``u = (K e + D e')/R - (1/R - 1) F`` at the joint (thesis 2.2.6.1).
+
+    With the joint ``J theta'' = u - F`` that is ``R J theta'' = K e + D e' - F``: the joint moves
+    as one of R times its inertia on a spring K and a damper D. With R = 1 no force is needed.
+    """
+
+    name: ClassVar[str] = "torque-impedance"
+    units: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"K": "N*m/rad", "D": "N*m*s/rad", "R": "1"}
+    )
+    commands: ClassVar[Command] = TorqueImpedanceSpec.commands
+    fixed: ClassVar[Mapping[str, str]] = MappingProxyType(
+        {"K": "stiffness", "D": "damping", "R": "inertia_ratio"}
+    )
+
+    K: Fraction  # In N m/rad
+    D: Fraction  # In N m s/rad
+    R: Fraction = Fraction(1)  # Wanted inertia over that of the joint; 1 is no gain of the law
+
+    @property
+    def gains(self) -> Mapping[str, Fraction]:
+        """The gains by name; the ratio of inertias only where it is not 1."""
+        found = {"K": self.K, "D": self.D}
+        return found if self.R == 1 else found | {"R": self.R}
+
+    @classmethod
+    def of(cls, gains: Mapping[str, Fraction]) -> TorqueImpedance:
+        """Return the law with these gains."""
+        return cls(gains["K"], gains["D"], gains.get("R", Fraction(1)))
+
+    @classmethod
+    def gains_in(cls, given: TorqueImpedanceSpec) -> tuple[str, ...]:
+        """Return the names of its gains; R is one where the spec gives another than 1."""
+        return ("K", "D") if given.inertia_ratio in (None, 1) else ("K", "D", "R")
+
+    def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
+        """Refuse: a robot that takes torques is modelled in the sampled loop alone."""
+        raise InternalError("a law of torques has no limit for short periods here")
+
+    def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
+        """Return ``Kp = K/R``, ``D/(R T)`` and the share of the force, ``1/R - 1``."""
+        numbers = {"Kp": to_float32(self.K / self.R)}
+        if self.D:
+            numbers["Kd_over_T"] = to_float32(self.D / (self.R * period))
+        if self.R != 1:
+            # What is touched brakes with F, and is to brake with F/R.
+            numbers[FORCE_GAIN] = to_float32(1 / self.R - 1)
+        return DiscreteLaw(type(self), numbers)
+
+    @classmethod
+    def parts(cls, used: Collection[str], *, beside: bool) -> tuple[StepPart, ...]:
+        """Return the gains of the motion controller, which are its own; and that of the force."""
+        force = (StepGain(FORCE_GAIN, "Kf", "1"),) if FORCE_GAIN in used else ()
+        gains = (StepGain("Kp", "Kp", "N*m/rad"), StepGain("Kd_over_T", "D", "N*m/rad"), *force)
+        return (StepPart("torque", gains, (POSITION,)),)
+
+    @classmethod
+    def contact_text(cls, *, alone: bool) -> None:
+        """Take nothing for granted: contact and free motion are modes."""
+
+
+LAW = TorqueImpedance

@@ -1,0 +1,229 @@
+"""A robot that follows commands by dynamics of its own, or that takes torques.
+
+Its joint moves by ``z' = A z + B u`` under the command u, where the deflection is the last of the
+states z and the velocity, unless it jumps, is the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from fractions import Fraction
+from types import MappingProxyType
+
+from nrs_design.errors import AssemblyError
+from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import MotionLoop
+
+ONE, ZERO = Fraction(1), Fraction(0)
+Rows = tuple[tuple[Fraction, ...], ...]
+OMEGA = "omega [rad/s]"
+# Symbols of the stiffness and the damping of what a joint touches.
+LOAD = ("k", "b")
+
+
+class Takes(StrEnum):
+    """What a robot is commanded."""
+
+    VELOCITY = "velocity"
+    POSITION = "position"
+    TORQUE = "torque"
+
+
+# Units of what robots take that have no motor of the user's.
+COMMANDS: Mapping[Takes, str] = MappingProxyType(
+    {Takes.VELOCITY: "rad/s", Takes.POSITION: "rad", Takes.TORQUE: "N*m"}
+)
+
+
+def taken_in(command: str) -> Takes | None:
+    """Return what a robot takes whose commands have a unit; None for the commands of a motor."""
+    return next((takes for takes, unit in COMMANDS.items() if unit == command), None)
+
+
+@dataclass(frozen=True, slots=True)
+class MultiAffine:
+    """A matrix that is affine in each of some numbers: constants times products of them."""
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
+    # By the symbols of the numbers that a product has, each once; all of one shape.
+    terms: Mapping[tuple[str, ...], Rows]
+
+    def slope(self, symbol: str) -> MultiAffine:
+        """Return the derivative by one of the numbers."""
+        return MultiAffine(
+            {
+                tuple(s for s in symbols if s != symbol): rows
+                for symbols, rows in self.terms.items()
+                if symbol in symbols
+            }
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """What a joint does with its command."""
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
+
+    takes: Takes
+    states: tuple[str, ...]  # Names and units; the velocity first, the deflection left out
+    # A and B in a row, of the states and the deflection: of as many columns and one more. Where the
+    # velocity jumps with the command, it is not among them.
+    rates: MultiAffine
+    ranges: Mapping[str, Interval]  # Where numbers of `rates` lie, other than those of the load
+    inverse: frozenset[str] = frozenset()  # Those that `rates` takes one over
+    loaded: bool = False  # Whether what is touched acts on the joint, by the symbols of `LOAD`
+    # The velocity by the same states and the command, where it jumps.
+    speed: MultiAffine | None = None
+
+    @property
+    def order(self) -> int:
+        """How many states `rates` is about, the deflection counted."""
+        return len(self.states) + (self.speed is None)
+
+    def at(self, values: Mapping[str, Fraction]) -> Drive:
+        """Return the drive at values of its numbers, at their nominal ones by default."""
+        known = {s: Interval.point(values.get(s, r.nominal)) for s, r in self.ranges.items()}
+        return replace(self, ranges=known)
+
+    def scaled(self, scale: Fraction) -> Drive:
+        """Return the drive with its ranges stretched about the nominal values.
+
+        Raises
+        ------
+        AssemblyError
+            If one would not stay positive.
+        """
+        ranges = {symbol: interval.scaled(scale) for symbol, interval in self.ranges.items()}
+        if any(interval.low <= 0 for interval in ranges.values()):
+            raise AssemblyError(
+                f"with its ranges scaled by {float(scale):.6g}, the robot does not stay physical",
+                remedy="scale the ranges by less",
+            )
+        return replace(self, ranges=ranges)
+
+
+def torque_drive(inertia: Interval, friction: Interval) -> Drive:
+    """Return a joint that takes torques: ``J omega' = u - B omega - k delta - b omega``.
+
+    Parameters
+    ----------
+    inertia : Interval
+        The J in kg m^2.
+    friction : Interval
+        The B in N m s/rad.
+    """
+    rows = {
+        ("J", "B"): ((-ONE, ZERO, ZERO), (ZERO, ZERO, ZERO)),
+        ("J", LOAD[1]): ((-ONE, ZERO, ZERO), (ZERO, ZERO, ZERO)),
+        ("J", LOAD[0]): ((ZERO, -ONE, ZERO), (ZERO, ZERO, ZERO)),
+        ("J",): ((ZERO, ZERO, ONE), (ZERO, ZERO, ZERO)),
+        (): ((ZERO, ZERO, ZERO), (ONE, ZERO, ZERO)),
+    }
+    ranges = {"J": inertia, "B": friction}
+    return Drive(Takes.TORQUE, (OMEGA,), MultiAffine(rows), ranges, frozenset({"J"}), loaded=True)
+
+
+def lagging_drive(time_constant: Interval) -> Drive:
+    """Return a joint that follows a position by ``tau theta' = u - theta``.
+
+    Its velocity jumps with the command.
+
+    Parameters
+    ----------
+    time_constant : Interval
+        The tau in s.
+    """
+    row: Mapping[tuple[str, ...], Rows] = {("tau",): ((-ONE, ONE),)}
+    return Drive(
+        Takes.POSITION,
+        (OMEGA,),
+        MultiAffine(row),
+        {"tau": time_constant},
+        frozenset({"tau"}),
+        speed=MultiAffine(row),
+    )
+
+
+def velocity_drive(loop: MotionLoop) -> Drive:
+    """Return a joint whose velocity follows the command by a transfer function.
+
+    In the observable canonical form, whose first state is the velocity.
+
+    Parameters
+    ----------
+    loop : MotionLoop
+        Strictly proper.
+    """
+    A, B = _observable(loop)
+    n = len(A)
+    rates = [(*row, ZERO, b) for row, b in zip(A, B, strict=True)]
+    way = (ONE, *(ZERO,) * (n + 1))
+    return Drive(Takes.VELOCITY, _states(n), MultiAffine({(): (*rates, way)}), MappingProxyType({}))
+
+
+def position_drive(loop: MotionLoop) -> Drive:
+    """Return a joint whose position follows the command by a transfer function.
+
+    In the observable canonical form, whose first state is the position; the others are counted from
+    what they are at rest there, so that the second one is the velocity if that does not jump.
+
+    Parameters
+    ----------
+    loop : MotionLoop
+        Strictly proper.
+
+    Raises
+    ------
+    AssemblyError
+        If it does not come to rest where it is commanded.
+    """
+    if loop.numerator[-1] != loop.denominator[-1] or not loop.denominator[-1]:
+        raise AssemblyError(
+            "the robot does not come to rest where it is commanded: its transfer function is not 1 "
+            "at s = 0",
+            remedy="let the last coefficients of numerator and denominator be equal",
+            at=("position_interface", "transfer_function"),
+        )
+    A, B = _observable(loop)
+    n = len(A)
+    # At rest at 1 under the command 1: of 0 = A z + B, from the first row on.
+    rest = [ONE]
+    for row, b in zip(A[:-1], B[:-1], strict=True):
+        rest.append(-row[0] - b)
+    # In z~ = z - rest * position, the rows lose what the position does to their rest.
+    first = [A[0][j] + (A[0][1] * rest[1] if n > 1 and j == 0 else ZERO) for j in range(n)]
+    shifted = [first]
+    for i in range(1, n):
+        own = [*A[i]]
+        own[0] += sum((A[i][j] * rest[j] for j in range(1, n)), ZERO)
+        shifted.append([a - rest[i] * f for a, f in zip(own, first, strict=True)])
+    inputs = [B[0], *(b - rest[i] * B[0] for i, b in enumerate(B[1:], 1))]
+    # The position goes last.
+    rates = [
+        (*row[1:], row[0], b)
+        for row, b in zip([*shifted[1:], shifted[0]], [*inputs[1:], inputs[0]], strict=True)
+    ]
+    jumps = B[0] != 0
+    names = (OMEGA, *(f"xp{i}" for i in range(2, n + 1))) if jumps else _states(n - 1)
+    speed = MultiAffine({(): (rates[-1],)}) if jumps else None
+    return Drive(
+        Takes.POSITION, names, MultiAffine({(): tuple(rates)}), MappingProxyType({}), speed=speed
+    )
+
+
+def _states(n: int) -> tuple[str, ...]:
+    """Name the velocity, and states of the robot that have no unit of their own."""
+    return (OMEGA, *(f"xp{i}" for i in range(2, n + 1)))
+
+
+def _observable(loop: MotionLoop) -> tuple[list[list[Fraction]], list[Fraction]]:
+    """Return A and B of ``z' = A z + B u``, ``y = z_1``."""
+    lead, *tail = loop.denominator
+    n = len(tail)
+    padded: Sequence[Fraction] = (*(ZERO,) * (n - len(loop.numerator)), *loop.numerator)
+    A = [[-tail[i] / lead, *(Fraction(int(j == i + 1)) for j in range(1, n))] for i in range(n)]
+    return A, [c / lead for c in padded]

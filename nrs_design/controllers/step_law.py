@@ -173,7 +173,7 @@ def build_law(
     )
     return StepLaw(
         tuple(laws),
-        (*_measured(limits)[frame.streams :], *map(limits.within, inputs.values())),
+        (*_measured(limits)[frame.takes is Takes.VELOCITY :], *map(limits.within, inputs.values())),
         (
             *map(limits.within, places),
             *(() if frame.streams else (error,)),

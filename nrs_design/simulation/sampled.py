@@ -41,7 +41,7 @@ def sampled_axis(
             "the spec does not say how often the law runs",
             remedy="add `sampling: {period: 2 ms, delay: 0}`",
         )
-    if plant.given_loop is not None and not design.motion.absent:
+    if plant.given_loop is not None and not design.takes:
         raise DesignError(
             "the spec states the motion loop itself, so there is no motor to simulate",
             remedy="leave transfer_function out, or use --engine exact",

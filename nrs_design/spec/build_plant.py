@@ -30,6 +30,8 @@ def build_plant(spec: InteractionDesignSpec) -> Plant:
     motor, load, loop, drive = spec.actuator, None, None, None
     if spec.torque_interface is not None:
         ranges, load, drive = _torque(spec.torque_interface, spec.command)
+        joint = ranges.nominal
+        loop = MotionLoop((joint.gain,), (joint.time_constant, Fraction(1)), given=True)
     elif spec.followed is not None:
         ranges, loop = _followed(spec.followed, spec.command)
         drive = _drive(spec, loop)

@@ -250,6 +250,11 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
     return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 
+def exactly(value: Quantity | Fraction) -> Fraction:
+    """Return a value in SI, which may be a number without a unit."""
+    return value.exact if isinstance(value, Quantity) else value
+
+
 def is_less(a: Quantity, b: Quantity) -> bool:
     """Whether ``a < b``; exact wherever both have the same power of pi."""
     if a.pi_power == b.pi_power:

@@ -162,6 +162,11 @@ class Frame:
         """The commands of samples before, the last one first, as far as they are not in force."""
         return tuple(f"u {age} before" for age in range(1, self.timing.oldest + 1))
 
+    @property
+    def _placed(self) -> bool:
+        """Whether commands are positions: as states they count from the deflection."""
+        return self.step.takes is Takes.POSITION
+
     def rows(
         self,
         law: DiscreteLaw,
@@ -204,7 +209,7 @@ class Frame:
             *(_state(made, self.motor, name, numbers) for name, numbers in taken.items()),
             *([made.after[BEFORE]] if BEFORE in made.after else []),
             *([made.drive] if self.holds else []),
-            *made.sent[:-1],
+            *(combine((ONE, u), (-ONE, delta)) if self._placed else u for u in made.sent[:-1]),
             *others,
             *ages[: self.longest_delay],
             delta,
@@ -278,7 +283,7 @@ def _sample(
     following = frame.listed.following
     if turn is not Turn.ADMITTANCE:
         drive = step.command(nothing)
-        if frame.step.takes is Takes.POSITION:
+        if frame._placed:
             drive = combine((ONE, drive), (ONE, at[REFERENCE]))
         if not frame.step.streams:
             after[BEFORE] = step.result(following.pop(BEFORE), nothing)
@@ -362,6 +367,8 @@ class _Signals:
         names = (*frame.states, *INPUTS)
         unit = coordinates(len(names) + len(shares))
         forms = dict(zip(names, unit, strict=False))
+        for name in frame._sent if frame._placed else ():
+            forms[name] = combine((ONE, forms[name]), (ONE, forms[DELTA]))
         states = {name: forms[text] for name, text in frame.stored.items()}
         if ALONE in states:
             states[ALONE] = combine((ONE, states[ALONE]), (ONE, forms[DELTA]))

@@ -11,7 +11,7 @@ from typing import ClassVar
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws.law import AbstractCompliantLaw, DiscreteLaw, Response
 from nrs_design.controllers.parts import FORCE_GAIN, POSITION, StepGain, StepPart
-from nrs_design.errors import InternalError
+from nrs_design.errors import DesignError
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import Command, TorqueImpedanceSpec
 
@@ -54,8 +54,17 @@ class TorqueImpedance(AbstractCompliantLaw[TorqueImpedanceSpec]):
         return ("K", "D") if given.inertia_ratio in (None, 1) else ("K", "D", "R")
 
     def respond(self, force: LinearForm, states: Sequence[LinearForm]) -> Response:
-        """Refuse: a robot that takes torques is modelled in the sampled loop alone."""
-        raise InternalError("a law of torques has no limit for short periods here")
+        """Refuse: a robot that takes torques is modelled in the sampled loop alone.
+
+        Raises
+        ------
+        DesignError
+            Always.
+        """
+        raise DesignError(
+            "a law that makes torques has no form in continuous time here",
+            remedy="use what is about the sampled loop, such as --engine sampled or --format json",
+        )
 
     def discretize(self, period: Fraction, method: str) -> DiscreteLaw:
         """Return ``Kp = K/R``, ``D/(R T)`` and the share of the force, ``1/R - 1``."""

@@ -134,7 +134,7 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     G = analysis.motion
     text = (
         f"Motion loop in use: G(s) = ({polynomial_text(G.numerator, 6)}) / "
-        f"({polynomial_text(G.denominator, 6)}), from commanded to actual velocity. "
+        f"({polynomial_text(G.denominator, 6)}), from {_sides(spec)} velocity. "
         f"{_source(spec, analysis)}"
     )
     if (wanted := analysis.wanted) is None:
@@ -149,10 +149,16 @@ def _motion_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     )
 
 
+def _sides(spec: InteractionDesignSpec) -> str:
+    return "commanded torque to" if spec.torque_interface else "commanded to actual"
+
+
 def _source(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> str:
     if spec.followed is not None:
         taken = "velocities" if spec.velocity_interface else "positions"
         return f"The robot closes this loop itself, and takes {taken}: there are no motion gains."
+    if spec.torque_interface is not None:
+        return "Each controller closes its own loop around it, with its stiffness and damping."
     if analysis.motion_source == "given":
         return "The spec states this G itself; it need not be the one that the PD gains make."
     given = spec.motion_loop

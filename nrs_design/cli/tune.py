@@ -11,6 +11,7 @@ from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
 from nrs_design.cli.tables import print_table
+from nrs_design.proof.bounds import lower_float
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -33,6 +34,18 @@ PARALLEL_COLUMNS = (
     "unstable for k\nN m/rad",
 )
 
+TORQUE_COLUMNS = (
+    "controller",
+    "K\nN m/rad",
+    "B\nN m s/rad",
+    "stable in the air\nbelow, N m/rad",
+    "passive, margin\nN m s/rad",
+)
+TORQUE_TEXT = (
+    "Passive whatever is touched: b > K T/2 + B with the least friction b of the spec, exact for "
+    "commands at once (Colgate and Schenkel 1997). The border in the air is that of the nominal "
+    "joint, in floating point. Neither is the proof."
+)
 _NOMINAL = (
     "Poles, damping and steady error in this table are those of the loop at nominal values in "
     "continuous time. Goals and warnings are about the loop that certify-switching is about, at "
@@ -60,7 +73,7 @@ def tune(spec: SpecFile) -> Answer:
     loaded = read_spec(spec)
     with progress(f"tuning {loaded.spec.name}"):
         designed = run_interaction(loaded, "has nothing to tune")
-        if designed.spec.motion_loop is None:
+        if designed.spec.followed is not None:
             raise DesignError(
                 "there is no motion loop around a motor, so there is no motion gain to tune",
                 path=loaded.path,
@@ -78,21 +91,8 @@ def tune(spec: SpecFile) -> Answer:
 
 
 def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any]:
-    wanted, reached = analysis.wanted, analysis.reached
-    assert wanted is not None, "there is a motion loop"
     return {
-        "motion": {
-            "wanted_poles": _pairs(wanted.wanted_poles),
-            "root_locus": {"derivative_gain": wanted.derivative_gain, "zero": wanted.zero},
-            "Kp": float(design.motion.Kp),
-            "Kd": float(design.motion.Kd),
-            "loop": motion_summary(analysis),
-            "poles": _pairs(reached.poles),
-            "damping_ratio": reached.damping_ratio,
-            "natural_frequency": reached.natural_frequency,
-            "overshoot_percent": 100 * reached.overshoot,
-            "units": {**design.units["motion"], "poles": "1/s", "zero": "1/s"},
-        },
+        "motion": _motion_summary(design, analysis),
         "force": [
             {
                 "name": item.name,
@@ -128,10 +128,48 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
             }
             for item in analysis.parallel
         ],
+        "torque": [
+            {
+                "name": item.name,
+                "Kp": item.Kp,
+                "B": item.B,
+                "stable_below_in_the_air": item.border,
+                "passivity_margin": None if item.margin is None else lower_float(item.margin),
+                "units": {
+                    "Kp": "N*m/rad",
+                    "B": "N*m*s/rad",
+                    "stable_below_in_the_air": "N*m/rad",
+                    "passivity_margin": "N*m*s/rad",
+                },
+            }
+            for item in analysis.torque
+        ],
+    }
+
+
+def _motion_summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, Any] | None:
+    wanted, reached = analysis.wanted, analysis.reached
+    if wanted is None:
+        return None
+    return {
+        "wanted_poles": _pairs(wanted.wanted_poles),
+        "root_locus": {"derivative_gain": wanted.derivative_gain, "zero": wanted.zero},
+        "Kp": float(design.motion.Kp),
+        "Kd": float(design.motion.Kd),
+        "loop": motion_summary(analysis),
+        "poles": _pairs(reached.poles),
+        "damping_ratio": reached.damping_ratio,
+        "natural_frequency": reached.natural_frequency,
+        "overshoot_percent": 100 * reached.overshoot,
+        "units": {**design.units["motion"], "poles": "1/s", "zero": "1/s"},
     }
 
 
 def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
+    if analysis.torque:
+        print_table(f"{name}: impedance by torques", TORQUE_COLUMNS, _torque_rows(analysis))
+        say(TORQUE_TEXT)
+        return
     columns = _motion_columns(design.command)
     print_table(f"{name}: motion loop", columns, _motion_rows(design, analysis))
     if analysis.motion_source == "given":
@@ -214,6 +252,13 @@ def _parallel_rows(analysis: DesignAnalysis) -> list[list[str]]:
             item.unstable_text,
         ]
         for item in analysis.parallel
+    ]
+
+
+def _torque_rows(analysis: DesignAnalysis) -> list[list[str]]:
+    return [
+        [item.name, f"{item.Kp:.6g}", f"{item.B:.6g}", f"{item.border:.6g}", item.passive_text]
+        for item in analysis.torque
     ]
 
 

@@ -13,6 +13,7 @@ from nrs_design.design.laws.force import ForceAnalysis
 from nrs_design.design.laws.impedance import ImpedanceAnalysis
 from nrs_design.design.laws.law import AbstractControllerAnalysis, Task
 from nrs_design.design.laws.parallel import ParallelAnalysis
+from nrs_design.design.laws.torque_impedance import TorqueAnalysis
 from nrs_design.design.root_locus import MotionLoopResponse, PdDesign, motion_loop_response
 from nrs_design.design.transfer import TransferFunction
 from nrs_design.models.plant import Plant
@@ -24,6 +25,7 @@ __all__ = [
     "ForceAnalysis",
     "ImpedanceAnalysis",
     "ParallelAnalysis",
+    "TorqueAnalysis",
     "analyze_design",
 ]
 
@@ -56,6 +58,11 @@ class DesignAnalysis:
     def parallel(self) -> tuple[ParallelAnalysis, ...]:
         """The parallel controllers."""
         return self._of(ParallelAnalysis)
+
+    @property
+    def torque(self) -> tuple[TorqueAnalysis, ...]:
+        """The controllers that make torques."""
+        return self._of(TorqueAnalysis)
 
     @property
     def tuned(self) -> tuple[AbstractControllerAnalysis, ...]:

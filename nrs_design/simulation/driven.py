@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass
-class Driven:
+class DrivenJoint:
     """A drive at its nominal numbers, with those of its states that nobody else knows."""
 
     generator: Array  # [[A, B], [0, 0]], shape (n + 1, n + 1)
@@ -23,7 +23,7 @@ class Driven:
     rest: Array = field(repr=False)  # The states between the velocity and the deflection
 
     @classmethod
-    def of(cls, drive: Drive) -> Driven:
+    def of(cls, drive: Drive) -> DrivenJoint:
         """Return a drive at rest.
 
         Parameters

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.models.plant import Plant
-from nrs_design.simulation.driven import Driven
+from nrs_design.simulation.driven import DrivenJoint
 from nrs_design.simulation.motor import Motor
 from nrs_design.simulation.run import Run
 from nrs_design.simulation.scenario import (
@@ -121,9 +121,9 @@ class SampledAxis:
         scenario, actuator, law = self.scenario, self.plant.actuator, self.program.law
         gain, tau = float(actuator.gain), float(actuator.time_constant)
         drive = self.plant.drive
-        self.motor: Motor | Driven = Motor(gain, tau, scenario.errors.friction)
+        self.motor: Motor | DrivenJoint = Motor(gain, tau, scenario.errors.friction)
         if drive is not None and not drive.loaded:
-            self.motor = Driven.of(drive)
+            self.motor = DrivenJoint.of(drive)
         load = self.plant.load_inertia
         # By how much a torque weighs as a command, per N m.
         self.load = 0.0 if load is None else tau / (float(load) * gain)

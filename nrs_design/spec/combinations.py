@@ -115,7 +115,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(STREAMED, OTHERS, SPRUNG, IDLE, COUPLED, SAFE, TWO_PERIODS, SATURATED),
     not_together(STREAMED, MOTOR_RANGE, CONTINUOUS),
     # Its law makes the torque, and what is touched brakes the joint between two samples.
-    *_beside(TORQUES, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS, GAIN_RANGE),
+    *_beside(TORQUES, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS),
     # When a command takes effect within a period is known to the loop of one axis alone.
     *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED, SAFE),
     not_together(COMMAND, OTHERS, SAMPLED),

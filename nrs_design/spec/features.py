@@ -157,12 +157,6 @@ STREAMED = _F(
     "write actuator and motion_loop",
     lambda s: _first(k for k in s.drives if s.followed),
 )
-STREAMED_FUNCTION = _F(
-    "a transfer_function of a {0}",
-    "{0}.transfer_function",
-    "give a time_constant",
-    lambda s: _first(k for k in s.drives if s.followed and s.followed.transfer_function),
-)
 TORQUES = _F(
     "a torque_interface",
     "torque_interface",

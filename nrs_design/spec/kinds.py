@@ -206,7 +206,7 @@ ANGULAR_ACCELERATION = QuantityKind(
 )
 COMMAND = QuantityKind(
     "a command of the motor",
-    COMMAND_UNITS,
+    (*COMMAND_UNITS, "N*m"),
     "276.575 rpm",
     {
         "rad/s": "the driver's command has a unit of its own that is never converted: write "

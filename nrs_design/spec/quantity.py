@@ -250,7 +250,7 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
     return SpecError(f"{quoted(text)} has no unit, expected {expected}", remedy=remedy)
 
 
-def exactly(value: Quantity | Fraction) -> Fraction:
+def exact_number(value: Quantity | Fraction) -> Fraction:
     """Return a value in SI, which may be a number without a unit."""
     return value.exact if isinstance(value, Quantity) else value
 

@@ -123,9 +123,9 @@ UNITS = {
 
 
 def command_unit(dimension: tuple[int, ...]) -> str:
-    """Return the unit of commands in a dimension that holds one."""
+    """Return the unit of commands in a dimension that holds one; a torque is one itself."""
     powers = zip(BASE_UNITS, dimension, strict=True)
-    return next(unit for unit, power in powers if unit in COMMAND_UNITS and power)
+    return next((unit for unit, power in powers if unit in COMMAND_UNITS and power), "N*m")
 
 
 @functools.lru_cache(maxsize=256)

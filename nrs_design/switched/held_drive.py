@@ -35,7 +35,7 @@ AGAIN = ("k held", "b held")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Entry:
+class PeriodEntry:
     """One entry: what it is at the corners of the numbers that it depends on, and how far off."""
 
     symbol: str
@@ -63,7 +63,7 @@ class HeldDrive(HeldMotor):
     numbers: Mapping[str, Interval]  # All that entries depend on, those of the load too
     # By the time that is left, the row and the column: of the whole period those of the states, of
     # every time those of a command. What is not there is zero.
-    entries: Mapping[tuple[int, int, int], Entry] = field(repr=False)
+    entries: Mapping[tuple[int, int, int], PeriodEntry] = field(repr=False)
     load: tuple[str, str] = LOAD
 
     @classmethod
@@ -144,7 +144,13 @@ class HeldDrive(HeldMotor):
         return frozenset(named.get(s, s) for e in found for s in (*e.depends, e.symbol))
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return a state after the period, or how far the joint goes in it."""
+        """Return a state after the period, or how far the joint goes in it.
+
+        Parameters
+        ----------
+        name, given, values
+            As for `HeldMotor.result`.
+        """
         row, drive = self._row(name), self.drive
         shares = dict(self._shares(values))
         states = given.states if drive.speed is None else given.states[1:]
@@ -187,7 +193,7 @@ class HeldDrive(HeldMotor):
 
 def _entries(
     drive: Drive, numbers: Mapping[str, Interval], times: Mapping[str, Interval]
-) -> Iterator[tuple[tuple[int, int, int], Entry]]:
+) -> Iterator[tuple[tuple[int, int, int], PeriodEntry]]:
     """Yield what is not zero."""
     n, count = drive.order, 0
     ranged = [s for s, interval in numbers.items() if interval.low < interval.high]
@@ -218,7 +224,7 @@ def _entries(
                     remedy="narrow the ranges, or sample with a shorter period",
                     at=("sampling", "period"),
                 )
-            yield (span, row, column), Entry(f"off{count}", tuple(moving), *found)
+            yield (span, row, column), PeriodEntry(f"off{count}", tuple(moving), *found)
             count += 1
 
 

@@ -129,7 +129,13 @@ class MotorAtOnce(HeldMotor):
         return frozenset({"Km", "s" if result == WAY and self.time_constant is None else "E"})
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period, or how far the joint turns in it."""
+        """Return the speed after the period, or how far the joint turns in it.
+
+        Parameters
+        ----------
+        name, given, values
+            As for `HeldMotor.result`.
+        """
         return self._way(given, values) if name == WAY else self._speed(given, values)
 
     def _speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
@@ -171,7 +177,13 @@ class MotorInTime(HeldMotor):
         return frozenset(self.box.ranges) - ({"g"} if result == WAY else set())
 
     def result(self, name: str, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:
-        """Return the speed after the period, or how far the joint turns in it."""
+        """Return the speed after the period, or how far the joint turns in it.
+
+        Parameters
+        ----------
+        name, given, values
+            As for `HeldMotor.result`.
+        """
         return self._way(given, values) if name == WAY else self._speed(given, values)
 
     def _speed(self, given: Commands, values: Mapping[str, Fraction]) -> LinearForm:

@@ -141,7 +141,23 @@ CHANGES = {
     f.STREAMED: {
         "actuator": None,
         "motion_loop": None,
-        "velocity_interface": {"time_constant": "0.03 s"},
+        "velocity_interface": {
+            "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
+        },
+    },
+    f.TORQUES: {
+        "actuator": None,
+        "motion_loop": None,
+        "torque_interface": {"inertia": "0.2 kg*m^2", "friction": "0.5 N*m*s/rad"},
+        "controllers": {
+            name: {
+                "type": "torque-impedance",
+                "environment": "soft",
+                "stiffness": "30 N*m/rad",
+                "damping": "3 N*m*s/rad",
+            }
+            for name in ("first", "second")
+        },
     },
 }
 

@@ -75,8 +75,8 @@ MOTOR = "actuator: {gain: 1 rad/s/V, time_constant: 0.1 s, command: V}\n"
 @pytest.mark.parametrize(
     ("old", "new", "what"),
     [
-        ("limits:\n", f"{LOOP}limits:\n", "motion_loop stands beside a velocity_interface"),
-        ("limits:\n", f"{MOTOR}limits:\n", "actuator stands beside a velocity_interface"),
+        ("limits:\n", f"{LOOP}limits:\n", "motion_loop stands beside velocity_interface"),
+        ("limits:\n", f"{MOTOR}limits:\n", "actuator stands beside velocity_interface"),
         ("velocity_interface:\n", "velocity_interfaces:\n", "velocity_interface"),
         ("[3 ms, 4 ms]", "20 ms", "more than 10 periods"),
         ("[0.027 s, 0.033 s]}", "[0.033 s, 0.027 s]}", "below its start"),

@@ -15,7 +15,7 @@ from nrs_design.controllers.step_law import StepFrame
 from nrs_design.models.actuator import Actuator, ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.switched.command_timing import CommandTiming
-from nrs_design.switched.held_motor import Commands, MotorAtOnce, MotorInTime, hold
+from nrs_design.switched.held_motor import WAY, Commands, MotorAtOnce, MotorInTime, hold
 from nrs_design.switched.sampled_frame import Frame
 
 F = Fraction
@@ -27,7 +27,7 @@ RANGES = ActuatorRanges(
 
 def given_of(changes):
     unit = [[F(int(i == j)) for j in range(2 + changes)] for i in range(2 + changes)]
-    return Commands(unit[0], unit[1], tuple(unit[2:]))
+    return Commands((unit[0],), unit[0], unit[1], tuple(unit[2:]))
 
 
 def true_rest(span, time, tau):
@@ -82,7 +82,9 @@ def test_the_motion_is_that_of_the_split_period(tau, lefts):
         chord = span.low + span.slope * (F(time) - span.time.low)
         values |= dict(zip(span.symbols, (F(time), F(way) - chord), strict=True))
     given = given_of(len(lefts))
-    speed, way = ([float(v) for v in f(given, values)] for f in (motor.speed, motor.way))
+    speed, way = (
+        [float(v) for v in motor.result(name, given, values)] for name in ("omega [rad/s]", WAY)
+    )
     ends = [period, *lefts, 0.0]
     free, columns = by_exponentials(Km, tau, [a - b for a, b in pairwise(ends)])
     # A change lasts to the end of the period, the first command for all of it.

@@ -33,7 +33,9 @@ def alter(monkeypatch):
 
     def put(where, change):
         if where == "motion":
-            monkeypatch.setattr(step_law, "motion_operations", lambda x: change([*given(x)]))
+            monkeypatch.setattr(
+                step_law, "motion_operations", lambda *a, **b: change([*given(*a, **b)])
+            )
         else:
             monkeypatch.setattr(Admittance, "parts", lambda *a, **b: altered(parts(*a, **b)))
         list_law.cache_clear()

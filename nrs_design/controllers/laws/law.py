@@ -21,7 +21,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.interval import Interval
 from nrs_design.models.linear_form import LinearForm
 from nrs_design.spec.controllers import AbstractControllerSpec, Command
-from nrs_design.spec.quantity import exactly
+from nrs_design.spec.quantity import exact_number
 
 S = TypeVar("S", bound=AbstractControllerSpec)
 # What a law gives the motion loop, and the rates of its states.
@@ -174,7 +174,7 @@ class AbstractCompliantLaw(AbstractLaw, Generic[S]):
         for gain, value in self.gains.items():
             if gain in self.fixed:
                 said = getattr(given, self.fixed[gain])
-                if said is not None and value != to_float32(exactly(said)):
+                if said is not None and value != to_float32(exact_number(said)):
                     return f"gain {gain} is not what the spec fixes"
             elif gain not in given.gains():
                 return f"gain {gain} has no bounds in the spec"

@@ -25,7 +25,7 @@ from nrs_design.models.motion_loop import MotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.spec import ControllerSpec, Doubt, GainSpec, InteractionDesignSpec, Quantity
 from nrs_design.spec.controllers import contact_names
-from nrs_design.spec.quantity import exactly
+from nrs_design.spec.quantity import exact_number
 from nrs_design.switched.cut_loop import AbstractAxis, Place, axis_of
 
 
@@ -142,7 +142,7 @@ def choose_given(task: Task, given: ControllerSpec) -> Choice:
                 remedy="give its value",
                 at=(law.fixed.get(name, name),),
             )
-        gains[name] = to_float32(exactly(value))
+        gains[name] = to_float32(exact_number(value))
     return law.of(gains), None
 
 

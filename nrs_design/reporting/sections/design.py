@@ -20,6 +20,7 @@ from nrs_design.reporting.sections.landscape import landscape_section
 from nrs_design.reporting.sections.parallel import parallel_section
 from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.sections.titles import MOTION
+from nrs_design.reporting.sections.torque import torque_section
 from nrs_design.spec import InteractionDesignSpec
 
 if TYPE_CHECKING:
@@ -79,6 +80,8 @@ def design_sections(designed: Designed, analysis: DesignAnalysis | None) -> tupl
         parts.append(_force_section(designed, analysis))
     if analysis.parallel:
         parts.append(parallel_section(designed.loaded, analysis))
+    if analysis.torque:
+        parts.append(torque_section(designed.loaded, analysis))
     return tuple(parts)
 
 

@@ -30,6 +30,8 @@ BITS = 240
 # Of the last digit of an entry, over its size: where it is known, its ends are one number in
 # doubles; where it has a range, of how far it is off at most.
 KNOWN_BITS, RANGED_BITS = 64, 3
+# Of a period, in time constants of the drive: far beyond, nothing is left of where it began.
+LONGEST = 2000
 # The numbers are read where the period begins and hold until it ends.
 AGAIN = ("k held", "b held")
 
@@ -197,6 +199,7 @@ def _entries(
     """Yield what is not zero."""
     n, count = drive.order, 0
     ranged = [s for s, interval in numbers.items() if interval.low < interval.high]
+    _check_length(drive, numbers, times["T"])
     for span, (time, length) in enumerate(times.items()):
         moving = [*ranged, *([time] if length.low < length.high else [])]
         known = {**numbers, time: length}
@@ -219,13 +222,34 @@ def _entries(
                 continue
             found = _rounded(values, off)
             if found is None:
-                raise AssemblyError(
-                    "a period is too long for the ranges of the drive and of what it touches",
-                    remedy="narrow the ranges, or sample with a shorter period",
-                    at=("sampling", "period"),
-                )
+                raise _too_long()
             yield (span, row, column), PeriodEntry(f"off{count}", tuple(moving), *found)
             count += 1
+
+
+def _check_length(drive: Drive, numbers: Mapping[str, Interval], period: Interval) -> None:
+    """Refuse a period of which the exponential is out of reach.
+
+    Raises
+    ------
+    AssemblyError
+        If it is so many time constants long.
+    """
+    ends = {s: _ends(i, inverse=s in drive.inverse) for s, i in numbers.items()}
+    n, anywhere = drive.order, {s: _hull(*e) for s, e in ends.items()}
+    G = _generator(drive.rates, anywhere, n)
+    rates = (abs(_upper(abs(G[i, j]))) for i in range(n) for j in range(n))
+    if sum(rates, ZERO) * period.high > LONGEST:
+        raise _too_long()
+
+
+def _too_long() -> AssemblyError:
+    return AssemblyError(
+        "a period is too long for the drive and what it touches: it is too many of their time "
+        "constants, or their ranges are too wide to enclose what they do in it",
+        remedy="sample with a shorter period, or narrow the ranges",
+        at=("sampling", "period"),
+    )
 
 
 def _columns(drive: Drive, numbers: Mapping[str, Interval]) -> list[int]:

@@ -230,7 +230,9 @@ class RoundedStep:
         read = combine(*((ONE, form) for form in summands.values()))
         made = {term.name: self._exact(term.form) for term in self.terms[self._command]}
         # Of a sum of two sizes, the part that is of second order counts with another term.
-        more = shares[KP] * Kp * (1 + shares[ERROR]) + shares[KD] * D * shares[ERROR]
+        # Without damping, the command has one term.
+        off = shares.get(KD, Fraction(0))
+        more = shares[KP] * Kp * (1 + shares[ERROR]) + off * D * shares[ERROR]
         sizes: dict[str, LinearForm] = {
             ERROR: combine((shares[ERROR], read)),
             KP: combine((short(more), read)),

@@ -2,8 +2,8 @@
 
 Soft tissue of the thesis (6.3.1), Mt = 0.01, nominal motor and stiffness. The margin is that of
 python-control for the loop cut where the dead time is: at the command of the motor, so that the PD
-loop around it is late as well. Cut at the force sensor it would be 51.2 ms and 10.7 ms: that is the
-border for a robot that closes its own motion loop and is late as a whole.
+loop around it is late as well. Cut at the force sensor it is 51.2 ms and 10.7 ms: that is the
+border for a robot that closes its own motion loop, the same G, and is late as a whole.
 """
 
 from fractions import Fraction
@@ -15,7 +15,10 @@ import pytest
 from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame
 from nrs_design.models.actuator import Actuator, ActuatorRanges
+from nrs_design.models.drive import Takes, velocity_drive
+from nrs_design.models.motion_loop import close_motion_loop
 from nrs_design.switched.command_timing import CommandTiming
+from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import hold
 from nrs_design.switched.sampled_frame import Frame
 
@@ -34,19 +37,31 @@ def delay_margin(Bt, *, at_motor):
     return np.radians(phase) / crossing
 
 
-def border(Bt, T):
+def held_in(timing, *, closed):
+    """The motor, or a robot that closes the loop around it by itself and takes velocities."""
+    if not closed:
+        return hold(ActuatorRanges.point(Actuator(KM, TAU)), timing), StepFrame(
+            KP, KD / timing.period
+        )
+    drive = velocity_drive(close_motion_loop(Actuator(KM, TAU), KP, KD))
+    step = StepFrame(Fraction(0), Fraction(0), takes=Takes.VELOCITY)
+    return HeldDrive.of(drive, timing), step
+
+
+def border(Bt, T, *, closed=False):
     """Return the dead time from which on the sampled loop has an eigenvalue outside, by bisection.
 
     Everything but the eigenvalue is exact; the law is that of the period, not rounded.
     """
     a = Fraction(float(np.exp(-float(Bt * T / MT))))
     law = Admittance.discrete(a, (1 - a) / Bt, T)
-    ranges = ActuatorRanges.point(Actuator(KM, TAU))
 
     def is_stable(late):
         timing = CommandTiming(T, late, late)
-        frame = Frame(timing, hold(ranges, timing), StepFrame(KP, KD / T), (law,), 0)
+        motor, step = held_in(timing, closed=closed)
+        frame = Frame(timing, motor, step, (law,), 0)
         numbers = {symbol: interval.middle for symbol, interval in frame.motor.box.ranges.items()}
+        numbers |= dict.fromkeys(frame.motor.box.hull[0], Fraction(0))
         n = len(frame.states)
         rows = frame.rows(law, 0, {**numbers, "k": K})[:n]
         A = np.array([[float(v) for v in row[:n]] for row in rows])
@@ -75,4 +90,14 @@ def test_the_border_of_a_dead_time_tends_to_the_delay_margin(Bt, margin):
     missing = [margin - border(Bt, T) for T in (Fraction(1, 500), Fraction(1, 2000))]
     for short, T in zip(missing, (0.002, 0.0005), strict=True):
         assert 0.3 * T < short < 2.5 * T
+    assert missing[1] < 0.35 * missing[0]
+
+
+@pytest.mark.parametrize(
+    ("Bt", "margin"), [(Fraction("2.15"), 0.0512), (Fraction("1.04"), 0.01066)]
+)
+def test_that_of_a_robot_that_is_late_as_a_whole_tends_to_the_other(Bt, margin):
+    missing = [margin - border(Bt, T, closed=True) for T in (Fraction(1, 500), Fraction(1, 2000))]
+    for short, T in zip(missing, (0.002, 0.0005), strict=True):
+        assert -0.1 * T < short < 2.5 * T
     assert missing[1] < 0.35 * missing[0]

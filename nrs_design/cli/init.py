@@ -32,6 +32,8 @@ class DriveOption(StrEnum):
 
     MOTOR = "motor"
     VELOCITY = "velocity"
+    POSITION = "position"
+    TORQUE = "torque"
 
 
 @command("init", has_json=False)
@@ -44,7 +46,7 @@ def init(
         DriveOption,
         typer.Option(
             help="Of an interaction-design: a motor with a loop around it, or a robot that takes "
-            "velocities."
+            "velocities, positions or torques."
         ),
     ] = DriveOption.MOTOR,
     out: Annotated[
@@ -60,13 +62,13 @@ def init(
     Example: nrs-design init interaction-design --out my-robot.nrs.yaml
     """
     from nrs_design.output import write_output
-    from nrs_design.spec.templates import TEMPLATES, VELOCITY_INTERFACE
+    from nrs_design.spec.templates import TEMPLATES
 
     chosen = str(template)
-    if drive is DriveOption.VELOCITY:
+    if drive is not DriveOption.MOTOR:
         if template is not TemplateOption.INTERACTION_DESIGN:
             raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
-        chosen = VELOCITY_INTERFACE
+        chosen = f"{drive}-interface"
     path = out or Path(f"{template}.nrs.yaml")
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")

@@ -365,8 +365,8 @@ ControllerSpec = Annotated[
     | ForceControllerSpec
     | IntegralControllerSpec
     | ParallelControllerSpec
-    | PositionControllerSpec
-    | TorqueImpedanceSpec,
+    | TorqueImpedanceSpec
+    | PositionControllerSpec,
     Discriminator("type"),
 ]
 # The `type` of every controller.

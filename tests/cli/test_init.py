@@ -61,13 +61,14 @@ def test_the_schema_that_editors_look_for_is_there(tmp_path: Path) -> None:
     assert schema.read_text() == "{}"
 
 
-def test_a_robot_that_takes_velocities_has_a_template_of_its_own(tmp_path: Path) -> None:
-    run("init", "interaction-design", "--drive", "velocity", "--out", "mine.nrs.yaml", cwd=tmp_path)
+@pytest.mark.parametrize("taken", ["velocity", "position", "torque"])
+def test_a_robot_without_a_motor_has_a_template_of_its_own(taken: str, tmp_path: Path) -> None:
+    run("init", "interaction-design", "--drive", taken, "--out", "mine.nrs.yaml", cwd=tmp_path)
     text = (tmp_path / "mine.nrs.yaml").read_text(encoding="utf-8")
-    assert "velocity_interface:" in text
+    assert f"{taken}_interface:" in text
     assert "\nname: mine " in text
     result = run("gate", "mine.nrs.yaml", "--no-reports", cwd=tmp_path, code=0)
     assert "all fulfilled" in result.stdout
     assert "warning" not in result.stderr
-    refused = run("init", "robot", "--drive", "velocity", cwd=tmp_path, code=2)
+    refused = run("init", "robot", "--drive", taken, cwd=tmp_path, code=2)
     assert "interaction-design" in refused.stderr

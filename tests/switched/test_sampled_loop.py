@@ -15,6 +15,7 @@ from nrs_design.controllers.laws import Admittance
 from nrs_design.controllers.step_law import StepFrame, build_law
 from nrs_design.errors import AssemblyError
 from nrs_design.pipeline import run_design
+from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
@@ -639,3 +640,22 @@ def test_a_streamed_velocity_tends_to_the_continuous_loop(tmp_path):
     A = np.array([[-1 / 0.03, 0, -1 / 0.03], [1, 0, 0], [0, k / 0.01, -2 / 0.01]])
     slowest = np.linalg.eigvals(A).real.max()
     assert np.log(radius(system, "firm/tissue/k-max")) / 5e-5 == pytest.approx(slowest, rel=2e-3)
+
+
+def test_a_robot_that_closes_the_loop_of_the_thesis_has_its_modes(tmp_path):
+    """G given as a velocity_interface, or as the transfer function of the motion loop."""
+    G = "transfer_function: {numerator: [28.4, 1619], denominator: [1, 57, 1619]}"
+    text = STREAMED.replace("sampling: {period: 2 ms, delay: 1, latency: 1 ms}\n", "")
+    head, _, rest = text.partition("velocity_interface:\n")
+    rest = rest.partition("\n\n")[2]
+    stated = (
+        "actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}\n"
+        f"motion_loop: {{damping_ratio: 0.707, settling_time: 0.1404 s, {G}}}\n"
+    )
+    systems = []
+    for drive in (f"velocity_interface: {{{G}}}\n", f"position_interface: {{{G}}}\n", stated):
+        path = tmp_path / "one.nrs.yaml"
+        path.write_text(f"{head}{drive}{rest}", encoding="utf-8")
+        loaded = read_spec(path)
+        systems.append(assemble_spec(loaded, run_design(loaded), "deflection"))
+    assert systems[0].modes == systems[1].modes == systems[2].modes

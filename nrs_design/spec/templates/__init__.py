@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from importlib.resources import files
 from types import MappingProxyType
 
-# An interaction design of a robot that takes velocities.
-VELOCITY_INTERFACE = "velocity-interface"
-_NAMES = ("interaction-design", VELOCITY_INTERFACE, "hybrid-force", "switched-system", "robot")
+# Interaction designs of robots that take velocities, positions and torques.
+INTERFACES = tuple(f"{taken}-interface" for taken in ("velocity", "position", "torque"))
+_NAMES = ("interaction-design", *INTERFACES, "hybrid-force", "switched-system", "robot")
 
 
 def _read(name: str) -> str:

@@ -35,11 +35,15 @@ class Takes(StrEnum):
 COMMANDS: Mapping[Takes, str] = MappingProxyType(
     {Takes.VELOCITY: "rad/s", Takes.POSITION: "rad", Takes.TORQUE: "N*m"}
 )
+SLIDING: Mapping[Takes, str] = MappingProxyType(
+    {Takes.VELOCITY: "m/s", Takes.POSITION: "m", Takes.TORQUE: "N"}
+)
 
 
 def taken_in(command: str) -> Takes | None:
     """Return what a robot takes whose commands have a unit; None for the commands of a motor."""
-    return next((takes for takes, unit in COMMANDS.items() if unit == command), None)
+    each = ((takes, unit) for commands in (COMMANDS, SLIDING) for takes, unit in commands.items())
+    return next((takes for takes, unit in each if unit == command), None)
 
 
 @dataclass(frozen=True, slots=True)

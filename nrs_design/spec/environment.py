@@ -20,6 +20,7 @@ from nrs_design.models.contact import (
 )
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
+from nrs_design.spec.axis import Axis, reading
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
@@ -80,11 +81,22 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
 
     checks: ClassVar[tuple[Row[Any], ...]] = (
         *IdentifiedRangesSpec.checks,
+        Row(
+            "lever_arm",
+            lambda s: s.lever_arm is not None and reading() is Axis.PRISMATIC,
+            "the axis is prismatic, and has no pivot to be at a distance from",
+            "remove lever_arm",
+        ),
         *each(
             _quantities,
             Row[Any](
                 "",
-                lambda x: x[1] is None and is_translational(x[0].nominal) and x[0].nominal.text,
+                lambda x: (
+                    x[1] is None
+                    and reading() is Axis.ROTARY
+                    and is_translational(x[0].nominal)
+                    and x[0].nominal.text
+                ),
                 "{0!r} is linear, and there is no lever_arm",
                 "add `lever_arm: 0.24 m` (the distance from the pivot to the contact point) or "
                 "write the rotational value at the pivot",
@@ -286,7 +298,7 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
     def _of_other_kind(self) -> tuple[str, str, str] | None:
         """Return a deflection that is a length without a lever arm, or an angle with one."""
         of_length = kinds.LENGTH.accepts(self.about.dimension)
-        if of_length == (self.lever_arm is not None):
+        if reading() is Axis.PRISMATIC or of_length == (self.lever_arm is not None):
             return None
         found = "a length", "there is no lever_arm"
         return self.about.text, *(found if of_length else ("an angle", "a lever_arm is given"))

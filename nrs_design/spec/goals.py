@@ -20,6 +20,7 @@ from nrs_design.spec.quantity_fields import (
     DecayRate,
     Duration,
     Impedance,
+    Phase,
     Torque,
     TorqueOrLargest,
 )
@@ -54,7 +55,7 @@ class GoalsSpec(SpecModel):
     min_gain_margin: AboveOne | None = optional(
         "smallest factor on the loop gain that destabilizes, above 1"
     )
-    min_phase_margin: Annotated[Angle, AfterValidator(_below_half_turn)] | None = optional(
+    min_phase_margin: Annotated[Phase, AfterValidator(_below_half_turn)] | None = optional(
         "smallest phase margin, such as 30 deg"
     )
     min_delay_margin: Duration | None = optional(

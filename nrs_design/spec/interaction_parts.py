@@ -11,6 +11,7 @@ from pydantic import Discriminator, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.models.drive import COMMANDS, Takes
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,
@@ -72,6 +73,11 @@ class AbstractInteractionSpec(SpecModel):
     kind: Literal["interaction-design"] = Field(description="what this file describes")
     name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
     title: Title = Field(default="", description="one line for people, at most 200 characters")
+    axis: Axis = Field(
+        default=Axis.ROTARY,
+        description="rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
+        "in m, N and kg wherever a rotary one has those",
+    )
     actuator: ActuatorSpec | None = optional(
         "the velocity-controlled motor, with motion_loop around it"
     )
@@ -229,7 +235,7 @@ class AbstractInteractionSpec(SpecModel):
         """Unit of what the drive takes."""
         if self.actuator is not None or self.takes is None:
             return THESIS_COMMAND if self.actuator is None else self.actuator.command
-        return COMMANDS[self.takes]
+        return self.axis.unit(COMMANDS[self.takes])
 
     @property
     def motor_ranges(self) -> dict[tuple[str, str], RangedQuantity]:

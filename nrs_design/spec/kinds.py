@@ -11,6 +11,13 @@ _FREQUENCY = "{value} 1/s names no angle: write '{value} Hz' or '{value} rad/s'"
 _STIFFNESS = "that is a torque: a rotational stiffness is per radian, write '{value} N*m/rad'"
 _GAINS = tuple(f"rad/s/{command}" for command in COMMAND_UNITS)
 
+
+def _sliding(name: str, units: tuple[str, ...], example: str, turning: str) -> QuantityKind:
+    """Return a kind of quantity of an axis that slides, and refuse its like of one that turns."""
+    advice = f"the axis is prismatic: write it in {units[0]}, such as {example!r}"
+    return QuantityKind(name, units, example, {turning: advice})
+
+
 ACTUATOR_GAIN = QuantityKind(
     "an actuator gain",
     _GAINS,
@@ -21,6 +28,9 @@ ACTUATOR_GAIN = QuantityKind(
         "pi/30 rad/s)",
         "1/(V*s)": "name the angle: write '{value} rad/s/V'",
     },
+    sliding=_sliding(
+        "an actuator gain", tuple(f"m/s/{c}" for c in COMMAND_UNITS), "1.2e-4 m/s/rpm", "rad/s/rpm"
+    ),
 )
 DURATION = QuantityKind(
     "a duration",
@@ -41,6 +51,9 @@ DERIVATIVE_GAIN = QuantityKind(
             ("/rad", "that is a proportional gain"),
         )
     },
+    sliding=_sliding(
+        "a derivative gain", tuple(f"{c}*s/m" for c in COMMAND_UNITS), "8600 rpm*s/m", "rpm*s/rad"
+    ),
 )
 ZERO = QuantityKind(
     "a zero of the PD controller",
@@ -64,6 +77,7 @@ ANGULAR_VELOCITY = QuantityKind(
         "rpm": "rpm is the driver's command unit and is never converted: write deg/s or rad/s",
     },
     rational=False,
+    sliding=_sliding("a velocity", ("m/s",), "30 mm/s", "rad/s"),
 )
 TORQUE = QuantityKind(
     "a torque",
@@ -73,12 +87,17 @@ TORQUE = QuantityKind(
         "N*m/rad": "that is a rotational stiffness: write '{value} N*m'",
         "N": "that is a force: multiply it by its lever arm and write N*m",
     },
+    sliding=_sliding("a force", ("N",), "3 N", "N*m"),
 )
 ENERGY = QuantityKind("an energy", ("J",), "5 mJ")
 POWER = QuantityKind(
     "a power", ("W",), "10 mW", {"J": "that is an energy: a power is per second, write W"}
 )
-INITIAL_TORQUE = replace(TORQUE, example="0.5 N*m")
+INITIAL_TORQUE = replace(
+    TORQUE,
+    example="0.5 N*m",
+    sliding=_sliding("a force", ("N",), "3 N", "N*m"),
+)
 BANDWIDTH = QuantityKind(
     "a bandwidth",
     ("rad/s", "Hz"),
@@ -94,18 +113,21 @@ STIFFNESS = QuantityKind(
     ("N*m/rad", "N/m"),
     "43.0356 N*m/rad",
     {"N*m": _STIFFNESS},
+    sliding=_sliding("a stiffness", ("N/m",), "747.1461 N/m", "N*m/rad"),
 )
 DAMPING = QuantityKind(
     "a damping",
     ("N*m*s/rad", "N*m*s", "N*s/m"),
     "0.5 N*m*s/rad",
     {"N*m/rad": "that is a stiffness: write '{value} N*m*s/rad'"},
+    sliding=_sliding("a damping", ("N*s/m",), "5 N*s/m", "N*m*s/rad"),
 )
 HAND_MASS = QuantityKind(
     "a mass that moves with the contact",
     ("kg*m^2", "kg*m^2/rad", "kg"),
     "0.1 kg*m^2",
     {"N": "that is a weight: divide it by the gravity and write kg"},
+    sliding=_sliding("a mass that moves with the contact", ("kg",), "1.7 kg", "kg*m^2"),
 )
 LEVER_ARM = QuantityKind("a length", ("m",), "0.24 m")
 IMPEDANCE = QuantityKind(
@@ -118,12 +140,14 @@ IMPEDANCE = QuantityKind(
         "N*s/m": "that is a linear damping: multiply it by the square of its lever arm and write "
         "N*m*s/rad",
     },
+    sliding=_sliding("an impedance", ("N*s/m",), "37 N*s/m", "N*m*s/rad"),
 )
 INERTIA = QuantityKind(
     "an inertia",
     ("kg*m^2", "kg*m^2/rad"),
     "0.01 kg*m^2",
     {"kg": "that is a mass: multiply it by the square of its lever arm and write kg*m^2"},
+    sliding=_sliding("a mass", ("kg",), "1.7 kg", "kg*m^2"),
 )
 FORCE_GAIN = QuantityKind(
     "a proportional force gain",
@@ -133,12 +157,14 @@ FORCE_GAIN = QuantityKind(
         "rad*m/N": "rad/N*m is (rad/N)*m: write '{value} rad/(N*m)'",
         "1/(N*m)": "the gain gives an angle: write '{value} rad/(N*m)'",
     },
+    sliding=_sliding("a proportional force gain", ("m/N",), "3e-4 m/N", "rad/(N*m)"),
 )
 INTEGRAL_FORCE_GAIN = QuantityKind(
     "an integral force gain",
     ("rad/(N*m*s)",),
     "0.5 rad/(N*m*s)",
     {"rad/(N*m)": "that is a proportional gain: write '{value} rad/(N*m*s)'"},
+    sliding=_sliding("an integral force gain", ("m/(N*s)",), "8e-3 m/(N*s)", "rad/(N*m*s)"),
 )
 
 SPRING = QuantityKind(
@@ -150,15 +176,21 @@ SPRING = QuantityKind(
         "N/m": "that is a linear stiffness: multiply it by the square of its lever arm and write "
         "N*m/rad",
     },
+    sliding=_sliding("a stiffness", ("N/m",), "9 N/m", "N*m/rad"),
 )
 TORQUE_RATE = QuantityKind(
-    "a rate of torque", ("N*m/s",), "1e-5 N*m/s", {"N*m": "a rate is per second: write N*m/s"}
+    "a rate of torque",
+    ("N*m/s",),
+    "1e-5 N*m/s",
+    {"N*m": "a rate is per second: write N*m/s"},
+    sliding=_sliding("a rate of force", ("N/s",), "1e-5 N/s", "N*m/s"),
 )
 NOISE_DENSITY = QuantityKind(
     "a density of noise",
     ("N^2*m^2*s",),
     "1e-8 N^2*m^2*s",
     {"N*m": "that is an rms: square it, and divide by the bandwidth in Hz"},
+    sliding=_sliding("a density of noise", ("N^2*s",), "1e-8 N^2*s", "N^2*m^2*s"),
 )
 LINEAR_STIFFNESS = QuantityKind("a linear stiffness", ("N/m",), "747.1461 N/m")
 LINEAR_DAMPING = QuantityKind("a linear damping", ("N*s/m",), "5 N*s/m")
@@ -187,13 +219,16 @@ ANGLE = QuantityKind(
     "45 deg",
     {"rad/s": "that is an angular velocity: write '{value} deg' or '{value} rad'"},
     rational=False,
+    sliding=_sliding("a position", ("m",), "20 mm", "rad"),
 )
+PHASE = QuantityKind("a phase", ("rad",), "30 deg", rational=False)
 DEFLECTION = QuantityKind(
     "a deflection",
     ("m", "rad"),
     "5 mm",
     {"N": "that is a force: write the deflection in mm, or in rad at the pivot"},
     rational=False,
+    sliding=_sliding("a deflection", ("m",), "5 mm", "rad"),
 )
 LINEAR_VELOCITY = QuantityKind("a velocity", ("m/s",), "18.5 mm/s")
 ACCELERATION = QuantityKind("an acceleration", ("m/s^2",), "9.81 m/s^2")
@@ -203,6 +238,7 @@ ANGULAR_ACCELERATION = QuantityKind(
     "3.584 rad/s^2",
     {"1/s^2": "name the angle: write '{value} rad/s^2'"},
     rational=False,
+    sliding=_sliding("an acceleration", ("m/s^2",), "2 m/s^2", "rad/s^2"),
 )
 COMMAND = QuantityKind(
     "a command of the motor",
@@ -212,6 +248,7 @@ COMMAND = QuantityKind(
         "rad/s": "the driver's command has a unit of its own that is never converted: write "
         f"{written_as(COMMAND_UNITS)}"
     },
+    sliding=QuantityKind("a command of the motor", (*COMMAND_UNITS, "N"), "276.575 rpm"),
 )
 TORQUE_GRADIENT = QuantityKind(
     "a speed-torque gradient",

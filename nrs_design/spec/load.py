@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
+from nrs_design.spec.axis import reading_of
 from nrs_design.spec.document import (
     Data,
     Mapping,
@@ -167,15 +168,16 @@ def model_of(kind: str) -> type[Spec]:
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
     found: tuple[Fault, ...] = ()
-    model = model_of(_kind_of(root, path, syntax))
-    try:
-        spec = model.model_validate(to_data(root))
-    except ValidationError as error:
-        found = file_faults(error, model, root)
-        # So many are enough to mend, and whoever wrote more need not be told all at once.
-        if len(found) < MAX_LISTED:
-            parts = valid_parts(model, to_data(root))
-            found = tuple(dict.fromkeys((*found, *faults_between(parts, model, root))))
+    model, said = model_of(_kind_of(root, path, syntax)), to_data(root)
+    with reading_of(said.get("axis") if isinstance(said, dict) else None):
+        try:
+            spec = model.model_validate(said)
+        except ValidationError as error:
+            found = file_faults(error, model, root)
+            # So many are enough to mend, and whoever wrote more need not be told all at once.
+            if len(found) < MAX_LISTED:
+                parts = valid_parts(model, said)
+                found = tuple(dict.fromkeys((*found, *faults_between(parts, model, root))))
     if syntax or found:
         raise _refusal(syntax, found, path)
     return spec

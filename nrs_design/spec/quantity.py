@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit, respelt
 
@@ -104,6 +105,12 @@ class QuantityKind:
     # Whether the SI value must be rational, as everything that enters a proof; then units with a
     # factor of pi (``deg``, ``Hz``) are refused.
     rational: bool = True
+    # What it is on an axis that slides; None where that does not matter.
+    sliding: QuantityKind | None = None
+
+    def on(self, axis: Axis) -> QuantityKind:
+        """Return what the field measures on an axis."""
+        return self if axis is Axis.ROTARY else self.sliding or self
 
     @property
     def si_unit(self) -> str:
@@ -240,7 +247,7 @@ def _without_unit(text: str, kind: QuantityKind) -> SpecError:
     parse_exact(text)
     unit = kind.example.partition(" ")[2]
     remedy = f"write '{text} {unit}' if that is the unit meant"
-    if kind.units == ("N*m/rad", "N/m"):
+    if kind.units == ("N*m/rad", "N/m"):  # Of an axis that turns.
         remedy = f"write '{text} N/m' beside a lever_arm, '{text} N*m/rad' without one"
     if kind.is_about_commands:
         remedy = f"write {written_as(kind.units).format(value=text)}"

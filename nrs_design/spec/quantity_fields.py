@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
+from nrs_design.spec.axis import reading
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
 from nrs_design.spec.quantity import (
@@ -43,6 +44,7 @@ def read_quantity(
     signed : bool
         Allow negative ones.
     """
+    kind = kind.on(reading())
 
     def read() -> Quantity:
         if isinstance(value, Quantity):
@@ -85,6 +87,7 @@ def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | Literal["l
     """Read both in one place, so that what is neither is one fault."""
     if value == LARGEST:
         return LARGEST
+    kind = kind.on(reading())
     if isinstance(value, str) and not any(map(str.isdigit, value)):
         raise fault(
             f"{quoted(value)} is neither {kind.name} nor {LARGEST!r}",
@@ -300,6 +303,7 @@ LinearStiffness = Annotated[Quantity, _one(kinds.LINEAR_STIFFNESS)]
 Length = Annotated[Quantity, _one(kinds.LENGTH)]
 Coordinate = Annotated[Quantity, _one(kinds.LENGTH, signed=True)]
 Angle = Annotated[Quantity, _one(kinds.ANGLE)]
+Phase = Annotated[Quantity, _one(kinds.PHASE)]
 SignedAngle = Annotated[Quantity, _one(kinds.ANGLE, signed=True)]
 MomentOfInertia = Annotated[Quantity, _one(kinds.INERTIA, positive=False)]
 RangedInertia = Annotated[RangedQuantity, _ranged(kinds.INERTIA)]

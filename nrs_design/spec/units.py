@@ -125,7 +125,13 @@ UNITS = {
 def command_unit(dimension: tuple[int, ...]) -> str:
     """Return the unit of commands in a dimension that holds one; a torque is one itself."""
     powers = zip(BASE_UNITS, dimension, strict=True)
-    return next((unit for unit, power in powers if unit in COMMAND_UNITS and power), "N*m")
+    return next(
+        (unit for unit, power in powers if unit in COMMAND_UNITS and power), _effort(dimension)
+    )
+
+
+def _effort(dimension: tuple[int, ...]) -> str:
+    return "N" if dimension == UNITS["N"].dimension else "N*m"
 
 
 @functools.lru_cache(maxsize=256)

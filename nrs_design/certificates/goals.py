@@ -13,6 +13,7 @@ from nrs_design.certificates.people import contact_goals
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
+from nrs_design.spec.axis import axis_of
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec
@@ -67,9 +68,15 @@ def _peak_torque(wanted: Fraction, text: str, certificate: Certificate | None) -
     acting = (f"|{c.name}| <= {rounded_down(c.bound, c.unit)}" for c in found.channels)
     said = (
         f"while {', '.join(acting)} and nothing else disturbs, the force is proved to stay below "
-        f"{rounded_up(found.level, 'N*m')}, from rest"
+        f"{rounded_up(found.level, _effort(certificate))}, from rest"
     )
     return CertifiedGoal("peak_torque", said, text, found.level <= wanted)
+
+
+def _effort(certificate: Certificate | None) -> str:
+    """Return the unit of a force on the axis."""
+    assert certificate is not None, "it holds a bound"
+    return axis_of(certificate.system.states).unit("N*m")
 
 
 def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:
@@ -114,7 +121,7 @@ def _initial_force(
         said = "no force was proved from which motions decay although signals saturate"
         return CertifiedGoal("initial_force", said, text, False)
     said = (
-        f"from rest with a contact force up to {rounded_down(level, 'N*m')} motions are proved to "
-        "decay although signals saturate"
+        f"from rest with a contact force up to {rounded_down(level, _effort(certificate))} "
+        "motions are proved to decay although signals saturate"
     )
     return CertifiedGoal("initial_force", said, text, wanted is None or level >= wanted)

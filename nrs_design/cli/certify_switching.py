@@ -22,6 +22,7 @@ from nrs_design.cli.gradient_options import (
 )
 from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile, Verbose
 from nrs_design.cli.printing import note, progress, say, wants_json, wants_text
+from nrs_design.cli.reading import take_spec
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
@@ -78,9 +79,8 @@ def certify_switching(
     from nrs_design.pipeline import Overrides, find_relief, run_certification, search_limits
     from nrs_design.pipeline.margins import run_proof_margins
     from nrs_design.pipeline.subsets import find_subsets
-    from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     path = out or Path("reports") / f"{loaded.spec.name}.cert.json"
     check_certificate(spec, path)
     check_place(path, CERTIFICATE)

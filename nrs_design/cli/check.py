@@ -11,6 +11,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.errors import error_summary, print_error
 from nrs_design.cli.printing import note, wants_json, wants_text
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError
 
@@ -42,10 +43,10 @@ def check(
 
 def _understood(path: Path) -> dict[str, Any]:
     from nrs_design.gating.places import Places
-    from nrs_design.spec import doubt_spec, read_spec
+    from nrs_design.spec import doubt_spec
     from nrs_design.spec.describe import describe
 
-    loaded = read_spec(path)
+    loaded = take_spec(path)
     if loaded.spec.kind == "interaction-design" and "csv:" in loaded.text:
         from nrs_design.simulation.build_scenario import check_recordings
 

@@ -13,6 +13,7 @@ from nrs_design.cli.command import Answer, command, spec_facts
 from nrs_design.cli.gradient_options import MaxUpdates, Radius, Relaxation, Seed, StartMode
 from nrs_design.cli.options import Budget, LoopCoordinates, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.search.gradient_settings import Gradient
 
@@ -50,11 +51,10 @@ def compare_methods(
     """
     from nrs_design.output import PNG, check_place
     from nrs_design.pipeline import Overrides, run_comparison, search_limits
-    from nrs_design.spec import read_spec
 
     if figure is not None:
         check_place(figure, PNG)
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     gradient = Gradient(relaxation, radius, start_mode, seed=seed, max_updates=max_updates)
     limits = search_limits(loaded.spec, Overrides(budget=budget, memory=memory), optimize_rate)
     limits = replace(limits, gradient=gradient)

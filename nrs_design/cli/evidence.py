@@ -10,6 +10,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note, progress, say, say_failure
+from nrs_design.cli.reading import take_spec
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
@@ -104,9 +105,8 @@ def _write(spec: Path, out: Path, certificate: Path | None, given: Given) -> Ans
     from nrs_design.assurance.folder import check_free, write_folder
     from nrs_design.assurance.sources import sources_of
     from nrs_design.gating.judge import judge_result
-    from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     name = loaded.spec.name
     # Refuse what cannot be written before minutes of search.
     check_free(out, name)

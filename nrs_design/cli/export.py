@@ -11,6 +11,7 @@ import typer
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.errors import NrsDesignError, OutputError
 from nrs_design.exporters import ROBOT_FORMATS, Format, format_names, format_of
@@ -152,9 +153,8 @@ def _export_design(
     from nrs_design.exporters.write import check_places, places
     from nrs_design.ownership import check_certificate
     from nrs_design.pipeline import placed
-    from nrs_design.spec import read_spec
 
-    loaded, chosen = read_spec(spec), format_of(format_)
+    loaded, chosen = take_spec(spec), format_of(format_)
     name = loaded.spec.name
     files = places(chosen, name, out)
     beside = next(iter(files.values())).parent / f"{name}.cert.json"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.cli.command import spec_facts
 from nrs_design.proof.bounds import lower_float, upper_float
+from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -147,7 +148,7 @@ def loop_facts(margins: MarginBrackets) -> dict[str, Any]:
     if margins.command is not None:
         content["force_limit"] = {
             "limit": float(margins.command.limit),
-            "unit": "N*m",
+            "unit": unit("N*m"),
             "disturbances": [
                 {
                     "name": name,

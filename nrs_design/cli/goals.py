@@ -102,7 +102,7 @@ def _summary(found: Achieved) -> dict[str, Any]:
         # JSON has no infinity: null is a margin that nothing limits, or an error without bound; or
         # what is not computed, as `at` then says.
         "worst": found.value if math.isfinite(found.value) else None,
-        "unit": {"deg": "rad", "deg/s": "rad/s", "ms": "s"}.get(measure.unit, measure.unit),
+        "unit": measure.si_unit,
         "at": found.where,
         "status": None if found.goal is None else "met" if found.met else "missed",
     }

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from nrs_design.cli.command import Answer, command, spec_facts
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import say
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 
 if TYPE_CHECKING:
@@ -23,9 +24,8 @@ def mode_logic(spec: SpecFile) -> Answer:
     Example: nrs-design mode-logic docs/examples/insertion-by-sign.nrs.yaml
     """
     from nrs_design.reporting.sections.mode_logic import logic_summary
-    from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     declared = _with_logic(loaded)
     return Answer(lambda: spec_facts(loaded) | logic_summary(declared), lambda: _show(declared))
 

@@ -11,8 +11,10 @@ from nrs_design.cli.command import Answer, command
 from nrs_design.cli.goals import design_answer, goals_summary
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.bounds import lower, lower_float, upper_float
+from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
@@ -31,9 +33,8 @@ def optimize(spec: SpecFile) -> Answer:
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
     from nrs_design.pipeline import run_analysis, run_interaction
-    from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     with progress(f"designing {loaded.spec.name}") as step:
         step("cost")
         designed = run_interaction(loaded, "has nothing to design")
@@ -114,11 +115,11 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "creep": _creep(item),
         "goals": goals_summary(item),
         "units": {
-            "Mt": "kg*m^2",
-            "Bt": "N*m*s/rad",
-            "Kt": "N*m/rad",
-            "impedance": "N*m*s/rad",
-            "stiffness": "N*m/rad",
+            "Mt": unit("kg*m^2"),
+            "Bt": unit("N*m*s/rad"),
+            "Kt": unit("N*m/rad"),
+            "impedance": unit("N*m*s/rad"),
+            "stiffness": unit("N*m/rad"),
         },
     }
 
@@ -140,7 +141,7 @@ def _sensor(designed: Designed) -> dict[str, Any]:
     return {
         "lasting_error": upper_float(sensor.lasting),
         "parts": {name: upper_float(error) for name, error in sensor.errors.items()},
-        "unit": "N*m",
+        "unit": unit("N*m"),
     }
 
 
@@ -148,11 +149,13 @@ def _creep(item: ImpedanceAnalysis) -> dict[str, Any] | None:
     """Return the bounds on the creep, rounded up; None without a sensor whose errors are known."""
     if item.creep is None:
         return None
-    angle = item.creep.angle
+    angle, way = item.creep.angle, unit("rad")
     return {
-        "velocity_rad_s": upper_float(item.creep.velocity),
-        "angle_rad": None if angle is None else upper_float(angle),
-        "noise_rms_rad_s": item.creep.noise,
+        f"velocity_{way}_s": upper_float(item.creep.velocity),
+        f"{'angle_rad' if way == 'rad' else 'way_m'}": None
+        if angle is None
+        else upper_float(angle),
+        f"noise_rms_{way}_s": item.creep.noise,
     }
 
 
@@ -172,17 +175,17 @@ def _print(spec: InteractionDesignSpec, analysis: DesignAnalysis) -> None:
     say(f"{spec.name}: G(s) = {motion}, {source}")
     columns = [
         "controller",
-        "Zdes\nN m s/rad",
-        "k\nN m/rad",
-        "Mt\nkg m^2",
-        "Bt\nN m s/rad",
+        f"Zdes\n{unit('N m s/rad')}",
+        f"k\n{unit('N m/rad')}",
+        f"Mt\n{unit('kg m^2')}",
+        f"Bt\n{unit('N m s/rad')}",
         "cost",
         "Ms",
         "gain\nmargin",
         "phase\nmargin",
         "delay\nmargin",
         "disk\nmargin",
-        "k limit\nN m/rad",
+        f"k limit\n{unit('N m/rad')}",
     ]
     rows = [
         [

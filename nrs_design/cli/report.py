@@ -13,6 +13,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command, spec_facts
 from nrs_design.cli.options import Budget, Date, MaxDegree, Memory, SpecFile
 from nrs_design.cli.printing import note, progress, say
+from nrs_design.cli.reading import take_spec
 from nrs_design.errors import DesignError, OutputError
 from nrs_design.progress import Progress
 
@@ -97,9 +98,8 @@ def report(
     Example: nrs-design report specs/neuroboscope/soft-tissue.nrs.yaml --format pdf
     """
     from nrs_design.pipeline import Overrides
-    from nrs_design.spec import read_spec
 
-    loaded, day = read_spec(spec), date.date() if date else None
+    loaded, day = take_spec(spec), date.date() if date else None
     file_format = _format_of(file_format, out)
     if loaded.spec.kind == "robot":
         if certificate is not None:

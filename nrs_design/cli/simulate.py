@@ -11,6 +11,7 @@ import typer
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.simulate_options import (
     Bound,
     BoundsOf,
@@ -60,7 +61,6 @@ def simulate(
     from nrs_design.cli.worst_case import worst_case
     from nrs_design.pipeline import run_interaction
     from nrs_design.pipeline.scenarios import Runs
-    from nrs_design.spec import read_spec
 
     timed = any(value is not None for value in (period, delay, outer_period))
     if engine is EngineOption.EXACT and timed:
@@ -71,7 +71,7 @@ def simulate(
     if seed and not worst:
         message = "needs --worst-case; a scenario has its own seed"
         raise typer.BadParameter(message, param_hint="--seed")
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     if engine is None and timed:
         engine = EngineOption.SAMPLED
     how = None if engine is None else str(engine)

@@ -12,6 +12,7 @@ from nrs_design.cli.printing import note, say
 from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
+from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -192,9 +193,10 @@ def _print(one: Simulated, bounds: tuple[CertifiedBound, ...], rate: CertifiedRa
     if run.deviation is not None:
         apart = run.deviation
         say(
-            f"  from the sampled engine, at most: angle {four_digits_up(apart.angle)} rad, "
-            f"velocity {four_digits_up(apart.velocity)} rad/s, "
-            f"torque {four_digits_up(apart.torque)} N m"
+            "  from the sampled engine, at most: "
+            f"angle {four_digits_up(apart.angle)} {unit('rad')}, "
+            f"velocity {four_digits_up(apart.velocity)} {unit('rad/s')}, "
+            f"torque {four_digits_up(apart.torque)} {unit('N m')}"
         )
     if run.stopped:
         say(f"  STOPPED: {run.stopped}")

@@ -10,8 +10,10 @@ from nrs_design.cli.goals import design_answer, goals_summary
 from nrs_design.cli.optimize import motion_summary
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import progress, say
+from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.bounds import lower_float
+from nrs_design.spec.axis import current, unit
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -68,9 +70,8 @@ def tune(spec: SpecFile) -> Answer:
     """
     from nrs_design.errors import DesignError
     from nrs_design.pipeline import run_analysis, run_interaction
-    from nrs_design.spec import read_spec
 
-    loaded = read_spec(spec)
+    loaded = take_spec(spec)
     with progress(f"tuning {loaded.spec.name}"):
         designed = run_interaction(loaded, "has nothing to tune")
         if designed.spec.followed is not None:
@@ -107,11 +108,11 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "peak_torque": item.peak,
                 "goals": goals_summary(item),
                 "units": {
-                    "Kp": "rad/(N*m)",
-                    "Ki": "rad/(N*m*s)",
-                    "stiffness": "N*m/rad",
+                    "Kp": unit("rad/(N*m)"),
+                    "Ki": unit("rad/(N*m*s)"),
+                    "stiffness": unit("N*m/rad"),
                     "poles": "1/s",
-                    "peak_torque": "N*m",
+                    "peak_torque": unit("N*m"),
                 },
             }
             for item in analysis.force
@@ -124,7 +125,11 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "Ki": float(item.Ki),
                 "decided": item.decided,
                 "unstable_stiffness": item.unstable_ends,
-                "units": {"Kp": "rad/(N*m)", "Ki": "rad/(N*m*s)", "stiffness": "N*m/rad"},
+                "units": {
+                    "Kp": unit("rad/(N*m)"),
+                    "Ki": unit("rad/(N*m*s)"),
+                    "stiffness": unit("N*m/rad"),
+                },
             }
             for item in analysis.parallel
         ],
@@ -136,10 +141,10 @@ def _summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[str, An
                 "stable_below_in_the_air": item.border,
                 "passivity_margin": None if item.margin is None else lower_float(item.margin),
                 "units": {
-                    "Kp": "N*m/rad",
-                    "B": "N*m*s/rad",
-                    "stable_below_in_the_air": "N*m/rad",
-                    "passivity_margin": "N*m*s/rad",
+                    "Kp": unit("N*m/rad"),
+                    "B": unit("N*m*s/rad"),
+                    "stable_below_in_the_air": unit("N*m/rad"),
+                    "passivity_margin": unit("N*m*s/rad"),
                 },
             }
             for item in analysis.torque
@@ -167,7 +172,9 @@ def _motion_summary(design: ControllerDesign, analysis: DesignAnalysis) -> dict[
 
 def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> None:
     if analysis.torque:
-        print_table(f"{name}: impedance by torques", TORQUE_COLUMNS, _torque_rows(analysis))
+        print_table(
+            f"{name}: impedance by torques", _columns(TORQUE_COLUMNS), _torque_rows(analysis)
+        )
         say(TORQUE_TEXT)
         return
     columns = _motion_columns(design.command)
@@ -175,7 +182,7 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
     if analysis.motion_source == "given":
         say("The spec states G itself: the poles are those of that G, not of the PD gains.")
     if analysis.force:
-        print_table(f"{name}: force loop, nominal", FORCE_COLUMNS, _force_rows(analysis))
+        print_table(f"{name}: force loop, nominal", _columns(FORCE_COLUMNS), _force_rows(analysis))
         say(_NOMINAL)
         for item in analysis.force:
             if item.peak is not None:
@@ -183,11 +190,26 @@ def _print(name: str, design: ControllerDesign, analysis: DesignAnalysis) -> Non
             elif item.approach.offset == "none":
                 say(_NO_OFFSET.format(item.name))
     if analysis.parallel:
-        print_table(f"{name}: parallel control", PARALLEL_COLUMNS, _parallel_rows(analysis))
+        print_table(
+            f"{name}: parallel control", _columns(PARALLEL_COLUMNS), _parallel_rows(analysis)
+        )
+
+
+def _columns(texts: tuple[str, ...]) -> list[str]:
+    """Return columns, with the units of the axis in their last lines."""
+    return [_column(text) for text in texts]
+
+
+def _column(text: str) -> str:
+    *words, last = text.split("\n")
+    before, comma, said = last.rpartition(", ")
+    known = said.startswith(("N m", "rad/(N"))
+    return "\n".join((*words, f"{before}{comma}{unit(said) if known else said}"))
 
 
 def _motion_columns(command: str) -> tuple[str, ...]:
-    gains = f"Kd\n{command} s/rad", "zero\n1/s", f"Kp\n{command}/rad"
+    per = unit("rad")
+    gains = f"Kd\n{command} s/{per}", "zero\n1/s", f"Kp\n{command}/{per}"
     return ("motion PD", *gains, "poles\n1/s", "damping\nratio", "overshoot")
 
 
@@ -217,13 +239,14 @@ def _motion_rows(design: ControllerDesign, analysis: DesignAnalysis) -> list[lis
 
 
 def _offset_text(item: ForceAnalysis) -> str:
-    velocity, force = math.degrees(item.approach.velocity), item.approach.force
+    velocity, force = current().fine * item.approach.velocity, item.approach.force
     gain = item.approach.integral
-    integral = f"Ki = {gain:.6g} rad/(N m s), " if gain else ""
+    integral = f"Ki = {gain:.6g} {unit('rad/(N m s)')}, " if gain else ""
     return (
         f"{item.name}: {integral}X_i is the {OFFSETS[item.approach.offset]} at the switch. "
-        f"Arriving at {velocity:.4g} deg/s, the torque peaks at {item.peak:.3f} N m and settles "
-        f"{100 * item.steady_error:.2f} % off {force:.4g} N m, for a switch exactly there."
+        f"Arriving at {velocity:.4g} {unit('deg/s')}, the torque peaks at {item.peak:.3f} "
+        f"{unit('N m')} and settles {100 * item.steady_error:.2f} % off {force:.4g} "
+        f"{unit('N m')}, for a switch exactly there."
     )
 
 

@@ -12,6 +12,7 @@ from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.options import CoordinatesOption
 from nrs_design.cli.printing import is_quiet, progress, say
+from nrs_design.cli.reading import take_spec
 from nrs_design.errors import CertificateError, NrsDesignError
 
 if TYPE_CHECKING:
@@ -160,9 +161,7 @@ def _verify(
     from nrs_design.certificates.verify import verify_document
 
     with proof_beside(document) as proof:
-        from nrs_design.spec import read_spec
-
-        loaded = read_spec(spec)
+        loaded = take_spec(spec)
         return verify_document(document, loaded, coordinates, proof=proof), loaded
 
 

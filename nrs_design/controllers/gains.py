@@ -13,6 +13,7 @@ from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.controllers import contact_names
 
 MOTION = ProportionalDerivative.name
@@ -26,7 +27,9 @@ def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
     }
 
 
-def units_of(gains: Mapping[str, Mapping[str, str]], command: str) -> dict[str, dict[str, str]]:
+def units_of(
+    gains: Mapping[str, Mapping[str, str]], command: str, axis: Axis = Axis.ROTARY
+) -> dict[str, dict[str, str]]:
     """Return the units of gains that are named as `gains_of` names them.
 
     Parameters
@@ -35,11 +38,15 @@ def units_of(gains: Mapping[str, Mapping[str, str]], command: str) -> dict[str, 
         By controller and name; the PD is ``motion``.
     command : str
         Unit of the commands that the motor takes.
+    axis : Axis
+        What they are about.
     """
     units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}
     motion = ProportionalDerivative.units_in(command)
     return {
-        name: {gain: (motion if name == MOTION else units).get(gain, "") for gain in values}
+        name: {
+            gain: axis.unit((motion if name == MOTION else units).get(gain, "")) for gain in values
+        }
         for name, values in gains.items()
     }
 
@@ -63,7 +70,7 @@ def design_from_gains(
         _controller(name, controller, gains) for name, controller in spec.controllers.items()
     )
     sensor = build_sensor(spec.sensor)
-    return ControllerDesign(motion, controllers, sensor, spec.command)
+    return ControllerDesign(motion, controllers, sensor, spec.command, spec.axis)
 
 
 def _motion(

@@ -18,6 +18,7 @@ from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
+from nrs_design.spec.axis import Axis
 
 
 def shipped_law(
@@ -49,7 +50,8 @@ def shipped_law(
     laws = {c.name: _discrete(c, outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
-    law = replace(_in_commands(law, design.command), logic=_logic_of(spec, law, period))
+    law = _on_axis(_in_commands(law, design.command), design.axis)
+    law = replace(law, logic=_logic_of(spec, law, period))
     return law if spec.safety is None else add_safety(law, SafetyLimits.of(spec.safety, period))
 
 
@@ -104,6 +106,17 @@ def _in_commands(law: StepLaw, command: str) -> StepLaw:
     units = {name: _renamed(unit, command) for name, unit in law.units.items()}
     coefficients = tuple(replace(c, unit=_renamed(c.unit, command)) for c in law.coefficients)
     return replace(law, units=units, coefficients=coefficients)
+
+
+def _on_axis(law: StepLaw, axis: Axis) -> StepLaw:
+    """Name the units of an axis where the law says those of one that turns."""
+    inputs, states = (
+        tuple(replace(v, unit=axis.unit(v.unit)) for v in values)
+        for values in (law.inputs, law.states)
+    )
+    coefficients = tuple(replace(c, unit=axis.unit(c.unit)) for c in law.coefficients)
+    units = {name: axis.unit(unit) for name, unit in law.units.items()}
+    return replace(law, inputs=inputs, states=states, coefficients=coefficients, units=units)
 
 
 def _renamed(unit: str, command: str) -> str:

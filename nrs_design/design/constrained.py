@@ -23,6 +23,7 @@ from nrs_design.design.nested_search import search_square
 from nrs_design.design.pattern_search import Objective
 from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
+from nrs_design.spec.axis import unit
 
 # Above every cost: what misses a goal is worse than all that meets it.
 _MISSED = 1e6
@@ -136,7 +137,10 @@ def _unreachable(
 ) -> DesignError:
     """Name a goal that no admittance meets, or those that none meets together."""
     (least, most), (low, high) = problem.mass_bounds, problem.damping_bounds
-    bounds = f"Mt in [{least:.6g}, {most:.6g}] kg m^2 and Bt in [{low:.6g}, {high:.6g}] N m s/rad"
+    bounds = (
+        f"Mt in [{least:.6g}, {most:.6g}] {unit('kg m^2')} and Bt in [{low:.6g}, {high:.6g}] "
+        f"{unit('N m s/rad')}"
+    )
     for measure, goal in requirement.goals:
         alone = replace(requirement, goals=((measure, goal),))
         best_Mt, best_Bt, value = _Search(problem, alone).run()
@@ -155,7 +159,8 @@ def _unreachable(
     wanted = ", ".join(f"{measure.goal} {measure.goal_text(goal)}" for measure, goal in values)
     return DesignError(
         f"the goals cannot be met together ({wanted}) with {bounds}: the nearest gains, "
-        f"Mt = {Mt:.4g} kg m^2 and Bt = {Bt:.4g} N m s/rad, have {', '.join(missed)}",
+        f"Mt = {Mt:.4g} {unit('kg m^2')} and Bt = {Bt:.4g} {unit('N m s/rad')}, have "
+        f"{', '.join(missed)}",
         remedy="relax one of these goals, widen the bounds, or narrow the ranges of the contacts",
     )
 

@@ -38,7 +38,7 @@ def design_controllers(spec: InteractionDesignSpec, plant: Plant) -> ControllerD
         controllers.append(
             Controller(name, law, given.environment, contact_names(given.contacts), optimum)
         )
-    return ControllerDesign(motion, tuple(controllers), task.sensor, spec.command)
+    return ControllerDesign(motion, tuple(controllers), task.sensor, spec.command, spec.axis)
 
 
 def root_locus_design(spec: InteractionDesignSpec) -> PdDesign | None:

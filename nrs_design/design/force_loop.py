@@ -18,6 +18,7 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
+from nrs_design.spec.axis import unit
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,8 @@ def force_loop_response(motion: TransferFunction, stiffness: float, gain: float)
     closed = _closed(motion, gain * stiffness)
     if not bool(hurwitz(closed.denominator)):
         raise DesignError(
-            f"the force loop is unstable with Kp = {gain:.6g} rad/(N m) at {stiffness:.6g} N m/rad",
+            f"the force loop is unstable with Kp = {gain:.6g} {unit('rad/(N m)')} at "
+            f"{stiffness:.6g} {unit('N m/rad')}",
             remedy="lower the proportional gain",
             at=("proportional_gain",),
         )

@@ -46,6 +46,7 @@ from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, Tran
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
+from nrs_design.spec.axis import unit
 from nrs_design.switched.cut_loop import AbstractAxis, Place
 
 # In the place of a corner.
@@ -394,10 +395,10 @@ def _corners(
     retuned = [*product(*(gains.get(name) or (None,) for name in ("Mt", "Bt", "Kt")))]
     tuned = dict.fromkeys([designed, *retuned])
     for contact, place, (Mt, Bt, Kt) in product(points, places, tuned):
-        at = [*contact.texts()]
-        at += [f"Mt = {float(Mt):.6g} kg*m^2"] if Mt is not None else []
-        at += [f"Bt = {float(Bt):.6g} N*m*s/rad"] if Bt is not None else []
-        at += [f"Kt = {float(Kt):.6g} N*m/rad"] if Kt is not None else []
+        at = [*contact.texts(unit)]
+        at += [f"Mt = {float(Mt):.6g} {unit('kg*m^2')}"] if Mt is not None else []
+        at += [f"Bt = {float(Bt):.6g} {unit('N*m*s/rad')}"] if Bt is not None else []
+        at += [f"Kt = {float(Kt):.6g} {unit('N*m/rad')}"] if Kt is not None else []
         label = f"{environment.name}, {', '.join((*at, *place.texts))}"
         as_designed = (Mt, Bt, Kt) == designed
         yield ContactCorner(

@@ -19,6 +19,7 @@ from nrs_design.design.impedance import (
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import BoolArray, FloatArray, frequency_response
 from nrs_design.errors import DesignError
+from nrs_design.spec.axis import unit
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs
@@ -232,9 +233,9 @@ def _scan(problem: ImpedanceProblem) -> Points:
     rows = np.flatnonzero(np.isfinite(costs).any(axis=1))
     if not len(rows):
         raise DesignError(
-            f"no admittance with Mt in {list(problem.mass_bounds)} kg m^2 and Bt in "
-            f"{list(problem.damping_bounds)} N m s/rad keeps the loop stable at "
-            f"{problem.loop.contact.stiffness:.6g} N m/rad",
+            f"no admittance with Mt in {list(problem.mass_bounds)} {unit('kg m^2')} and Bt in "
+            f"{list(problem.damping_bounds)} {unit('N m s/rad')} keeps the loop stable at "
+            f"{problem.loop.contact.stiffness:.6g} {unit('N m/rad')}",
             remedy="raise the upper bound of Bt or lower the lower bound of Mt",
             at=("Bt",),
         )

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
+from nrs_design.spec.axis import current, unit
+
 _DIGITS = 4
 
 
@@ -42,8 +44,10 @@ class Measure:
 
     goal: str  # Key of the goal in a spec
     title: str  # In a few words, such as ``phase margin``
-    unit: str = ""  # In which it is shown; empty for a number
-    scale: float = 1.0  # Shown value over SI value
+    # In which it is shown, and shown value over SI value; empty for a number.
+    unit: str = ""
+    scale: float = 1.0
+    turning: bool = False  # Whether both are those of an axis that turns, in deg
     # Whether a goal is the largest value that is accepted; else it is the smallest.
     upper: bool = False
     doubtful: float | None = None  # SI value beyond which a design without a goal is doubted
@@ -56,13 +60,28 @@ class Measure:
             return "unbounded" if self.upper else "unlimited"
         rounding = ROUND_CEILING if self.upper else ROUND_FLOOR
         context = Context(prec=_DIGITS, rounding=rounding)
-        rounded = context.create_decimal(Decimal(value * self.scale))
-        return f"{rounded.normalize():f} {self.unit}".rstrip()
+        scale, shown = self._shown
+        rounded = context.create_decimal(Decimal(value * scale))
+        return f"{rounded.normalize():f} {shown}".rstrip()
 
     def goal_text(self, value: float) -> str:
         """Write a goal, such as ``at most 2``."""
-        shown = f"{value * self.scale:.6g} {self.unit}".rstrip()
+        scale, unit_shown = self._shown
+        shown = f"{value * scale:.6g} {unit_shown}".rstrip()
         return f"{'at most' if self.upper else 'at least'} {shown}"
+
+    @property
+    def _shown(self) -> tuple[float, str]:
+        """Scale and unit on the current axis."""
+        if not self.turning:
+            return self.scale, self.unit
+        return current().fine if self.unit.startswith("deg") else self.scale, unit(self.unit)
+
+    @property
+    def si_unit(self) -> str:
+        """The unit of its value in SI."""
+        si = {"deg": "rad", "deg/s": "rad/s", "ms": "s"}.get(self.unit, self.unit)
+        return unit(si) if self.turning else si
 
     def violation(self, value: float, goal: float) -> float:
         """Return by which part a value misses a goal; not positive where it is met."""
@@ -88,16 +107,18 @@ DISK_MARGIN = Measure("min_disk_margin", "disk margin")
 IMPEDANCE_ERROR = Measure(
     "max_impedance_error", "factor off the desired impedance", upper=True, doubtful=2.0
 )
-CREEP = Measure("max_creep", "creep in free motion", unit="deg/s", scale=180 / math.pi, upper=True)
+CREEP = Measure("max_creep", "creep in free motion", "deg/s", turning=True, upper=True)
 CREEP_ANGLE = Measure(
-    "max_creep_angle", "angle of creep in free motion", "deg", 180 / math.pi, upper=True
+    "max_creep_angle", "way of creep in free motion", "deg", turning=True, upper=True
 )
 FORCE_ERROR = Measure(
     "max_force_error", "steady force error over command", upper=True, doubtful=0.5
 )
 # Of a hand that moves the robot: shown where they are asked for.
 TRANSPARENCY = Measure("min_transparency", "share of the motion of the hand that is followed")
-HAND_EFFORT = Measure("max_hand_effort", "effort of the hand", unit="N*m*s/rad", upper=True)
+HAND_EFFORT = Measure(
+    "max_hand_effort", "effort of the hand", unit="N*m*s/rad", turning=True, upper=True
+)
 
 MARGINS = (SENSITIVITY_PEAK, GAIN_MARGIN, PHASE_MARGIN, DELAY_MARGIN, DISK_MARGIN)
 IMPEDANCE_MEASURES = (*MARGINS, IMPEDANCE_ERROR)

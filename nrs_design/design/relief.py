@@ -9,6 +9,7 @@ from nrs_design.controllers.float32 import round_significant
 from nrs_design.design.goals import Requirement
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt
+from nrs_design.spec.axis import unit
 
 # How far to look for a damping, as a factor, and how near to the least one to come.
 _FURTHEST, _NEAR = 1e4, 1e-3
@@ -37,10 +38,11 @@ def doubt_stiffness(
         if highest < limit or math.isnan(limit):
             continue
         enough = enough_damping(requirement, contact.name, Mt, Bt, highest)
-        held = "no Bt" if enough is None else f"Bt = {enough:g} N*m*s/rad"
+        held = "no Bt" if enough is None else f"Bt = {enough:g} {unit('N*m*s/rad')}"
         text = (
-            f"{name}: the stiffness of {contact.name}, up to {highest:.6g} N*m/rad, reaches the "
-            f"limit {limit:.6g} N*m/rad of its gains; with Mt = {Mt:g} kg*m^2, {held} would hold "
+            f"{name}: the stiffness of {contact.name}, up to {highest:.6g} {unit('N*m/rad')}, "
+            f"reaches the limit {limit:.6g} {unit('N*m/rad')} of its gains; with Mt = {Mt:g} "
+            f"{unit('kg*m^2')}, {held} would hold "
             "one such contact at every corner of the other ranges, constant and without margin "
             "(floating point, not a proof)"
         )

@@ -62,6 +62,9 @@ _DATE = (1980, 1, 1, 0, 0, 0)
 # By base units of SI; those of motors that are none have a name only.
 _BASE = {
     "rad": 'rad="1"',
+    "m": 'm="1"',
+    "m/s": 'm="1" s="-1"',
+    "N": 'kg="1" m="1" s="-2"',
     "rad/s": 'rad="1" s="-1"',
     "N*m": 'kg="1" m="2" s="-2"',
     # 2 pi / 60.

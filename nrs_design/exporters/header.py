@@ -20,7 +20,7 @@ def header_lines(record: ExportRecord) -> tuple[str, ...]:
         *(() if proof is None else (f"claim: {proof.claim}",)),
         *(() if proof is None or proof.safety is None else (f"claim: {proof.safety}",)),
         f"sample time: {_sample_time(record)}",
-        "units: SI, angles in rad; each gain has its unit beside it, which names that of the motor",
+        "units: SI; each gain has its unit beside it, which names that of the motor",
         *(f"outside the proof: {text}" for text in record.outside),
     )
 

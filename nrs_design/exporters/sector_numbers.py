@@ -15,6 +15,7 @@ from fractions import Fraction
 from nrs_design.controllers.float32 import float32_not_above, float32_not_below
 from nrs_design.controllers.sector import JUDGED, Sector
 from nrs_design.proof.bounds import lower, upper
+from nrs_design.spec.axis import unit
 
 ROUNDING = Fraction(17, 2**27)
 SLACK = Fraction(1, 2**20)
@@ -35,22 +36,26 @@ def sector_macros(sector: Sector) -> Iterator[Macro]:
     sector : Sector
         What readings must keep.
     """
-    yield "TORQUE_NOISE", _more(sector.torque_noise), "N*m, a reading of the torque is off by"
-    yield "ANGLE_NOISE", _more(sector.angle_noise), "rad, its angle is off by"
+    yield (
+        "TORQUE_NOISE",
+        _more(sector.torque_noise),
+        f"{unit('N*m')}, a reading of the torque is off by",
+    )
+    yield "ANGLE_NOISE", _more(sector.angle_noise), f"{unit('rad')}, its angle is off by"
     yield "ROUNDING", ROUNDING, "of an angle, single precision"
-    yield "YIELD_MOST", _more(1 / sector.low), "rad/(N*m), at the least stiffness"
-    yield "YIELD_LEAST", _less(1 / sector.high), "rad/(N*m), at the largest stiffness"
+    yield "YIELD_MOST", _more(1 / sector.low), f"{unit('rad/(N*m)')}, at the least stiffness"
+    yield "YIELD_LEAST", _less(1 / sector.high), f"{unit('rad/(N*m)')}, at the largest stiffness"
     yield (
         "JUDGED_HIGH",
         _less(JUDGED * sector.high, 4),
-        "N*m/rad, below it for certain counts as judged",
+        f"{unit('N*m/rad')}, below it for certain counts as judged",
     )
-    yield "JUDGED_LOW", _more(sector.low / JUDGED, 4), "N*m/rad, and above it"
+    yield "JUDGED_LOW", _more(sector.low / JUDGED, 4), f"{unit('N*m/rad')}, and above it"
     if sector.surface_speed:
-        yield "SURFACE_SPEED", _more(sector.surface_speed), "rad/s, of the surface"
+        yield "SURFACE_SPEED", _more(sector.surface_speed), f"{unit('rad/s')}, of the surface"
     if sector.speed is not None:
-        yield "JOINT_SPEED", _more(sector.speed), "rad/s, of the joint"
-        yield "JOINT_NOISE", _more(2 * sector.reading), "rad, two readings of it"
+        yield "JOINT_SPEED", _more(sector.speed), f"{unit('rad/s')}, of the joint"
+        yield "JOINT_NOISE", _more(2 * sector.reading), f"{unit('rad')}, two readings of it"
 
 
 def _more(value: Fraction, slacks: int = 1) -> Fraction:
@@ -73,10 +78,11 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
     """
     low, high = lower(sector.low, 6), upper(sector.high, 6)
     yield (
-        f"STIFFNESS: no stiffness within [{low}, {high}] N*m/rad, another one at every sample, "
-        f"explains the readings; the torque is off by at most {upper(sector.torque_noise, 4)} N*m, "
-        f"its angle by {upper(sector.angle_noise, 4)} rad; {_surface(sector)}. Where that holds "
-        "it is never told, whatever stiffness and noise do, rounding included. Noise is a bound: "
+        f"STIFFNESS: no stiffness within [{low}, {high}] {unit('N*m/rad')}, another one at "
+        "every sample, explains the readings; the torque is off by at most "
+        f"{upper(sector.torque_noise, 4)} {unit('N*m')}, its angle by "
+        f"{upper(sector.angle_noise, 4)} {unit('rad')}; {_surface(sector)}. Where that holds it is "
+        "never told, whatever stiffness and noise do, rounding included. Noise is a bound: "
         "three standard deviations of a normal one are left in nearly every run."
     )
     yield (
@@ -84,13 +90,17 @@ def sector_words(sector: Sector, travel: Fraction) -> Iterator[str]:
         "torque N on (k times the deflection, without damping), where contact is made while the "
         f"monitor runs. N = {_formula(sector)}; e and "
         "a are the noise of torque and angle, l and h the ends of the range, d is the travel of "
-        f"the joint between two torques that are read, {upper(travel, 3)} rad at the velocity "
-        f"limit.{_moving(sector)}"
+        f"the joint between two torques that are read, {upper(travel, 3)} {unit('rad')} at the "
+        f"velocity limit.{_moving(sector)}"
     )
     for factor in FACTORS:
         need = _need(sector, factor, Fraction(0))
         more = _need(sector, factor, travel) - need
-        yield f"c = {float(factor):g}: N = {upper(need, 3)} N*m, and {upper(more, 2)} N*m for d"
+        torque = unit("N*m")
+        yield (
+            f"c = {float(factor):g}: N = {upper(need, 3)} {torque}, and {upper(more, 2)} {torque} "
+            "for d"
+        )
     yield (
         f"In `judged` of `sample` samples {float(JUDGED):g} times the range would have been told, "
         "whatever the noise: the stiffness was nearer, if it was in its range before."

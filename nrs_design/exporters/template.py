@@ -9,6 +9,7 @@ from xml.sax.saxutils import quoteattr
 
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.exporters.c_names import harmless, literal
+from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -24,7 +25,7 @@ def fill_template(name: str, **values: object) -> str:
     **values : object
         What its names stand for.
     """
-    return _environment().get_template(name).render(values)
+    return _environment().get_template(name).render(values | {"unit": unit})
 
 
 @cache

@@ -44,6 +44,7 @@ from nrs_design.proof.spectrum import affordable, is_stable, worst_eigenvalue
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peak_metrics import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
+from nrs_design.spec.axis import unit
 from nrs_design.spec.document import Position
 from nrs_design.wings import load_wing
 
@@ -242,7 +243,8 @@ class Examiner:
             verb = "stays below" if reached else "reaches"
             message = (
                 f"design goal: the stiffness of {item.given.environment}, up to {highest:.6g} "
-                f"N*m/rad, {verb} the limit {limit:.6g} N*m/rad of controller {item.name}{held}, "
+                f"{unit('N*m/rad')}, {verb} the limit {limit:.6g} {unit('N*m/rad')} of controller "
+                f"{item.name}{held}, "
                 "at the worst corner of the other ranges (floating point, not a proof)"
             )
             status, place = Status.MET if reached else self._missed, ("controllers", item.name)

@@ -37,6 +37,7 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.subsets import Subset, find_subsets
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec.axis import about
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
@@ -149,7 +150,10 @@ def run_gate(
         try:
             if namesake is not None:
                 raise _shared_name(loaded, namesake)
-            return _examine(loaded, files, lambda s: progress(f"{name}: {s}"), overrides, robots)
+            with about(getattr(loaded.spec, "axis", None)):
+                return _examine(
+                    loaded, files, lambda s: progress(f"{name}: {s}"), overrides, robots
+                )
         except Exception as error:
             # One spec must not keep the others from being examined, whatever goes wrong with it.
             return failed(loaded.path, error, loaded.sha256)

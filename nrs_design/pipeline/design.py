@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.spec import LoadedSpec
+from nrs_design.spec.axis import about
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign
@@ -34,9 +35,13 @@ class Designed:
 
 @contextmanager
 def placed(loaded: LoadedSpec) -> Iterator[None]:
-    """Add path, line and column to errors from stages that know the spec but not its file."""
+    """Add path, line and column to errors from stages that know the spec but not its file.
+
+    Their words are about its axis.
+    """
     try:
-        yield
+        with about(getattr(loaded.spec, "axis", None)):
+            yield
     except NrsDesignError as error:
         if error.path is None and error.at:
             place = loaded.place(*error.at)

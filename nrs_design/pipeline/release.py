@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,8 @@ def physical_outputs(result: Result) -> Outputs | str | None:
     designed, system = result.designed, result.certification.system
     if designed is None:
         return None
+    # Laws of contact name their states as those of an axis that turns.
+    system = replace(system, states=tuple(map(designed.spec.axis.turning, system.states)))
     if (obstacle := _find_obstacle(designed, system)) is not None:
         return obstacle
     if system.time is Time.DISCRETE:

@@ -12,6 +12,7 @@ from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 from nrs_design.reporting.document import Sentence
 from nrs_design.reporting.sections.places import linked
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins
@@ -110,7 +111,7 @@ def _loop_lines(margins: ProofMargins, at: _At) -> Iterator[Sentence]:
         broken = ((at(nearly(end, unit), "disturbances", name),) for name, (_, end, unit) in bounds)
         yield Sentence(
             "limit of ",
-            at(nearly(loop.command.limit, "N*m"), "limits", "torque"),
+            at(nearly(loop.command.limit, unit("N*m")), "limits", "torque"),
             ": proved to be kept for ",
             *_listed(kept),
             "; a simulated run reaches it at ",

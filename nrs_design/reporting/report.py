@@ -25,6 +25,7 @@ from nrs_design.reporting.sections.tail import (
     spec_section,
 )
 from nrs_design.reporting.sections.worst_case import worst_case_section
+from nrs_design.spec.axis import about
 
 if TYPE_CHECKING:
     import datetime
@@ -81,35 +82,36 @@ def build_report(
     Report
         With its figures drawn; `render_html`, `render_pdf` and `render_png` write it out.
     """
-    spec, certification, designed = result.loaded.spec, result.certification, result.designed
-    system = certification.system
-    sections = (
-        proof_section(result),
-        remedies_section(result, margins, subsets, blocked),
-        stability_map_section(result.loaded, stability_map) if stability_map else None,
-        *(design_sections(designed, analysis) if designed else ()),
-        goals_section(result, analysis),
-        logic_section(designed.spec) if designed else None,
-        modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
-        *evidence_sections(certification),
-        release_section(result),
-        worst_case_section(result),
-        assumptions_section(result),
-        rungs_section(certification, times=times),
-        methods_section(comparison, times=times) if comparison else None,
-        recheck_section(result),
-        spec_section(result.loaded),
-    )
-    return Report(
-        name=spec.name,
-        title=spec.title,
-        verdict=str(certification.verdict),
-        claim=claim_of(certification),
-        remarks=remarks_of(certification),
-        facts=(*facts(result), *goal_facts(result, analysis)),
-        sections=tuple(section for section in sections if section is not None),
-        summary=summary_of(result),
-        lights=lights_of(result, analysis),
-        certificate=canonical(to_document(result.certificate)) if result.certificate else "",
-        date=date,
-    )
+    with about(getattr(result.loaded.spec, "axis", None)):
+        spec, certification, designed = result.loaded.spec, result.certification, result.designed
+        system = certification.system
+        sections = (
+            proof_section(result),
+            remedies_section(result, margins, subsets, blocked),
+            stability_map_section(result.loaded, stability_map) if stability_map else None,
+            *(design_sections(designed, analysis) if designed else ()),
+            goals_section(result, analysis),
+            logic_section(designed.spec) if designed else None,
+            modes_section(result.loaded, system, proved_rate(system, certification.evidence)),
+            *evidence_sections(certification),
+            release_section(result),
+            worst_case_section(result),
+            assumptions_section(result),
+            rungs_section(certification, times=times),
+            methods_section(comparison, times=times) if comparison else None,
+            recheck_section(result),
+            spec_section(result.loaded),
+        )
+        return Report(
+            name=spec.name,
+            title=spec.title,
+            verdict=str(certification.verdict),
+            claim=claim_of(certification),
+            remarks=remarks_of(certification),
+            facts=(*facts(result), *goal_facts(result, analysis)),
+            sections=tuple(section for section in sections if section is not None),
+            summary=summary_of(result),
+            lights=lights_of(result, analysis),
+            certificate=canonical(to_document(result.certificate)) if result.certificate else "",
+            date=date,
+        )

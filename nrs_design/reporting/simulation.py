@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from decimal import ROUND_CEILING, Context
 from typing import Any
+
+from nrs_design.spec.axis import current, unit
 
 # Smaller numbers are shown as zero.
 _NOTHING = 1e-9
@@ -32,22 +33,22 @@ def four_digits_up(value: float) -> str:
 def _rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[str]]:
     limit = f"{limits.get('torque', m['torque_limit']):.4g}"
     # What has a limit is never shown below it, nor as nothing, where it is not.
-    yield ["largest torque", four_digits_up(m["peak_torque"]), "N m", limit]
-    above = f"time above {m['torque_limit']:.4g} N m"
+    yield ["largest torque", four_digits_up(m["peak_torque"]), unit("N m"), limit]
+    above = f"time above {m['torque_limit']:.4g} {unit('N m')}"
     yield [above, four_digits_up(m["time_above_limit"]), "s", "0"]
     yield _peak("largest deflection", m["peak_depth"], "deg", limits.get("deflection"))
     yield _row("time in contact", m["time_in_contact"], "s")
     if m["impedance_rmse"] is not None:
         wanted = f"off the wanted {m['desired_impedance']:.4g}"
         name = "RMSE of the displayed impedance"
-        yield _row(name, m["impedance_rmse"], "N m s/rad", wanted)
+        yield _row(name, m["impedance_rmse"], unit("N m s/rad"), wanted)
     yield _row("duration", m["duration"], "s")
     for time in m["withdrawal_times"]:
         yield _row("withdrawal from tissue", time, "s")
-    yield _row("mean speed", math.degrees(m["mean_speed"]), "deg/s")
+    yield _row("mean speed", current().fine * m["mean_speed"], unit("deg/s"))
     yield _peak("largest speed", m["peak_velocity"], "deg/s", limits.get("velocity"))
-    yield _row("applied torque, total", m["effort"]["total"], "N m s")
-    yield _row("applied torque, rms", m["effort"]["rms"], "N m")
+    yield _row("applied torque, total", m["effort"]["total"], unit("N m s"))
+    yield _row("applied torque, rms", m["effort"]["rms"], unit("N m"))
     yield _row("energy", m["effort"]["energy"], "J")
     for stay in m["force_control"]:
         yield _row(f"overshoot under {stay['controller']}", 100 * stay["overshoot"], "%")
@@ -60,13 +61,14 @@ def _rows(m: Mapping[str, Any], limits: Mapping[str, float]) -> Iterator[list[st
         yield _row("shortest stay", m["shortest_stay"], "s")
 
 
-def _peak(name: str, value: float, unit: str, limit: float | None) -> list[str]:
-    """Return an angle or a speed, never below a limit where it is not."""
+def _peak(name: str, value: float, turning: str, limit: float | None) -> list[str]:
+    """Return a position or a speed, never below a limit where it is not."""
+    fine, shown = current().fine, unit(turning)
     if limit is None:
-        return _row(name, math.degrees(value), unit)
-    return [name, four_digits_up(math.degrees(value)), unit, f"{math.degrees(limit):.4g}"]
+        return _row(name, fine * value, shown)
+    return [name, four_digits_up(fine * value), shown, f"{fine * limit:.4g}"]
 
 
-def _row(name: str, value: float, unit: str, limit: str = "") -> list[str]:
+def _row(name: str, value: float, shown_in: str, limit: str = "") -> list[str]:
     shown = 0.0 if abs(value) < _NOTHING else value
-    return [name, f"{shown:.4g}", unit, limit]
+    return [name, f"{shown:.4g}", shown_in, limit]

@@ -15,6 +15,8 @@ from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
+from nrs_design.spec.axis import current, named
+from nrs_design.spec.axis import unit as shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -132,8 +134,10 @@ def scale_of(name: str, unit: str, lever_arm: float | None) -> tuple[float, str]
     """
     if name == DEFLECTION and lever_arm is not None:
         return 1e3 * lever_arm, "mm"
-    scales = {"N*m": (1.0, "N m"), "rad/s": (_TURN, "deg/s"), "rad": (_TURN, "deg")}
-    return scales.get(unit, (1.0, unit))
+    fine = current().fine
+    scales = {"N*m": (1.0, "N m"), "rad/s": (fine, "deg/s"), "rad": (fine, "deg")}
+    each = {shown(si): (scale, shown(said)) for si, (scale, said) in scales.items()}
+    return each.get(unit, (1.0, unit))
 
 
 def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figure:
@@ -151,9 +155,9 @@ def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figur
     panels = [_panel(case, run, other.output, lever_arm) for other in case.runs]
     names = [channel.name for channel in case.system.channels]
     if _COMMAND in names:
-        command = _TURN * run.disturbances[:, names.index(_COMMAND)]
+        command = current().fine * run.disturbances[:, names.index(_COMMAND)]
         held = np.append(command, command[-1:])[:, None]
-        panels.append(BoundedSignal("Command [deg/s]", held, None, None))
+        panels.append(BoundedSignal(named("Command [deg/s]"), held, None, None))
     labels = [_controller(name) for name in _modes(case)]
     who = list(dict.fromkeys(labels))
     mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)

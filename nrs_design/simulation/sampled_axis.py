@@ -31,7 +31,7 @@ from nrs_design.simulation.scenario import (
     Scenario,
 )
 from nrs_design.simulation.step_program import StepProgram
-from nrs_design.simulation.time_response import Signal, TimeResponse
+from nrs_design.simulation.time_response import Signal, TimeResponse, on_axis
 from nrs_design.simulation.tissue import Tissue
 
 # Parts of a step, where tissue moves by itself or loads the motor.
@@ -307,9 +307,9 @@ class SampledAxis:
             rows[1:last],
             rows[last:],
             inputs.hand[None, :count],
-            (*_OUTPUTS, Signal("command", self.design.command)),
+            (*on_axis(_OUTPUTS, self.design.axis), Signal("command", self.design.command)),
             tuple(Signal(_named(value.name), value.unit) for value in law.states),
-            _INPUTS,
+            on_axis(_INPUTS, self.design.axis),
             rows[0].astype(np.int64),
             law.modes,
         )

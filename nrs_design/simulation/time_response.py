@@ -4,16 +4,26 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.spec.axis import Axis
+
 Array = NDArray[np.float64]
 
 # How names of columns write units, as records are read.
-_IN_COLUMNS = {"N*m": "Nm", "rad/s": "rad_s", "N*m/rad": "Nm_rad", "N*m*s/rad": "Nms_rad"}
+_IN_COLUMNS = {
+    "N*m": "Nm",
+    "rad/s": "rad_s",
+    "N*m/rad": "Nm_rad",
+    "N*m*s/rad": "Nms_rad",
+    "m/s": "m_s",
+    "N/m": "N_m",
+    "N*s/m": "Ns_m",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +42,11 @@ class Signal:
     def __str__(self) -> str:
         """Name and unit, such as ``torque [N*m]``."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+def on_axis(signals: Iterable[Signal], axis: Axis) -> tuple[Signal, ...]:
+    """Return signals with the units of an axis, which are given as those of one that turns."""
+    return tuple(replace(signal, unit=axis.unit(signal.unit)) for signal in signals)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,6 +15,7 @@ from nrs_design.proof.channels import Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, deflected
+from nrs_design.spec.axis import axis_of
 
 DEFLECTION = "deflection"
 _PUSHED = ("force", DEFLECTION)
@@ -64,10 +65,12 @@ def deflection_of(system: SwitchedSystem) -> Output | None:
     """
     from nrs_design.proof.matrix import RationalMatrix
 
-    if "delta [rad]" not in system.states:
+    axis = axis_of(system.states)
+    delta = axis.named("delta [rad]")
+    if delta not in system.states:
         return None
-    row = [int(state == "delta [rad]") for state in system.states]
-    return Output(DEFLECTION, "rad", (RationalMatrix.from_rows([row]),))
+    row = [int(state == delta) for state in system.states]
+    return Output(DEFLECTION, axis.unit("rad"), (RationalMatrix.from_rows([row]),))
 
 
 def forces_by_mode(system: SwitchedSystem, touched: Sequence[Environment]) -> NDArray[np.bool_]:

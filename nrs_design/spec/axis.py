@@ -7,9 +7,9 @@ of one that slides, so the unit of a quantity follows from that for a rotation.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from contextvars import ContextVar
+from contextvars import ContextVar, Token
 from enum import StrEnum
 from functools import cache
 
@@ -24,6 +24,13 @@ _SLIDING: Mapping[str, str] = {
     "s": "s",
     "1/s": "1/s",
     "J": "J",
+    "Hz": "Hz",
+    "%": "%",
+    "N": "N",
+    "N/m": "N/m",
+    "ms": "ms",
+    "samples": "samples",
+    "decades": "decades",
     "W": "W",
     "rad": "m",
     "rad/s": "m/s",
@@ -52,6 +59,8 @@ _SLIDING: Mapping[str, str] = {
     },
     "N*m*s/rad/(N*m)": "s/m",
 }
+# Of states of an axis that slides.
+_OF_STATES: Mapping[str, str] = {"m": "rad", "m/s": "rad/s", "N": "N*m"}
 # How a unit is written: in records, in tables of a terminal, and in pages and figures.
 _STYLES = (("*", "^2"), (" ", "^2"), ("\N{MIDDLE DOT}", "\N{SUPERSCRIPT TWO}"))
 
@@ -80,9 +89,23 @@ class Axis(StrEnum):
         return turning if self is Axis.ROTARY else _every()[turning]
 
     def named(self, text: str) -> str:
-        """Return the name of a state with its unit, such as ``vm [rad/s]``, on this axis."""
-        name, bracket, unit = text.partition(" [")
-        return f"{name}{bracket}{self.unit(unit[:-1])}]" if bracket else text
+        """Return a name with its unit in brackets, such as ``vm [rad/s]``, on this axis."""
+        name, opened, rest = text.partition(" [")
+        said, closed, more = rest.partition("]")
+        return f"{name}{opened}{self.unit(said)}{closed}{more}" if opened else text
+
+    def turning(self, text: str) -> str:
+        """Return what a name of a state of this axis is on one that turns.
+
+        Parameters
+        ----------
+        text : str
+            With its unit in brackets, such as ``delta [m]``.
+        """
+        name, opened, rest = text.partition(" [")
+        if self is Axis.ROTARY or not opened:
+            return text
+        return f"{name}{opened}{_OF_STATES[rest[:-1]]}]"
 
     @property
     def fine(self) -> float:
@@ -101,26 +124,59 @@ def _every() -> Mapping[str, str]:
     return found
 
 
-_READING: ContextVar[Axis] = ContextVar("axis", default=Axis.ROTARY)
+def axis_of(states: Iterable[str]) -> Axis:
+    """Return the axis whose states have these names: one that slides, if one of them is in m.
+
+    Parameters
+    ----------
+    states : iterable of str
+        Names with units.
+    """
+    units = {text.partition(" [")[2] for text in states}
+    return Axis.PRISMATIC if units & {"m]", "m/s]"} else Axis.ROTARY
 
 
-def reading() -> Axis:
-    """Return the axis of the spec that is being read, which its quantities are about."""
-    return _READING.get()
+# Of the spec that is read, designed or shown: a sentence about a gain need not be handed its unit.
+_CURRENT: ContextVar[Axis] = ContextVar("axis", default=Axis.ROTARY)
 
 
-@contextmanager
-def reading_of(axis: object) -> Iterator[None]:
-    """Read the quantities of a spec as those of an axis; if it is none, of one that turns.
+def current() -> Axis:
+    """Return the axis that quantities and words are about, of `about`; else one that turns."""
+    return _CURRENT.get()
+
+
+def unit(turning: str) -> str:
+    """Return the unit on the `current` axis of what has this unit on one that turns."""
+    return current().unit(turning)
+
+
+def named(text: str) -> str:
+    """Return a label with its unit in brackets, on the `current` axis."""
+    return current().named(text)
+
+
+def take(axis: object) -> Token[Axis]:
+    """Take an axis for the `current` one until `about`, within which this is called, ends.
 
     Parameters
     ----------
     axis : object
-        What the spec says.
+        What a spec says, or an `Axis`; what is none is taken for one that turns.
     """
-    known = axis if axis in [*Axis] else Axis.ROTARY
-    token = _READING.set(Axis(str(known)))
+    return _CURRENT.set(Axis(str(axis)) if axis in [*Axis] else Axis.ROTARY)
+
+
+@contextmanager
+def about(axis: object) -> Iterator[None]:
+    """Take an axis for the `current` one; what is none is taken for one that turns.
+
+    Parameters
+    ----------
+    axis : object
+        What a spec says, or an `Axis`.
+    """
+    token = take(axis)
     try:
         yield
     finally:
-        _READING.reset(token)
+        _CURRENT.reset(token)

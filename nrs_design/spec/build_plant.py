@@ -103,6 +103,7 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
     wanted = None if goals is None else goals.initial_force
     return OperatingConditions(
         spec.name,
+        spec.axis,
         spec.switching,
         spec.contact,
         spec.idle_states,

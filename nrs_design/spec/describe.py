@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
+from nrs_design.spec.axis import current, unit
 from nrs_design.spec.controllers import (
     ControllerSpec,
     contact_names,
@@ -130,7 +131,7 @@ def _interaction(spec: InteractionDesignSpec) -> Iterator[Line]:
         if name not in INTERFACES:
             continue
         for key, item in drive.ranges.items():
-            yield from _ranged(f"{name}.{key}", item, item, DRIVE_UNITS[key])
+            yield from _ranged(f"{name}.{key}", item, item, unit(DRIVE_UNITS[key]))
         yield from describe_model(
             getattr(drive, "transfer_function", None), f"{name}.transfer_function"
         )
@@ -267,9 +268,10 @@ def _controller(name: str, controller: ControllerSpec, limits: LimitsSpec) -> It
 def _shown_unit(quantity: Quantity) -> str:
     """Return the unit in which a quantity is shown."""
     dimension = quantity.dimension
-    if kinds.DERIVATIVE_GAIN.accepts(dimension):
-        return kinds.DERIVATIVE_GAIN.unit_in(dimension)
-    known = (kind.si_unit for kind in _SHOWN if kind.accepts(dimension))
+    gain, *shown = (kind.on(current()) for kind in (kinds.DERIVATIVE_GAIN, *_SHOWN))
+    if gain.accepts(dimension):
+        return gain.unit_in(dimension)
+    known = (kind.si_unit for kind in shown if kind.accepts(dimension))
     return next(known, si_unit(dimension))
 
 
@@ -281,7 +283,7 @@ def _desired_impedance(
         return
     written = "torque/velocity" if displayed == 1 else f"{exact_text(displayed)} * torque/velocity"
     value = float(displayed) * limits.torque.si / limits.velocity.si
-    yield Line(name, written, _text(value), kinds.IMPEDANCE.si_unit)
+    yield Line(name, written, _text(value), kinds.IMPEDANCE.on(current()).si_unit)
 
 
 def _gain(name: str, gain: GainSpec) -> Iterator[Line]:

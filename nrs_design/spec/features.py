@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 from typing import NamedTuple
 
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.check import Feature
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec
@@ -357,3 +358,18 @@ SATURATED = _F(
     "remove the goal",
     _given("goals.initial_force"),
 )
+
+SLIDING = _F(
+    "a prismatic axis",
+    "axis",
+    "write `axis: rotary`",
+    lambda s: s.axis is Axis.PRISMATIC,
+)
+MODE_LOGIC = _F("mode_logic", "mode_logic", "leave mode_logic out", _given("mode_logic"))
+REGIONS = _F(
+    "limits of contact with people",
+    "limits.contact",
+    "leave contact out of limits",
+    _given("limits.contact"),
+)
+TOOL = _F("a tool on the sensor", "sensor.tool", "leave tool out", _given("sensor.tool"))

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
-from nrs_design.spec.axis import reading_of
+from nrs_design.spec.axis import about
 from nrs_design.spec.document import (
     Data,
     Mapping,
@@ -169,7 +169,7 @@ def model_of(kind: str) -> type[Spec]:
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
     found: tuple[Fault, ...] = ()
     model, said = model_of(_kind_of(root, path, syntax)), to_data(root)
-    with reading_of(said.get("axis") if isinstance(said, dict) else None):
+    with about(said.get("axis") if isinstance(said, dict) else None):
         try:
             spec = model.model_validate(said)
         except ValidationError as error:

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.axis import reading
+from nrs_design.spec.axis import current
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
 from nrs_design.spec.quantity import (
@@ -44,7 +44,7 @@ def read_quantity(
     signed : bool
         Allow negative ones.
     """
-    kind = kind.on(reading())
+    kind = kind.on(current())
 
     def read() -> Quantity:
         if isinstance(value, Quantity):
@@ -87,7 +87,7 @@ def _read_or_largest(value: object, kind: QuantityKind) -> Quantity | Literal["l
     """Read both in one place, so that what is neither is one fault."""
     if value == LARGEST:
         return LARGEST
-    kind = kind.on(reading())
+    kind = kind.on(current())
     if isinstance(value, str) and not any(map(str.isdigit, value)):
         raise fault(
             f"{quoted(value)} is neither {kind.name} nor {LARGEST!r}",

@@ -13,6 +13,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
+from nrs_design.spec.axis import Axis
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
@@ -176,7 +177,10 @@ def assemble(
         )
     period = None if conditions.sampling is None else conditions.sampling.outer
     sensed = sensor_texts(
-        design.sensor, period, disturbed=bool(system.channels) and period is not None
+        design.sensor,
+        period,
+        disturbed=bool(system.channels) and period is not None,
+        axis=spec.axis,
     )
     texts = (
         *system.assumptions,
@@ -187,7 +191,17 @@ def assemble(
         *scale_texts(scale),
         *safety_texts(system.safety),
     )
-    return replace(system, assumptions=texts)
+    return _on_axis(replace(system, assumptions=texts), spec.axis)
+
+
+def _on_axis(system: SwitchedSystem, axis: Axis) -> SwitchedSystem:
+    """Name the units of an axis in the place of those of one that turns; no number changes."""
+    if axis is Axis.ROTARY:
+        return system
+    channels = tuple(replace(c, unit=axis.unit(c.unit)) for c in system.channels)
+    outputs = tuple(replace(o, unit=axis.unit(o.unit)) for o in system.outputs)
+    states = tuple(map(axis.named, system.states))
+    return replace(system, states=states, channels=channels, outputs=outputs)
 
 
 def _assemble_continuous(

@@ -14,6 +14,7 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.saturation import Governed
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter
@@ -90,10 +91,10 @@ def contact_texts(design: ControllerDesign) -> Iterator[Assumption]:
             yield say("contacts.controller", bound, controller=c.name, contacts=contacts)
 
 
-def ranges_text(environments: Iterable[Environment]) -> str:
+def ranges_text(environments: Iterable[Environment], axis: Axis) -> str:
     """Say in which ranges the parameters of environments are."""
     return "; ".join(
-        f"{environment.name}: {name} in {_ends(interval)} {unit}"
+        f"{environment.name}: {name} in {_ends(interval)} {axis.unit(unit)}"
         for environment in environments
         for (name, interval), unit in zip(
             environment.parameters.items(), environment.law.units(rotational=True), strict=True
@@ -101,12 +102,12 @@ def ranges_text(environments: Iterable[Environment]) -> str:
     )
 
 
-def motor_text(ranges: ActuatorRanges) -> str:
+def motor_text(ranges: ActuatorRanges, axis: Axis) -> str:
     """Say where gain and time constant of the motor are."""
     texts = (
         f"its {name} {interval_text(interval)} {unit}"
         for name, interval, unit in (
-            ("gain", ranges.gain, f"rad/s/{ranges.command}"),
+            ("gain", ranges.gain, f"{axis.unit('rad/s')}/{ranges.command}"),
             ("time constant", ranges.time_constant, "s"),
         )
     )
@@ -155,15 +156,15 @@ def scale_texts(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (say("range.scaled", scale=scale),)
 
 
-def command_texts(command: str) -> Iterator[Assumption]:
+def command_texts(command: str, axis: Axis) -> Iterator[Assumption]:
     """Say in which unit the motor is commanded, where it is not the rpm of the thesis."""
     if command != THESIS_COMMAND:
-        yield say("command-unit.unit", unit=command)
+        yield say("command-unit.unit", unit=command, per=axis.unit("rad"))
 
 
 def command_in(statements: Iterable[str]) -> str:
     """Return the unit of commands that `command_texts` has put among the assumptions."""
-    before, _, after = say("command-unit.unit", unit="\0").partition("\0")
+    before, _, after = say("command-unit.unit", unit="\0", per="").partition("\0")
     pattern = f"{re.escape(before)}(.+?){re.escape(after[0])}"
     found = (re.match(pattern, text) for text in statements)
     return next((match[1] for match in found if match), THESIS_COMMAND)
@@ -219,7 +220,7 @@ def preload_texts(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[
 
 
 def sensor_texts(
-    sensor: Sensor, period: Fraction | None, *, disturbed: bool
+    sensor: Sensor, period: Fraction | None, *, disturbed: bool, axis: Axis
 ) -> Iterator[Assumption]:
     """Say how the law gets the force, and what a proof leaves out of its errors.
 
@@ -231,6 +232,8 @@ def sensor_texts(
         Of the processor in s, where there is one.
     disturbed : bool
         Whether bounds on disturbances are stated.
+    axis : Axis
+        What they are about.
     """
     if sensor.filter is not None:
         order = sensor.filter.order
@@ -242,10 +245,11 @@ def sensor_texts(
             p, q = exact_decimal(step.p), exact_decimal(step.q)
             yield say("sensor.sampled-filter", lags=lags, p=p, q=q)
     if sensor.errors:
-        lasting = rounded_up(sensor.lasting, "N*m")
-        parts = "; ".join(f"{name}: {rounded_up(e, 'N*m')}" for name, e in sensor.errors.items())
+        unit = axis.unit("N*m")
+        lasting = rounded_up(sensor.lasting, unit)
+        parts = "; ".join(f"{name}: {rounded_up(e, unit)}" for name, e in sensor.errors.items())
         which = "sensor.errors-disturbed" if disturbed else "sensor.errors"
-        yield say(which, f"{lasting} about the pivot", lasting=lasting, parts=parts)
+        yield say(which, lasting, lasting=lasting, parts=parts)
     if sensor.carries:
         yield say("sensor.tool", "accelerations of the tool far below that of gravity")
     if sensor.noise is not None:

@@ -38,6 +38,7 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.axis import unit
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.coupled import AxesCoupling
@@ -391,7 +392,7 @@ def _places(
     ends = (interval.ends for interval in (ranges.gain, ranges.time_constant))
     for (_, gain), (_, tau) in product(*ends):
         texts: tuple[str, ...] = (
-            f"Km = {float(gain):.6g} rad/s/{ranges.command}",
+            f"Km = {float(gain):.6g} {unit('rad/s')}/{ranges.command}",
             f"tau = {float(tau):.6g} s",
         )
         motors.setdefault(replace(nominal, gain=gain, time_constant=tau), texts)

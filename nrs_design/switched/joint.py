@@ -11,6 +11,7 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.text import exact_text
+from nrs_design.spec.axis import Axis
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import motor_text
 from nrs_design.switched.parameter_box import Box
@@ -54,14 +55,14 @@ class Joint:
         gains = self.motion.Kp, self.motion.Kd
         return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)
 
-    def texts(self) -> Iterator[Assumption]:
+    def texts(self, axis: Axis) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
         moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
-        motor = motor_text(self.ranges)
+        motor = motor_text(self.ranges, axis)
         which = "nominal-motor.joint" if self.ranges.fixed else "motor.joint"
         yield say(which, motor, motor=motor, moving=moving)
         if self.load_inertia is None:
             yield say("unloaded.continuous")
         else:
-            inertia = exact_text(self.load_inertia)
-            yield say("load.inertia", f"{inertia} kg*m^2", inertia=inertia)
+            inertia = f"{exact_text(self.load_inertia)} {axis.unit('kg*m^2')}"
+            yield say("load.inertia", inertia, inertia=inertia)

@@ -12,6 +12,7 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.controllers import Command
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import (
@@ -52,7 +53,7 @@ def assume_loop(
     """
     loops = ("nominal-motor.given",) if loop.given else ("nominal-motor.designed",)
     return (
-        *(map(say, loops) if loop.joint is None else loop.joint.texts()),
+        *(map(say, loops) if loop.joint is None else loop.joint.texts(loop.design.axis)),
         *_input_texts(loop, losable=losable),
         UNCOUPLED,
         *_contact_texts(loop),
@@ -63,7 +64,7 @@ def assume_loop(
         *_kept_texts(loop, losable=losable, free=free),
         *_switch_texts(loop, rules),
         NOT_MODELLED,
-        *_gain_texts(loop.boxes, loop.design.command),
+        *_gain_texts(loop.boxes, loop.design.command, loop.design.axis),
     )
 
 
@@ -93,7 +94,7 @@ def _contact_texts(loop: SharedState) -> Iterator[Assumption]:
     yield from contact_texts(loop.design)
     yield from at_once_texts(loop.environments)
     which = "tissue.linear" if loop.offset == "none" else "tissue.offset"
-    yield say(which, ranges_text(loop.environments))
+    yield say(which, ranges_text(loop.environments, loop.design.axis))
     integrated = any(c.law.commands == "velocity" for c in loop.design.controllers)
     if integrated and all(e.law.has_rest for e in loop.environments):
         yield say(f"at-a-switch.{loop.coordinates}")
@@ -185,11 +186,11 @@ def _switch_texts(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumptio
         yield say("any-signal.environment")
 
 
-def _gain_texts(boxes: Mapping[str, GainBox], command: str) -> Iterator[Assumption]:
+def _gain_texts(boxes: Mapping[str, GainBox], command: str, axis: Axis) -> Iterator[Assumption]:
     ranged = {name: box for name, box in boxes.items() if not box.fixed}
     yield say("numbers.gains", where=", or anywhere in their ranges" if ranged else "")
-    yield from command_texts(command)
+    yield from command_texts(command, axis)
     for name, box in ranged.items():
-        yield from box.range_texts(name)
+        yield from box.range_texts(name, axis)
     for text in dict.fromkeys(box.law.retuned_text for box in ranged.values()):
         yield say("at-a-switch.law", text=text)

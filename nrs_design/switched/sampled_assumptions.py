@@ -14,6 +14,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive, Takes
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
+from nrs_design.spec.axis import Axis
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import Assumption, say
@@ -92,7 +93,7 @@ def assume_sampled(
         *_period_texts(sampling, design),
         *_late_texts(frame.timing),
         _delay_text(*sampling.delay),
-        _motor_text(ranges, frame),
+        _motor_text(ranges, frame, conditions.axis),
         *([] if design.takes is Takes.TORQUE else [say("unloaded.sampled")]),
         *(map(say, ("friction.period", "at-samples.force")) if disturbed else ()),
         say(f"inputs.{inputs}{but}", rest=REST[loss == "on the surface"]),
@@ -100,15 +101,15 @@ def assume_sampled(
         *_placed_texts(frame, design, reset=reset),
         UNCOUPLED,
         *contact_texts(design),
-        say("tissue.linear", ranges_text(environments)),
+        say("tissue.linear", ranges_text(environments, conditions.axis)),
         *_loss_texts(loss, design, frame),
         say("at-a-switch.sampled", states="All other states are" if reset else "States are"),
         *rule_texts(conditions.switching, "controller"),
         say("numbers.coefficients", coefficients=_coefficients(frame, gains)),
-        *(() if frame.step.takes else command_texts(design.command)),
+        *(() if frame.step.takes else command_texts(design.command, design.axis)),
         *_retuned_texts(gains),
         say("arithmetic.rounding", counts=", ".join(f"{n} {k}" for n, k in frame.counts.items())),
-        _angle_text(conditions.largest_angle),
+        _angle_text(conditions.largest_angle, conditions.axis),
         say(f"not-quantized.{'sensor' if conditions.sensed else 'sampled'}{but}"),
     )
 
@@ -140,8 +141,8 @@ def _late_texts(timing: CommandTiming) -> Iterator[Assumption]:
         yield say("command-age.range", f"{earliest} s to {late} s", earliest=earliest, late=late)
 
 
-def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
-    motor, tau, timing = motor_text(ranges), ranges.time_constant, frame.timing
+def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: Axis) -> Assumption:
+    motor, tau, timing = motor_text(ranges, axis), ranges.time_constant, frame.timing
     corner = "a corner of that, of no motor of the range"
     if timing.varies:
         corner = "a corner of that, of no motor and no times of the ranges"
@@ -149,7 +150,7 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
     moving = "" if ranges.fixed else ", and may change at every sample, not in between"
     if frame.motor.drive is not None:
-        return _drive_text(frame.motor.drive, moving)
+        return _drive_text(frame.motor.drive, moving, axis)
     if frame.step.streams:
         lag = motor.partition(" and its time constant ")[2]
         return say("motor.followed", lag, motor=lag, moving=moving, corner=corner)
@@ -162,11 +163,11 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
     )
 
 
-def _drive_text(drive: Drive, moving: str) -> Assumption:
+def _drive_text(drive: Drive, moving: str, axis: Axis) -> Assumption:
     """Say how a robot moves that has no motor of the user's."""
     if drive.takes is Takes.TORQUE:
-        inertia = f"{interval_text(drive.ranges['J'])} kg*m^2"
-        friction = f"{interval_text(drive.ranges['B'])} N*m*s/rad"
+        inertia = f"{interval_text(drive.ranges['J'])} {axis.unit('kg*m^2')}"
+        friction = f"{interval_text(drive.ranges['B'])} {axis.unit('N*m*s/rad')}"
         bound = f"J {inertia}, B {friction}"
         return say("motor.torque", bound, inertia=inertia, friction=friction, moving=moving)
     if "tau" in drive.ranges:
@@ -221,10 +222,10 @@ def _retuned_texts(gains: Mapping[str, RangedLaw]) -> Iterator[Assumption]:
         yield say("at-a-switch.sampled-retuned")
 
 
-def _angle_text(angle: Fraction | None) -> Assumption:
+def _angle_text(angle: Fraction | None, axis: Axis) -> Assumption:
     if angle is None:
         return say("arithmetic.angles-left-out")
-    largest = rounded_down(angle, "rad")
+    largest = rounded_down(angle, axis.unit("rad"))
     return say("arithmetic.angles", f"angles within {largest}", largest=largest)
 
 

@@ -68,7 +68,7 @@ def with_saturation(
     signals = (
         CutOff(
             "velocity command",
-            "rad/s",
+            conditions.axis.unit("rad/s"),
             velocity_limit,
             (_column(columns[0]),) * len(modes),
             tuple(RationalMatrix.from_rows([_command(mode, motion)]) for mode in modes),
@@ -84,7 +84,7 @@ def with_saturation(
     wanted = conditions.initial_force
     start = Start(
         "contact force",
-        "N*m",
+        conditions.axis.unit("N*m"),
         tuple(_rest(system.states, state.environments, low_pass)),
         None if isinstance(wanted, str) else wanted,
     )
@@ -92,7 +92,7 @@ def with_saturation(
         NOT_MODELLED_BUT_LIMITS if text == NOT_MODELLED else text for text in system.assumptions
     )
     filtered = "" if low_pass is None else _FILTERED
-    velocity = rounded_up(velocity_limit, "rad/s")
+    velocity = rounded_up(velocity_limit, conditions.axis.unit("rad/s"))
     command = rounded_up(command_limit, conditions.command)
     bound = f"{velocity} and {command}, or more"
     limited = say("limited.signals", bound, velocity=velocity, command=command, filtered=filtered)

@@ -42,6 +42,7 @@ from nrs_design.errors import DesignError
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
+from nrs_design.spec.axis import unit
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
 from nrs_design.switched.cut_loop import ContinuousAxis
 
@@ -217,8 +218,9 @@ def _check_stable(requirement: Requirement, Mt: float, Bt: float) -> None:
             continue
         late = "".join(f", {text}" for text in corner.place.texts)
         raise DesignError(
-            f"the loop with Mt = {Mt:.6g} kg m^2 and Bt = {Bt:.6g} N m s/rad is unstable at "
-            f"{corner.contact.stiffness:.6g} N m/rad{late}",
+            f"the loop with Mt = {Mt:.6g} {unit('kg m^2')} and Bt = {Bt:.6g} "
+            f"{unit('N m s/rad')} is unstable at {corner.contact.stiffness:.6g} "
+            f"{unit('N m/rad')}{late}",
             remedy=f"{_stable_below(requirement, Mt, Bt)}; raise Bt or lower Mt",
             at=("Bt",),
         )
@@ -232,7 +234,7 @@ def _stable_below(requirement: Requirement, Mt: float, Bt: float) -> str:
     nominal = " with the nominal motor" if ranged else ""
     if not limit:
         return f"it is unstable{nominal} however soft the contact is"
-    return f"it is stable{nominal} below {lower(Fraction(limit), 6)} N m/rad"
+    return f"it is stable{nominal} below {lower(Fraction(limit), 6)} {unit('N m/rad')}"
 
 
 def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) -> PassiveBand | None:
@@ -408,8 +410,8 @@ def _rounded_within(
     pair = best_rounding(problem, requirement, (candidates[0], candidates[1]))
     if pair is None:
         raise DesignError(
-            f"no gains of {digits} significant digits near Mt = {optimum.Mt:.6g} kg m^2 and "
-            f"Bt = {optimum.Bt:.6g} N m s/rad meet the goals",
+            f"no gains of {digits} significant digits near Mt = {optimum.Mt:.6g} {unit('kg m^2')} "
+            f"and Bt = {optimum.Bt:.6g} {unit('N m s/rad')} meet the goals",
             remedy="raise design.significant_digits (at most 7), or relax a goal",
         )
     return Admittance(Fraction(pair[0]), Fraction(pair[1]), _spring(controller))

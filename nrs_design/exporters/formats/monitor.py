@@ -17,6 +17,7 @@ from nrs_design.exporters.program import Program, program_of
 from nrs_design.exporters.sector_numbers import sector_macros, sector_words
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
+from nrs_design.spec.axis import unit
 
 FORMAT = Format(
     "C99 that tells when a running loop first leaves its proof; takes the header of c",
@@ -164,11 +165,11 @@ def _limits(names: CNames, limits: MonitorLimits) -> Iterator[tuple[str, int | F
     """Yield the macro of each limit, its number, and what stands beside it."""
     up = f"{names.upper}_MONITOR"
     yield f"{up}_PERIOD", limits.period, "s"
-    yield f"{up}_TORQUE", limits.torque, "N*m, from the spec"
+    yield f"{up}_TORQUE", limits.torque, f"{unit('N*m')}, from the spec"
     if limits.command is not None:
         yield f"{up}_COMMAND", limits.command, "from the spec"
     if limits.speed is not None:
-        yield f"{up}_SPEED", limits.speed, "rad/s, over all axes, from the spec"
+        yield f"{up}_SPEED", limits.speed, f"{unit('rad/s')}, over all axes, from the spec"
     if limits.age is not None:
         least, most = limits.age
         yield f"{up}_YOUNGEST", least, "samples, from the spec"

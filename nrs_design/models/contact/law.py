@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass, fields
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -278,7 +278,13 @@ class AbstractLinearLaw(AbstractContactLaw):
         """Return the law and its parameters by the keys of a spec."""
         return {"model": self.name, **dict(zip(self.keys, self.values, strict=True))}
 
-    def texts(self) -> tuple[str, ...]:
-        """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero."""
+    def texts(self, unit: Callable[[str], str] = str) -> tuple[str, ...]:
+        """Return the parameters at the pivot, such as ``k = 43 N*m/rad``, without what is zero.
+
+        Parameters
+        ----------
+        unit : callable
+            Gives what is written for a unit of a rotation.
+        """
         parts = zip(self.parameters(), self.values, self.units(rotational=True), strict=True)
-        return tuple(f"{name} = {float(v):.6g} {unit}" for name, v, unit in parts if v)
+        return tuple(f"{name} = {float(v):.6g} {unit(said)}" for name, v, said in parts if v)

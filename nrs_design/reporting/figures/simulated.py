@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ import numpy as np
 
 from nrs_design.proof.bounds import upper
 from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
+from nrs_design.spec.axis import current, named, unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,24 +49,24 @@ def draw_simulated(
         level, covers = bound
         about = about if covers else "bound, not about this run"
         if level > _FAR * max(torque_limit, float(np.abs(torque).max())):
-            title = f"{about} {upper(Fraction(level), 4)} N m, beyond this scale"
+            title = f"{about} {upper(Fraction(level), 4)} {unit('N m')}, beyond this scale"
         else:
             bounds = tuple(sign * level for sign in signs)
-    deg = 180 / math.pi
-    scale, unit = (deg, "deg") if lever_arm is None else (1e3 * lever_arm, "mm")
+    deg = current().fine
+    scale, length = (deg, unit("deg")) if lever_arm is None else (1e3 * lever_arm, "mm")
     fastest = deg * velocity_limit
     panels = (
         Panel(
-            "Torque [N m]",
+            named("Torque [N m]"),
             (Curve(t, torque, "torque"),),
             tuple(sign * torque_limit for sign in signs),
             "limit of the spec",
             bounds=bounds,
             bound=about,
         ),
-        Panel(f"Deflection [{unit}]", (Curve(t, scale * response["depth"], "deflection"),)),
+        Panel(f"Deflection [{length}]", (Curve(t, scale * response["depth"], "deflection"),)),
         Panel(
-            "Velocity [deg/s]",
+            named("Velocity [deg/s]"),
             (
                 Curve(t, deg * response["velocity"], "of the axis"),
                 Curve(t, deg * response["hand"], "commanded", look=3),

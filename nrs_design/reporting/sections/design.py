@@ -22,6 +22,7 @@ from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.sections.titles import MOTION
 from nrs_design.reporting.sections.torque import torque_section
 from nrs_design.spec import InteractionDesignSpec
+from nrs_design.spec.axis import named, unit
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
@@ -43,6 +44,8 @@ _NO_OFFSET = (
 )
 
 
+# Of every axis the same.
+_FREQUENCIES = ("Closed-loop poles [rad/s]", "Natural frequency [rad/s]")
 _FORCE_ROWS: tuple[tuple[str, Callable[[ForceAnalysis], str]], ...] = (
     ("Kp [rad/(N·m)]", lambda item: number(item.loop.gain, 6)),
     (
@@ -196,13 +199,13 @@ def _motion_table(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
     wanted_Kp = wanted.derivative_gain * wanted.zero
     rows = (
         (
-            f"Kd [{design.command}·s/rad]",
+            f"Kd [{design.command}·s/{unit('rad')}]",
             number(wanted.derivative_gain, 6),
             number(float(motion.Kd), 6),
         ),
         ("Zero Kp/Kd [1/s]", number(wanted.zero, 6), number(float(motion.zero), 6)),
         (
-            f"Kp [{design.command}/rad]",
+            f"Kp [{design.command}/{unit('rad')}]",
             number(wanted_Kp, 6),
             number(float(motion.Kp), 6),
         ),
@@ -244,7 +247,7 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
 def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     tables = by_controller(
         "Force controllers, at nominal values",
-        [label for label, _ in _FORCE_ROWS],
+        [label if label in _FREQUENCIES else named(label) for label, _ in _FORCE_ROWS],
         [item.name for item in analysis.force],
         [
             [
@@ -279,7 +282,8 @@ def _force_locus(item: ForceAnalysis) -> Illustration:
     kept = ", with Ki/Kp kept" if item.approach.integral else ""
     caption = (
         f"Poles of the force loop of {item.name} while Kp grows from 0{kept}, at nominal stiffness "
-        f"{number(item.stiffness, 6)} N·m/rad. Diamonds: Kp = {number(item.loop.gain)} rad/(N·m)."
+        f"{number(item.stiffness, 6)} {unit('N·m/rad')}. Diamonds: Kp = {number(item.loop.gain)} "
+        f"{unit('rad/(N·m)')}."
     )
     figure = draw_root_locus(open_loop, gain, (), item.loop.poles)
     return Illustration(

@@ -21,6 +21,7 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
+from nrs_design.spec.axis import named, unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,10 +63,10 @@ def parallel_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
     )
     columns = (
         "Controller",
-        "Kp [rad/(N·m)]",
-        "Ki [rad/(N·m·s)]",
-        "Nominal stiffness [N·m/rad]",
-        "Unstable for k [N·m/rad]",
+        named("Kp [rad/(N·m)]"),
+        named("Ki [rad/(N·m·s)]"),
+        named("Nominal stiffness [N·m/rad]"),
+        named("Unstable for k [N·m/rad]"),
     )
     figure = _draw_parallel(analysis.motion, analysis.parallel)
     return Section(
@@ -96,7 +97,7 @@ def _draw_parallel(motion: TransferFunction, laws: Sequence[ParallelAnalysis]) -
     for law in laws:
         at = law.stiffness * np.array([float(law.Kp), float(law.Ki)])
         axes.plot([0, 10 * at[0]], [0, 10 * at[1]], color=MUTED, linewidth=1.0)
-        axes.plot(*at, "o", color=INK, label=f"{law.name} at {law.stiffness:.4g} N·m/rad")
+        axes.plot(*at, "o", color=INK, label=f"{law.name} at {law.stiffness:.4g} {unit('N·m/rad')}")
     axes.set_ylim(0.0, 1.1 * tallest)
     axes.set_xlim(left=0.0)
     axes.set(xlabel="k Kp [1]", ylabel="k Ki [1/s]")

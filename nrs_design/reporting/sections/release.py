@@ -19,6 +19,7 @@ from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.release import certified, simulate_release
+from nrs_design.spec.axis import current, named
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -142,11 +143,11 @@ def _panels(
     def limit(value: float, key: str) -> str:
         return linked(loaded, number(value), "limits", key)
 
-    torque, turn = outputs.largest_force, 180 / math.pi
+    torque, turn = outputs.largest_force, current().fine
     fastest = turn * outputs.largest_velocity
     panels = [
         (
-            BoundedSignal("Torque [N·m]", force * torque, torque, bound(outputs.force)),
+            BoundedSignal(named("Torque [N·m]"), force * torque, torque, bound(outputs.force)),
             limit(torque, "torque"),
         )
     ]
@@ -154,10 +155,13 @@ def _panels(
         values = turn * (run.state @ outputs.deflection)[:, None]
         edge = _turned(bound(outputs.deflection[None, :]))
         panels.append(
-            (BoundedSignal("Deflection [deg]", values, None, edge, one_sided=losable), "–")
+            (BoundedSignal(named("Deflection [deg]"), values, None, edge, one_sided=losable), "–")
         )
     speed = BoundedSignal(
-        "Velocity [deg/s]", fastest * velocity[:, None], fastest, _turned(bound(outputs.velocity))
+        named("Velocity [deg/s]"),
+        fastest * velocity[:, None],
+        fastest,
+        _turned(bound(outputs.velocity)),
     )
     return [*panels, (speed, limit(fastest, "velocity"))]
 
@@ -176,7 +180,7 @@ def _proved(certification: Certification) -> tuple[Array | None, float]:
 
 
 def _turned(values: Array | None) -> Array | None:
-    return None if values is None else np.asarray(180 / math.pi * values)
+    return None if values is None else np.asarray(current().fine * values)
 
 
 def _table(panels: Sequence[tuple[BoundedSignal, str]]) -> Table:

@@ -10,6 +10,7 @@ from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.style import BLUE, INK, MUTED, VERMILLION, legend, new_axes, styled
+from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,7 +46,9 @@ def stability_map_section(loaded: LoadedSpec, found: StabilityMap) -> Section:
     """
     verdicts = (Verdict.PROVED, Verdict.REFUTED)
     words = [
-        f"{name} [N·m/rad], {verdict}" for verdict in verdicts for name, _, _ in found.contacts
+        f"{name} [{unit('N·m/rad')}], {verdict}"
+        for verdict in verdicts
+        for name, _, _ in found.contacts
     ]
     rows = tuple(
         (

@@ -1,0 +1,30 @@
+"""The spec that a command is about."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from nrs_design.spec import LoadedSpec
+
+
+def take_spec(path: Path) -> LoadedSpec:
+    """Read a spec, and say everything until the end of the command about its axis.
+
+    Parameters
+    ----------
+    path : Path
+        Of the file.
+
+    Raises
+    ------
+    SpecError
+        If anything about the file is wrong.
+    """
+    from nrs_design.spec import read_spec
+    from nrs_design.spec.axis import take
+
+    loaded = read_spec(path)
+    take(getattr(loaded.spec, "axis", None))
+    return loaded

@@ -13,7 +13,7 @@ from nrs_design.certificates.people import contact_goals
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
-from nrs_design.spec.axis import axis_of
+from nrs_design.spec.axis import axis_with
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec
@@ -76,7 +76,7 @@ def _peak_torque(wanted: Fraction, text: str, certificate: Certificate | None) -
 def _effort(certificate: Certificate | None) -> str:
     """Return the unit of a force on the axis."""
     assert certificate is not None, "it holds a bound"
-    return axis_of(certificate.system.states).unit("N*m")
+    return axis_with(certificate.system.states).unit("N*m")
 
 
 def _decay_rate(wanted: Fraction, text: str, certificate: Certificate | None) -> CertifiedGoal:

@@ -27,6 +27,13 @@ class TemplateOption(StrEnum):
     ROBOT = "robot"
 
 
+class AxisOption(StrEnum):
+    """What the axis of an interaction design does."""
+
+    ROTARY = "rotary"
+    PRISMATIC = "prismatic"
+
+
 class DriveOption(StrEnum):
     """What the robot of an interaction design takes."""
 
@@ -49,6 +56,10 @@ def init(
             "velocities, positions or torques."
         ),
     ] = DriveOption.MOTOR,
+    axis: Annotated[
+        AxisOption,
+        typer.Option(help="Of an interaction-design with a motor: it turns, or it slides."),
+    ] = AxisOption.ROTARY,
     out: Annotated[
         Path | None, typer.Option(help="File to write; default TEMPLATE.nrs.yaml.")
     ] = None,
@@ -62,13 +73,21 @@ def init(
     Example: nrs-design init interaction-design --out my-robot.nrs.yaml
     """
     from nrs_design.output import write_output
-    from nrs_design.spec.templates import TEMPLATES
+    from nrs_design.spec.templates import PRISMATIC, TEMPLATES
 
     chosen = str(template)
     if drive is not DriveOption.MOTOR:
         if template is not TemplateOption.INTERACTION_DESIGN:
             raise typer.BadParameter("it is for interaction-design", param_hint="--drive")
         chosen = f"{drive}-interface"
+    if axis is AxisOption.PRISMATIC:
+        if chosen != TemplateOption.INTERACTION_DESIGN:
+            raise typer.BadParameter(
+                "it is for an interaction-design with a motor; in another, write "
+                "`axis: prismatic`, and quantities in m, N and kg",
+                param_hint="--axis",
+            )
+        chosen = PRISMATIC
     path = out or Path(f"{template}.nrs.yaml")
     if path.exists() and not force:
         raise OutputError("exists already", path=path, remedy="name another file, or add --force")

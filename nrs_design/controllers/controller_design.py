@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.drive import Takes, taken_in
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 
 # What lets the modes of all controllers share one state.
 SHARED_STATES = (
@@ -49,7 +49,7 @@ class ControllerDesign:
     controllers: tuple[Controller, ...]  # In the order of the spec
     sensor: Sensor = field(default_factory=Sensor)  # Of the force that they act on
     command: str = "rpm"  # Unit of the commands that the motor takes
-    axis: Axis = Axis.ROTARY  # Whose units the gains have
+    axis: AxisType = AxisType.ROTARY  # Whose units the gains have
 
     @property
     def takes(self) -> Takes | None:
@@ -101,4 +101,7 @@ class ControllerDesign:
         """The units of all gains, by the names of `laws`; the motion gains make commands."""
         motion, unit = self.motion.units_in(self.command), self.axis.unit
         each = {name: law.units for name, law in self.laws.items()} | {self.motion.name: motion}
-        return {name: {key: unit(u) for key, u in units.items()} for name, units in each.items()}
+        return {
+            name: {key: unit(each[name][key]) for key in law.gains}
+            for name, law in self.laws.items()
+        }

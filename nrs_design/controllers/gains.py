@@ -13,7 +13,7 @@ from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.controllers import contact_names
 
 MOTION = ProportionalDerivative.name
@@ -28,7 +28,7 @@ def gains_of(design: ControllerDesign) -> dict[str, dict[str, str]]:
 
 
 def units_of(
-    gains: Mapping[str, Mapping[str, str]], command: str, axis: Axis = Axis.ROTARY
+    gains: Mapping[str, Mapping[str, str]], command: str, axis: AxisType = AxisType.ROTARY
 ) -> dict[str, dict[str, str]]:
     """Return the units of gains that are named as `gains_of` names them.
 
@@ -38,7 +38,7 @@ def units_of(
         By controller and name; the PD is ``motion``.
     command : str
         Unit of the commands that the motor takes.
-    axis : Axis
+    axis : AxisType
         What they are about.
     """
     units = {gain: unit for law in LAWS.values() for gain, unit in law.units.items()}

@@ -18,7 +18,7 @@ from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 
 
 def shipped_law(
@@ -50,7 +50,7 @@ def shipped_law(
     laws = {c.name: _discrete(c, outer or period, method) for c in design.controllers}
     law = _step_law(spec, design, laws, period, outer or period)
     check_range(law)
-    law = _on_axis(_in_commands(law, design.command), design.axis)
+    law = _in_commands(_on_axis(law, design.axis), design.command)
     law = replace(law, logic=_logic_of(spec, law, period))
     return law if spec.safety is None else add_safety(law, SafetyLimits.of(spec.safety, period))
 
@@ -108,7 +108,7 @@ def _in_commands(law: StepLaw, command: str) -> StepLaw:
     return replace(law, units=units, coefficients=coefficients)
 
 
-def _on_axis(law: StepLaw, axis: Axis) -> StepLaw:
+def _on_axis(law: StepLaw, axis: AxisType) -> StepLaw:
     """Name the units of an axis where the law says those of one that turns."""
     inputs, states = (
         tuple(replace(v, unit=axis.unit(v.unit)) for v in values)

@@ -94,7 +94,7 @@ def _plant_parts(plant: Plant, design: ControllerDesign) -> tuple[LinearPart, Li
     """
     Km, tau, motion = plant.actuator.gain, plant.actuator.time_constant, design.motion
     loop = plant.motion_loop(motion.Kp, motion.Kd)
-    command, _, _ = design.units[motion.name]["Kp"].partition("/")
+    command = design.command
     return (
         _of_transfer(
             "actuator",

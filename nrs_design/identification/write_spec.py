@@ -24,7 +24,8 @@ from nrs_design.models.contact import (
     AbstractLinearLaw,
     HuntCrossley,
 )
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, Spec, parse_spec
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS
@@ -438,7 +439,24 @@ def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
             path=loaded.path,
             remedy="write into a spec of kind interaction-design",
         )
+    check_turning(loaded.spec, loaded.path)
     return loaded.spec
+
+
+def check_turning(spec: Spec, path: Path) -> None:
+    """Refuse a spec of an axis that slides: records are read as those of one that turns.
+
+    Raises
+    ------
+    SpecError
+        If it is one.
+    """
+    if spec.kind == "interaction-design" and spec.axis is AxisType.PRISMATIC:
+        raise SpecError(
+            "the axis is prismatic, and records are read as those of an axis that turns",
+            path=path,
+            remedy="identify without --write, and copy what is found in the units of the axis",
+        )
 
 
 def _environment(spec: InteractionDesignSpec, name: str | None, path: Path) -> str:

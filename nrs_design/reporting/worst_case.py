@@ -15,7 +15,7 @@ from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
-from nrs_design.spec.axis import current, named
+from nrs_design.spec.axis import current, labelled
 from nrs_design.spec.axis import unit as shown
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ def draw_worst(case: WorstCase, run: WorstRun, lever_arm: float | None) -> Figur
     if _COMMAND in names:
         command = current().fine * run.disturbances[:, names.index(_COMMAND)]
         held = np.append(command, command[-1:])[:, None]
-        panels.append(BoundedSignal(named("Command [deg/s]"), held, None, None))
+        panels.append(BoundedSignal(labelled("Command [deg/s]"), held, None, None))
     labels = [_controller(name) for name in _modes(case)]
     who = list(dict.fromkeys(labels))
     mode = np.array([who.index(labels[k]) for k in run.mode.tolist()], dtype=np.int64)

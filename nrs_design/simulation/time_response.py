@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 
 Array = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class Signal:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
-def on_axis(signals: Iterable[Signal], axis: Axis) -> tuple[Signal, ...]:
+def on_axis(signals: Iterable[Signal], axis: AxisType) -> tuple[Signal, ...]:
     """Return signals with the units of an axis, which are given as those of one that turns."""
     return tuple(replace(signal, unit=axis.unit(signal.unit)) for signal in signals)
 

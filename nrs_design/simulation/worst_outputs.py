@@ -15,7 +15,7 @@ from nrs_design.proof.channels import Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, deflected
-from nrs_design.spec.axis import axis_of
+from nrs_design.spec.axis import axis_with
 
 DEFLECTION = "deflection"
 _PUSHED = ("force", DEFLECTION)
@@ -65,7 +65,7 @@ def deflection_of(system: SwitchedSystem) -> Output | None:
     """
     from nrs_design.proof.matrix import RationalMatrix
 
-    axis = axis_of(system.states)
+    axis = axis_with(system.states)
     delta = axis.named("delta [rad]")
     if delta not in system.states:
         return None

@@ -35,6 +35,7 @@ _SLIDING: Mapping[str, str] = {
     "rad": "m",
     "rad/s": "m/s",
     "rad/s^2": "m/s^2",
+    "deg/s^2": "mm/s^2",
     "deg": "mm",
     "deg/s": "mm/s",
     "N*m": "N",
@@ -65,7 +66,7 @@ _OF_STATES: Mapping[str, str] = {"m": "rad", "m/s": "rad/s", "N": "N*m"}
 _STYLES = (("*", "^2"), (" ", "^2"), ("\N{MIDDLE DOT}", "\N{SUPERSCRIPT TWO}"))
 
 
-class Axis(StrEnum):
+class AxisType(StrEnum):
     """What an axis does."""
 
     ROTARY = "rotary"
@@ -86,7 +87,7 @@ class Axis(StrEnum):
         """
         if turning not in _every():
             raise InternalError(f"{turning!r} is no unit of an axis")
-        return turning if self is Axis.ROTARY else _every()[turning]
+        return turning if self is AxisType.ROTARY else _every()[turning]
 
     def named(self, text: str) -> str:
         """Return a name with its unit in brackets, such as ``vm [rad/s]``, on this axis."""
@@ -103,14 +104,14 @@ class Axis(StrEnum):
             With its unit in brackets, such as ``delta [m]``.
         """
         name, opened, rest = text.partition(" [")
-        if self is Axis.ROTARY or not opened:
+        if self is AxisType.ROTARY or not opened:
             return text
         return f"{name}{opened}{_OF_STATES[rest[:-1]]}]"
 
     @property
     def fine(self) -> float:
         """How many deg, or mm, are in a unit of its position."""
-        return 180 / math.pi if self is Axis.ROTARY else 1000.0
+        return 180 / math.pi if self is AxisType.ROTARY else 1000.0
 
 
 @cache
@@ -124,7 +125,7 @@ def _every() -> Mapping[str, str]:
     return found
 
 
-def axis_of(states: Iterable[str]) -> Axis:
+def axis_with(states: Iterable[str]) -> AxisType:
     """Return the axis whose states have these names: one that slides, if one of them is in m.
 
     Parameters
@@ -133,14 +134,14 @@ def axis_of(states: Iterable[str]) -> Axis:
         Names with units.
     """
     units = {text.partition(" [")[2] for text in states}
-    return Axis.PRISMATIC if units & {"m]", "m/s]"} else Axis.ROTARY
+    return AxisType.PRISMATIC if units & {"m]", "m/s]"} else AxisType.ROTARY
 
 
 # Of the spec that is read, designed or shown: a sentence about a gain need not be handed its unit.
-_CURRENT: ContextVar[Axis] = ContextVar("axis", default=Axis.ROTARY)
+_CURRENT: ContextVar[AxisType] = ContextVar("axis", default=AxisType.ROTARY)
 
 
-def current() -> Axis:
+def current() -> AxisType:
     """Return the axis that quantities and words are about, of `about`; else one that turns."""
     return _CURRENT.get()
 
@@ -150,20 +151,20 @@ def unit(turning: str) -> str:
     return current().unit(turning)
 
 
-def named(text: str) -> str:
+def labelled(text: str) -> str:
     """Return a label with its unit in brackets, on the `current` axis."""
     return current().named(text)
 
 
-def take(axis: object) -> Token[Axis]:
+def take(axis: object) -> Token[AxisType]:
     """Take an axis for the `current` one until `about`, within which this is called, ends.
 
     Parameters
     ----------
     axis : object
-        What a spec says, or an `Axis`; what is none is taken for one that turns.
+        What a spec says, or an `AxisType`; what is none is taken for one that turns.
     """
-    return _CURRENT.set(Axis(str(axis)) if axis in [*Axis] else Axis.ROTARY)
+    return _CURRENT.set(AxisType(str(axis)) if axis in [*AxisType] else AxisType.ROTARY)
 
 
 @contextmanager
@@ -173,7 +174,7 @@ def about(axis: object) -> Iterator[None]:
     Parameters
     ----------
     axis : object
-        What a spec says, or an `Axis`.
+        What a spec says, or an `AxisType`.
     """
     token = take(axis)
     try:

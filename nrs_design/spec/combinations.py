@@ -82,10 +82,6 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     *_beside(
         FORCE_COORDINATES,
         LOSABLE,
-        MODE_LOGIC,
-        REGIONS,
-        SLIDING,
-        TOOL,
         SPRUNG,
         DISTURBED,
         HAND,

@@ -20,7 +20,7 @@ from nrs_design.models.contact import (
 )
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
-from nrs_design.spec.axis import Axis, current
+from nrs_design.spec.axis import AxisType, current
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title
@@ -83,7 +83,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
         *IdentifiedRangesSpec.checks,
         Row(
             "lever_arm",
-            lambda s: s.lever_arm is not None and current() is Axis.PRISMATIC,
+            lambda s: s.lever_arm is not None and current() is AxisType.PRISMATIC,
             "the axis is prismatic, and has no pivot to be at a distance from",
             "remove lever_arm",
         ),
@@ -93,7 +93,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
                 "",
                 lambda x: (
                     x[1] is None
-                    and current() is Axis.ROTARY
+                    and current() is AxisType.ROTARY
                     and is_translational(x[0].nominal)
                     and x[0].nominal.text
                 ),
@@ -298,7 +298,7 @@ class HuntCrossleySpec(AbstractEnvironmentSpec):
     def _of_other_kind(self) -> tuple[str, str, str] | None:
         """Return a deflection that is a length without a lever arm, or an angle with one."""
         of_length = kinds.LENGTH.accepts(self.about.dimension)
-        if current() is Axis.PRISMATIC or of_length == (self.lever_arm is not None):
+        if current() is AxisType.PRISMATIC or of_length == (self.lever_arm is not None):
             return None
         found = "a length", "there is no lever_arm"
         return self.about.text, *(found if of_length else ("an angle", "a lever_arm is given"))

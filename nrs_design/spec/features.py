@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 from typing import NamedTuple
 
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.check import Feature
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec
@@ -363,7 +363,7 @@ SLIDING = _F(
     "a prismatic axis",
     "axis",
     "write `axis: rotary`",
-    lambda s: s.axis is Axis.PRISMATIC,
+    lambda s: s.axis is AxisType.PRISMATIC,
 )
 MODE_LOGIC = _F("mode_logic", "mode_logic", "leave mode_logic out", _given("mode_logic"))
 REGIONS = _F(

@@ -11,7 +11,7 @@ from pydantic import Discriminator, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
 from nrs_design.models.drive import COMMANDS, Takes
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,
@@ -73,8 +73,8 @@ class AbstractInteractionSpec(SpecModel):
     kind: Literal["interaction-design"] = Field(description="what this file describes")
     name: Name = Field(description="short name: lower-case letters, digits, '.', '_', '-'")
     title: Title = Field(default="", description="one line for people, at most 200 characters")
-    axis: Axis = Field(
-        default=Axis.ROTARY,
+    axis: AxisType = Field(
+        default=AxisType.ROTARY,
         description="rotary: it turns about a pivot, in rad, N*m and kg*m^2; prismatic: it slides, "
         "in m, N and kg wherever a rotary one has those",
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from nrs_design.models.contact.law import AbstractNonlinearLaw
-    from nrs_design.spec.axis import Axis
+    from nrs_design.spec.axis import AxisType
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
     from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.gain_fields import GainSpec
@@ -28,7 +28,7 @@ class OperatingConditions:
     """Processor, switching, contact and bounds of a loop; numbers are exact and in SI units."""
 
     name: str  # Of the spec
-    axis: Axis  # Whose units its numbers have
+    axis: AxisType  # Whose units its numbers have
     switching: SwitchingSpec
     contact: Literal["losable", "kept"] | None  # None: losable where that can be proved
     idle: IdleStatesSpec | None  # What idle states do

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
 from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit, respelt
 
@@ -108,9 +108,9 @@ class QuantityKind:
     # What it is on an axis that slides; None where that does not matter.
     sliding: QuantityKind | None = None
 
-    def on(self, axis: Axis) -> QuantityKind:
+    def on(self, axis: AxisType) -> QuantityKind:
         """Return what the field measures on an axis."""
-        return self if axis is Axis.ROTARY else self.sliding or self
+        return self if axis is AxisType.ROTARY else self.sliding or self
 
     @property
     def si_unit(self) -> str:

@@ -13,7 +13,7 @@ from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
@@ -194,9 +194,9 @@ def assemble(
     return _on_axis(replace(system, assumptions=texts), spec.axis)
 
 
-def _on_axis(system: SwitchedSystem, axis: Axis) -> SwitchedSystem:
+def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
     """Name the units of an axis in the place of those of one that turns; no number changes."""
-    if axis is Axis.ROTARY:
+    if axis is AxisType.ROTARY:
         return system
     channels = tuple(replace(c, unit=axis.unit(c.unit)) for c in system.channels)
     outputs = tuple(replace(o, unit=axis.unit(o.unit)) for o in system.outputs)

@@ -14,7 +14,7 @@ from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.saturation import Governed
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter
@@ -91,7 +91,7 @@ def contact_texts(design: ControllerDesign) -> Iterator[Assumption]:
             yield say("contacts.controller", bound, controller=c.name, contacts=contacts)
 
 
-def ranges_text(environments: Iterable[Environment], axis: Axis) -> str:
+def ranges_text(environments: Iterable[Environment], axis: AxisType) -> str:
     """Say in which ranges the parameters of environments are."""
     return "; ".join(
         f"{environment.name}: {name} in {_ends(interval)} {axis.unit(unit)}"
@@ -102,7 +102,7 @@ def ranges_text(environments: Iterable[Environment], axis: Axis) -> str:
     )
 
 
-def motor_text(ranges: ActuatorRanges, axis: Axis) -> str:
+def motor_text(ranges: ActuatorRanges, axis: AxisType) -> str:
     """Say where gain and time constant of the motor are."""
     texts = (
         f"its {name} {interval_text(interval)} {unit}"
@@ -156,7 +156,7 @@ def scale_texts(scale: Fraction) -> tuple[Assumption, ...]:
     return () if scale == 1 else (say("range.scaled", scale=scale),)
 
 
-def command_texts(command: str, axis: Axis) -> Iterator[Assumption]:
+def command_texts(command: str, axis: AxisType) -> Iterator[Assumption]:
     """Say in which unit the motor is commanded, where it is not the rpm of the thesis."""
     if command != THESIS_COMMAND:
         yield say("command-unit.unit", unit=command, per=axis.unit("rad"))
@@ -220,7 +220,7 @@ def preload_texts(preloads: Mapping[str, Preload], scale: Fraction) -> Iterator[
 
 
 def sensor_texts(
-    sensor: Sensor, period: Fraction | None, *, disturbed: bool, axis: Axis
+    sensor: Sensor, period: Fraction | None, *, disturbed: bool, axis: AxisType = AxisType.ROTARY
 ) -> Iterator[Assumption]:
     """Say how the law gets the force, and what a proof leaves out of its errors.
 
@@ -232,7 +232,7 @@ def sensor_texts(
         Of the processor in s, where there is one.
     disturbed : bool
         Whether bounds on disturbances are stated.
-    axis : Axis
+    axis : AxisType
         What they are about.
     """
     if sensor.filter is not None:

@@ -15,7 +15,7 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import GainSpec
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 
@@ -67,7 +67,7 @@ class GainBox:
                 )
         return GainBox(self.law, ranges)
 
-    def range_texts(self, name: str, axis: Axis) -> tuple[Assumption, ...]:
+    def range_texts(self, name: str, axis: AxisType) -> tuple[Assumption, ...]:
         """Say where the gains of a controller of that name may be, if they have ranges."""
         return tuple(
             say(

@@ -11,7 +11,7 @@ from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import motor_text
 from nrs_design.switched.parameter_box import Box
@@ -55,7 +55,7 @@ class Joint:
         gains = self.motion.Kp, self.motion.Kd
         return JointMotionLoop(*gains, values["Km"], values["tau"], self.load_inertia)
 
-    def texts(self, axis: Axis) -> Iterator[Assumption]:
+    def texts(self, axis: AxisType) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
         moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
         motor = motor_text(self.ranges, axis)

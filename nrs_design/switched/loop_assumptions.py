@@ -12,7 +12,7 @@ from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.controllers import Command
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import (
@@ -186,7 +186,7 @@ def _switch_texts(loop: SharedState, rules: SwitchingSpec) -> Iterator[Assumptio
         yield say("any-signal.environment")
 
 
-def _gain_texts(boxes: Mapping[str, GainBox], command: str, axis: Axis) -> Iterator[Assumption]:
+def _gain_texts(boxes: Mapping[str, GainBox], command: str, axis: AxisType) -> Iterator[Assumption]:
     ranged = {name: box for name, box in boxes.items() if not box.fixed}
     yield say("numbers.gains", where=", or anywhere in their ranges" if ranged else "")
     yield from command_texts(command, axis)

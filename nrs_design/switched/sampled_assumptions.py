@@ -14,7 +14,7 @@ from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive, Takes
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.axis import Axis
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import Assumption, say
@@ -141,7 +141,7 @@ def _late_texts(timing: CommandTiming) -> Iterator[Assumption]:
         yield say("command-age.range", f"{earliest} s to {late} s", earliest=earliest, late=late)
 
 
-def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: Axis) -> Assumption:
+def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumption:
     motor, tau, timing = motor_text(ranges, axis), ranges.time_constant, frame.timing
     corner = "a corner of that, of no motor of the range"
     if timing.varies:
@@ -163,7 +163,7 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: Axis) -> Assumption:
     )
 
 
-def _drive_text(drive: Drive, moving: str, axis: Axis) -> Assumption:
+def _drive_text(drive: Drive, moving: str, axis: AxisType) -> Assumption:
     """Say how a robot moves that has no motor of the user's."""
     if drive.takes is Takes.TORQUE:
         inertia = f"{interval_text(drive.ranges['J'])} {axis.unit('kg*m^2')}"
@@ -222,7 +222,7 @@ def _retuned_texts(gains: Mapping[str, RangedLaw]) -> Iterator[Assumption]:
         yield say("at-a-switch.sampled-retuned")
 
 
-def _angle_text(angle: Fraction | None, axis: Axis) -> Assumption:
+def _angle_text(angle: Fraction | None, axis: AxisType) -> Assumption:
     if angle is None:
         return say("arithmetic.angles-left-out")
     largest = rounded_down(angle, axis.unit("rad"))

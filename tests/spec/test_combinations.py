@@ -12,6 +12,7 @@ from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec import features as f
+from nrs_design.spec.axis import AxisType
 from nrs_design.spec.check import Row
 from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS
@@ -145,6 +146,40 @@ CHANGES = {
             "time_constant": {"nominal": "0.03 s", "range": ["0.029 s", "0.031 s"]}
         },
     },
+    f.SLIDING: {"axis": "prismatic"},
+    f.MODE_LOGIC: {
+        "mode_logic": {
+            "type": "thresholds",
+            "start": "first",
+            "signals": {
+                "command": {"noise": "0.1 deg/s", "age": "4 ms", "largest_rate": "40 deg/s^2"}
+            },
+            "switches": [
+                {"from": "first", "to": "second", "command": {"below": "-0.5 deg/s"}},
+                {"from": "second", "to": "first", "command": {"above": "0.5 deg/s"}},
+            ],
+        }
+    },
+    f.REGIONS: {
+        "limits": {
+            "contact": [
+                {
+                    "name": "hand",
+                    "source": "an example",
+                    "lever_arm": "0.2 m",
+                    "quasi_static_force": "140 N",
+                    "environment": "soft",
+                }
+            ]
+        }
+    },
+    f.TOOL: {
+        "sensor": {
+            "tool": {"mass": "70 g", "center_of_mass": {"x": "0 m", "y": "0 m", "z": "20 mm"}},
+            "pose_error": "1 deg",
+            "pivot": {"x": "0 m", "y": "0 m", "z": "-0.1 m"},
+        }
+    },
     f.TORQUES: {
         "actuator": None,
         "motion_loop": None,
@@ -171,12 +206,23 @@ def merged(tree, changes):
     return kept | {key: merged(tree.get(key), value) for key, value in given.items()}
 
 
+def slid(value):
+    """The same numbers of an axis that slides."""
+    if isinstance(value, dict):
+        return {key: slid(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [slid(item) for item in value]
+    number, _, unit = str(value).partition(" ")
+    turning = unit.startswith(("N*m", "rad", "deg", "kg*m", "rpm*s"))
+    return f"{number} {AxisType.PRISMATIC.unit(unit)}" if turning else value
+
+
 def spec_with(*features):
     tree = BASE
     for feature, changes in CHANGES.items():
         if feature in features:
             tree = merged(tree, changes)
-    return json.dumps(tree, indent=1)
+    return json.dumps(slid(tree) if f.SLIDING in features else tree, indent=1)
 
 
 def test_every_feature_has_its_change():

@@ -35,6 +35,7 @@ def test_what_enters_a_proof_has_no_factor_of_pi():
         "ANGULAR_VELOCITY",
         "BANDWIDTH",
         "DEFLECTION",
+        "PHASE",
     }
     with pytest.raises(SpecError, match="pi"):
         parse_quantity("3 N*mm/deg", kinds.STIFFNESS)

@@ -7,7 +7,7 @@ from nrs_design.spec import RobotSpec, load_spec, parse_spec
 from nrs_design.spec.interaction import InteractionDesignSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import parse_dwell_time
-from nrs_design.spec.templates import INTERFACES, TEMPLATES
+from nrs_design.spec.templates import INTERFACES, PRISMATIC, TEMPLATES
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -72,7 +72,7 @@ def test_goals_of_the_templates_are_right() -> None:
         assert len(dict(spec.goals.given())) == count
 
 
-@pytest.mark.parametrize("name", [name for name in TEMPLATES if name not in ("robot", *INTERFACES)])
+@pytest.mark.parametrize("name", sorted({*TEMPLATES} - {"robot", *INTERFACES, PRISMATIC}))
 def test_dwell_time_of_the_template_is_right(name: str) -> None:
     shown = re.search("^# +dwell_time: (.*?) +#", TEMPLATES[name], re.MULTILINE)
     assert shown

@@ -70,10 +70,12 @@ def audit(
     """
     from nrs_design.identification.running import judge_run, read_run, read_run_bounds
     from nrs_design.identification.running.bounds import parse_command_limit
+    from nrs_design.identification.write_spec import check_turning
     from nrs_design.spec import read_spec
 
     outputs = Destinations.checked(None, report, date)
     loaded = read_spec(spec)
+    check_turning(loaded.spec, loaded.path)
     bounds = read_run_bounds(loaded)
     limit = None if command_limit is None else parse_command_limit(command_limit, bounds.command)
     reason, losable = _proof_of(certificate, loaded)

@@ -10,7 +10,7 @@ import numpy as np
 
 from nrs_design.proof.bounds import upper
 from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
-from nrs_design.spec.axis import current, named, unit
+from nrs_design.spec.axis import current, labelled, unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,7 +57,7 @@ def draw_simulated(
     fastest = deg * velocity_limit
     panels = (
         Panel(
-            named("Torque [N m]"),
+            labelled("Torque [N m]"),
             (Curve(t, torque, "torque"),),
             tuple(sign * torque_limit for sign in signs),
             "limit of the spec",
@@ -66,7 +66,7 @@ def draw_simulated(
         ),
         Panel(f"Deflection [{length}]", (Curve(t, scale * response["depth"], "deflection"),)),
         Panel(
-            named("Velocity [deg/s]"),
+            labelled("Velocity [deg/s]"),
             (
                 Curve(t, deg * response["velocity"], "of the axis"),
                 Curve(t, deg * response["hand"], "commanded", look=3),

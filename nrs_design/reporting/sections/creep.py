@@ -10,7 +10,7 @@ from nrs_design.proof.bounds import upper
 from nrs_design.reporting.document import Bullets, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
-from nrs_design.spec.axis import Axis, current, named
+from nrs_design.spec.axis import AxisType, current, labelled
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis
@@ -38,10 +38,10 @@ def creep_section(designed: Designed, analysis: DesignAnalysis) -> Section | Non
     share = designed.spec.limits.velocity.si
     columns = (
         "Controller",
-        named("Creep, at most [deg/s]"),
+        labelled("Creep, at most [deg/s]"),
         "Part of the largest command [%]",
-        named("Way, at most [deg]"),
-        named("Noise of the velocity, rms [deg/s]"),
+        labelled("Way, at most [deg]"),
+        labelled("Noise of the velocity, rms [deg/s]"),
     )
     rows = tuple(
         tuple(linked(designed.loaded, cell, "controllers", item.name) for cell in _row(item, share))
@@ -56,7 +56,7 @@ def creep_section(designed: Designed, analysis: DesignAnalysis) -> Section | Non
 
 
 def _errors(loaded: LoadedSpec, sensor: Sensor) -> Table:
-    columns: tuple[str, ...] = ("What lasts", named("Torque about the pivot, at most [N·m]"))
+    columns: tuple[str, ...] = ("What lasts", labelled("Torque about the pivot, at most [N·m]"))
     if sensor.arm:
         columns = (*columns, "As a force at the contact point [N]")
     errors = {**sensor.errors, "together, F0": sensor.lasting}
@@ -76,7 +76,7 @@ def _errors(loaded: LoadedSpec, sensor: Sensor) -> Table:
 def _row(item: ImpedanceAnalysis, largest: float) -> tuple[str, ...]:
     creep = item.creep
     assert creep is not None
-    fine = _DEGREES if current() is Axis.ROTARY else Fraction(1000)
+    fine = _DEGREES if current() is AxisType.ROTARY else Fraction(1000)
     angle = "grows as long as it lasts" if creep.angle is None else upper(creep.angle * fine, 4)
     part = 100 * float(creep.velocity) / largest
     noise = "–" if creep.noise is None else number(current().fine * creep.noise, 3)

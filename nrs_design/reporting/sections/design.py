@@ -22,7 +22,7 @@ from nrs_design.reporting.sections.places import At, linked
 from nrs_design.reporting.sections.titles import MOTION
 from nrs_design.reporting.sections.torque import torque_section
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.axis import named, unit
+from nrs_design.spec.axis import labelled, unit
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ForceAnalysis
@@ -247,7 +247,7 @@ def _motion_locus(designed: Designed, analysis: DesignAnalysis, wanted: PdDesign
 def _force_section(designed: Designed, analysis: DesignAnalysis) -> Section:
     tables = by_controller(
         "Force controllers, at nominal values",
-        [label if label in _FREQUENCIES else named(label) for label, _ in _FORCE_ROWS],
+        [label if label in _FREQUENCIES else labelled(label) for label, _ in _FORCE_ROWS],
         [item.name for item in analysis.force],
         [
             [

@@ -35,7 +35,7 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.spec.axis import named
+from nrs_design.spec.axis import labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -153,7 +153,7 @@ def impedance_section(designed: Designed, items: tuple[ImpedanceAnalysis, ...]) 
     rows = [(label, values) for label, values in rows if any(values)]
     tables = by_controller(
         "Impedance controllers: gains, and the worst over the ranges",
-        [named(label) for label, _ in rows],
+        [labelled(label) for label, _ in rows],
         [item.name for item in items],
         [list(column) for column in zip(*(values for _, values in rows), strict=True)],
     )
@@ -289,7 +289,7 @@ def _draw_displayed_impedance(items: Sequence[ImpedanceAnalysis]) -> Figure:
             label=f"{item.name}, within a factor of {factor:.3g}",
         )
     axes.set_ylim(low, None)
-    _finish(axes, items, named("Impedance magnitude [N·m·s/rad]"))
+    _finish(axes, items, labelled("Impedance magnitude [N·m·s/rad]"))
     legend(figure, axes)
     return figure
 

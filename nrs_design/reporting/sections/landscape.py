@@ -24,7 +24,7 @@ from nrs_design.reporting.style import (
     settle,
     styled,
 )
-from nrs_design.spec.axis import named
+from nrs_design.spec.axis import labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -144,8 +144,8 @@ def _table(loaded: LoadedSpec, item: ImpedanceAnalysis) -> Table:
     )
     columns = (
         "Gains",
-        named("Mt [kg·m²]"),
-        named("Bt [N·m·s/rad]"),
+        labelled("Mt [kg·m²]"),
+        labelled("Bt [N·m·s/rad]"),
         "Cost [1]",
         "Off the desired impedance, mean [decades]",
         "Mean sensitivity [1]",
@@ -186,8 +186,8 @@ def draw_cost(item: ImpedanceAnalysis, found: CostMap) -> Figure:
         place = max(Mt, float(found.Mt[0]))
         axes.plot(place, Bt, shape, markersize=size, color=tint, mec=INK, ls="none", label=label)
     axes.set(
-        xlabel=named("Virtual mass Mt [kg·m²]"),
-        ylabel=named("Virtual damping Bt [N·m·s/rad]"),
+        xlabel=labelled("Virtual mass Mt [kg·m²]"),
+        ylabel=labelled("Virtual damping Bt [N·m·s/rad]"),
         xlim=(found.Mt[0], found.Mt[-1]),
         ylim=(found.Bt[0], found.Bt[-1]),
     )
@@ -262,7 +262,7 @@ def _draw_delay_borne(items: Sequence[ImpedanceAnalysis], sampled: float | None)
         xscale="log",
         ylim=(0, _TALLEST / 4 * max(*shown, 1e-3) + 1e3 * (sampled or 0)),
         xlim=(stiffness[0], stiffness[-1]),
-        xlabel=named("Stiffness of the contact [N·m/rad]"),
+        xlabel=labelled("Stiffness of the contact [N·m/rad]"),
         ylabel="Dead time that destabilizes [ms]",
     )
     legend(figure, axes)

@@ -21,7 +21,7 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.spec.axis import named, unit
+from nrs_design.spec.axis import labelled, unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -63,10 +63,10 @@ def parallel_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
     )
     columns = (
         "Controller",
-        named("Kp [rad/(N·m)]"),
-        named("Ki [rad/(N·m·s)]"),
-        named("Nominal stiffness [N·m/rad]"),
-        named("Unstable for k [N·m/rad]"),
+        labelled("Kp [rad/(N·m)]"),
+        labelled("Ki [rad/(N·m·s)]"),
+        labelled("Nominal stiffness [N·m/rad]"),
+        labelled("Unstable for k [N·m/rad]"),
     )
     figure = _draw_parallel(analysis.motion, analysis.parallel)
     return Section(

@@ -19,7 +19,7 @@ from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.release import certified, simulate_release
-from nrs_design.spec.axis import current, named
+from nrs_design.spec.axis import current, labelled
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result
@@ -147,7 +147,7 @@ def _panels(
     fastest = turn * outputs.largest_velocity
     panels = [
         (
-            BoundedSignal(named("Torque [N·m]"), force * torque, torque, bound(outputs.force)),
+            BoundedSignal(labelled("Torque [N·m]"), force * torque, torque, bound(outputs.force)),
             limit(torque, "torque"),
         )
     ]
@@ -155,10 +155,13 @@ def _panels(
         values = turn * (run.state @ outputs.deflection)[:, None]
         edge = _turned(bound(outputs.deflection[None, :]))
         panels.append(
-            (BoundedSignal(named("Deflection [deg]"), values, None, edge, one_sided=losable), "–")
+            (
+                BoundedSignal(labelled("Deflection [deg]"), values, None, edge, one_sided=losable),
+                "–",
+            )
         )
     speed = BoundedSignal(
-        named("Velocity [deg/s]"),
+        labelled("Velocity [deg/s]"),
         fastest * velocity[:, None],
         fastest,
         _turned(bound(outputs.velocity)),

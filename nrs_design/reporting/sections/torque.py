@@ -19,7 +19,7 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.spec.axis import named
+from nrs_design.spec.axis import labelled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,10 +56,10 @@ def torque_section(loaded: LoadedSpec, analysis: DesignAnalysis) -> Section:
     )
     columns = (
         "Controller",
-        named("K [N·m/rad]"),
-        named("B [N·m·s/rad]"),
-        named("Stable in the air below [N·m/rad]"),
-        named("Passive, margin [N·m·s/rad]"),
+        labelled("K [N·m/rad]"),
+        labelled("B [N·m·s/rad]"),
+        labelled("Stable in the air below [N·m/rad]"),
+        labelled("Passive, margin [N·m·s/rad]"),
     )
     return Section(
         "Impedance by torques",
@@ -94,8 +94,8 @@ def draw_borders(items: Sequence[TorqueAnalysis]) -> Figure:
     for item in items:
         axes.plot(item.B, item.Kp, "o", color=INK)
         axes.annotate(item.name, (item.B, item.Kp), xytext=(5, 5), textcoords="offset points")
-    axes.set_xlabel(named("damping B [N m s/rad]"))
-    axes.set_ylabel(named("stiffness K [N m/rad]"))
+    axes.set_xlabel(labelled("damping B [N m s/rad]"))
+    axes.set_ylabel(labelled("stiffness K [N m/rad]"))
     axes.set_xlim(0, widest)
     axes.set_ylim(0, None)
     legend(figure, axes, 2)

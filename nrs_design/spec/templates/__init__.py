@@ -8,7 +8,16 @@ from types import MappingProxyType
 
 # Interaction designs of robots that take velocities, positions and torques.
 INTERFACES = tuple(f"{taken}-interface" for taken in ("velocity", "position", "torque"))
-_NAMES = ("interaction-design", *INTERFACES, "hybrid-force", "switched-system", "robot")
+# One of an axis that slides.
+PRISMATIC = "prismatic-axis"
+_NAMES = (
+    "interaction-design",
+    *INTERFACES,
+    PRISMATIC,
+    "hybrid-force",
+    "switched-system",
+    "robot",
+)
 
 
 def _read(name: str) -> str:

@@ -1,0 +1,89 @@
+"""The units of an axis, and which axis words are about."""
+
+import pytest
+
+from nrs_design.controllers.laws import LAWS
+from nrs_design.errors import InternalError, SpecError
+from nrs_design.spec import parse_spec
+from nrs_design.spec.axis import AxisType, about, axis_with, current, labelled, unit
+from nrs_design.spec.templates import PRISMATIC, TEMPLATES
+from nrs_design.spec.units import parse_unit
+
+SLIDE = AxisType.PRISMATIC
+TEXT = TEMPLATES[PRISMATIC]
+
+
+@pytest.mark.parametrize(
+    ("turning", "sliding"),
+    [
+        ("N*m/rad", "N/m"),
+        ("N m s/rad", "N s/m"),
+        ("kg·m²", "kg"),
+        ("rad/(N·m)", "m/N"),
+        ("rad/s/V", "m/s/V"),
+        ("counts*s/rad", "counts*s/m"),
+        ("deg/s", "mm/s"),
+        ("", ""),
+    ],
+)
+def test_units_are_those_without_the_lever(turning, sliding):
+    assert SLIDE.unit(turning) == sliding
+    assert AxisType.ROTARY.unit(turning) == turning
+
+
+def test_every_gain_of_a_law_has_a_unit_on_both():
+    for law in LAWS.values():
+        for said in law.units.values():
+            dimension = parse_unit(SLIDE.unit(said)).dimension
+            # No radian is left.
+            assert dimension[3] == 0
+
+
+def test_a_unit_that_nobody_knows_is_never_passed_on():
+    with pytest.raises(InternalError, match="no unit of an axis"):
+        SLIDE.unit("N*m*rad")
+
+
+def test_states_carry_their_axis():
+    assert SLIDE.named("vm [rad/s]") == "vm [m/s]"
+    assert SLIDE.named("k limit [N·m/rad], worst") == "k limit [N/m], worst"
+    assert SLIDE.named("xp2") == "xp2"
+    assert SLIDE.turning("delta [m]") == "delta [rad]"
+    assert axis_with(["e [m]", "omega [m/s]"]) is SLIDE
+    assert axis_with(["e [rad]", "F 1 before [N*m]"]) is AxisType.ROTARY
+
+
+def test_words_are_about_one_axis_at_a_time():
+    assert unit("N*m") == "N*m"
+    with about("prismatic"):
+        assert (unit("N*m"), labelled("Torque [N m]"), current().fine) == ("N", "Torque [N]", 1000)
+        with about(AxisType.ROTARY):
+            assert unit("N*m") == "N*m"
+        with about({"no": "axis"}):
+            assert current() is AxisType.ROTARY
+        assert current() is SLIDE
+    assert current() is AxisType.ROTARY
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("20 mm/s ", "8 deg/s ", "m/s"),
+        ("1 N ", "0.3 N*m ", "the axis is prismatic: write it in N, such as"),
+        ("Mt: 0.2 kg", "Mt: 0.01 kg*m^2", "the axis is prismatic: write it in kg"),
+        ("{min: 5 N*s/m, max", "{min: 1 N*m*s/rad, max", "the axis is prismatic"),
+        ("range: [450 N/m", "range: [43 N*m/rad", "the axis is prismatic"),
+        ("range: [450 N/m, 550 N/m]}", "range: [450 N/m, 550 N/m]}\n    lever_arm: 0.2 m", "pivot"),
+        ("1.1667e-4 m/s/rpm", "4.8417e-4 rad/s/rpm", "the axis is prismatic"),
+        ("axis: prismatic ", "axis: rotary ", "N*m"),
+        ("axis: prismatic ", "axis: turning ", "rotary"),
+        ("contact: losable", "coupling: {axes: 3, inertia: [1 kg, 2 kg]}", "coupling"),
+    ],
+)
+def test_quantities_of_the_other_axis_are_refused_with_a_remedy(old, new, what):
+    assert old in TEXT
+    with pytest.raises(SpecError) as caught:
+        parse_spec(TEXT.replace(old, new, 1))
+    faults = caught.value.faults or (caught.value,)
+    assert what in " ".join(f"{fault.message} {fault.remedy}" for fault in faults)
+    assert all(fault.remedy for fault in faults)

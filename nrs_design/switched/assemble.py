@@ -23,11 +23,11 @@ from nrs_design.switched.assumptions import (
     scale_texts,
     sensor_texts,
 )
+from nrs_design.switched.constant_parameters import with_constants
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import (
+    constant_parameters,
     corner_modes,
-    fixed_ends,
-    fixed_parameter,
     read_parameters,
 )
 
@@ -101,22 +101,19 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     """
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
-    constant = fixed_parameter(parameters)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}
     groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
     modes = tuple(chain.from_iterable(corners.values()))
-    return SwitchedSystem(
+    system = SwitchedSystem(
         spec.name,
         Time(spec.time),
         tuple(f"x{i + 1}" for i in range(spec.dimension)),
         modes,
         assume_matrices(spec, parameters, scale),
-        replace(
-            assemble_switching(spec.switching, groups, resets, fixed_ends(modes, constant)),
-            fixed_parameter=constant,
-        ),
+        assemble_switching(spec.switching, groups, resets),
     )
+    return with_constants(system, constant_parameters(parameters))
 
 
 def assemble(

@@ -149,7 +149,7 @@ def test_where_the_environment_does_not_act_nothing_pulls():
     assert Said().claim(slack).endswith(f"{pulling}.")
     assert not Said().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
     for share, tail in (("0", "."), ("1/2", f"{pulling}.")):
-        value = replace(staying("m0 to m1"), share=Fraction(share))
+        value = replace(staying("m0 to m1"), shares=(Fraction(share),))
         assert value.claim(constant).endswith(f"in kept contact{tail}")
     among = replace(
         slack,

@@ -64,7 +64,7 @@ HALF = Fraction(1, 2)
 
 
 def at(share, part):
-    return replace(part, share=share)
+    return replace(part, shares=(share,))
 
 
 def in_contact(steps, factor):
@@ -886,7 +886,7 @@ def test_a_value_at_which_switching_is_unstable(time):
     found = certify(system, limits=FAST)
     assert found.verdict is Verdict.REFUTED
     evidence = found.evidence
-    assert evidence.share is not None
+    assert evidence.shares
     assert evidence.is_average is (time is Time.CONTINUOUS)
     assert len(evidence.steps) > 1
     assert holds(system, evidence)
@@ -948,7 +948,7 @@ def test_claim_names_the_value():
     system = hidden_value(3)
     assert MIDDLE.claim(system).startswith("At 1/2 of the way from the low to the high end")
     parameter = FixedParameter("k", Fraction(10), Fraction("10.5"))
-    named = replace(system, switching=replace(PAIR, fixed_parameter=parameter))
+    named = replace(system, switching=replace(PAIR, fixed_parameters=(parameter,)))
     assert MIDDLE.claim(named).startswith("At k = 10.25, which the range allows and which does not")
     assert "Mode m0 to m1 is not Hurwitz" in MIDDLE.claim(named)
 

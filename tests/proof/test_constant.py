@@ -94,7 +94,7 @@ def test_nobody_switches_to_the_mode_that_one_is_in():
 def test_ends_of_different_sizes_are_an_error(high):
     system = family([[-1, 0], [0, -1]], high, switching=PAIR)
     with pytest.raises(ValueError, match="shorter"):
-        system_at(system, Fraction(1, 2))
+        system_at(system, (Fraction(1, 2),))
 
 
 def test_a_stay_must_suit_both_ends():
@@ -104,7 +104,7 @@ def test_a_stay_must_suit_both_ends():
         ("a/k-min/m-max", Stay(Fraction(2), Fraction(9))),
     )
     found = system_at(
-        replace(system, switching=replace(system.switching, stays=stays)), Fraction(1)
+        replace(system, switching=replace(system.switching, stays=stays)), (Fraction(1),)
     )
     assert found.switching.stays == (("a/k-min", Stay(Fraction(2), Fraction(5))),)
-    assert system_at(system, Fraction(1)).switching == ARBITRARY
+    assert system_at(system, (Fraction(1),)).switching == ARBITRARY

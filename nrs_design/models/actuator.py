@@ -45,6 +45,20 @@ class ActuatorRanges:
         """Whether both are known."""
         return all(len(interval.ends) == 1 for interval in (self.gain, self.time_constant))
 
+    def may_change(self, when: str) -> str:
+        """Say when its numbers may change, after what says where they are; nothing if never.
+
+        Parameters
+        ----------
+        when : str
+            Such as "arbitrarily fast".
+        """
+        constant = [interval.is_constant for interval in (self.gain, self.time_constant)]
+        moving = [i.varies and i.low != i.high for i in (self.gain, self.time_constant)]
+        if not any(moving):
+            return ""
+        return f", and{' the one that is not constant' * any(constant)} may change {when}"
+
     def scaled(self, scale: Fraction) -> ActuatorRanges:
         """Return the ranges stretched about the nominal values.
 

@@ -16,6 +16,7 @@ class Interval:
     nominal: Fraction
     low: Fraction
     high: Fraction
+    varies: bool = True  # Whether it moves there; otherwise its value is unknown, but constant
 
     @classmethod
     def point(cls, value: Fraction) -> Interval:
@@ -36,8 +37,13 @@ class Interval:
 
     def scaled(self, scale: Fraction) -> Interval:
         """Return the interval stretched about its nominal value; with 0, that value only."""
-        ends = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
-        return Interval(self.nominal, *ends)
+        low, high = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
+        return Interval(self.nominal, low, high, self.varies)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it has a range, and one value there that does not change."""
+        return not self.varies and self.low != self.high
 
 
 def turn(value: Number, radius: Number) -> Number:

@@ -114,6 +114,21 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
     return None
 
 
+def _constant(*, of: str = "", key: str = "") -> Callable[[Spec], str | None]:
+    """Ask for a range that is constant, of a part or of a key if they are named."""
+
+    def find(spec: Spec) -> str | None:
+        return _first(
+            ".".join(at)
+            for at, quantity in spec.ranges.items()
+            if not (quantity.varies or quantity.fixed)
+            and at[0].startswith(of)
+            and at[-1].endswith(key)
+        )
+
+    return find
+
+
 # Every one of them is asked of an interaction design.
 _F = Feature[Spec]
 SAMPLED = _F("a sampled loop", "sampling", "leave sampling out", _given("sampling"))
@@ -162,6 +177,19 @@ MOTOR_RANGE = _F(
     "{0[0]}.{0[1]}",
     "give the nominal {0[1]} only",
     _motor_range,
+)
+CONSTANT = _F("{0}, which is constant,", "{0}.varies", "leave varies out of {0}", _constant())
+CONSTANT_TISSUE = _F(
+    "{0}, which is constant,",
+    "{0}.varies",
+    "leave varies out of {0}",
+    _constant(of="environments"),
+)
+CONSTANT_LAG = _F(
+    "{0}, which is constant,",
+    "{0}.varies",
+    "leave varies out of {0}",
+    _constant(key="time_constant"),
 )
 LOADED = _F(
     "a load of the motor",

@@ -16,6 +16,7 @@ from nrs_design.proof.system import SwitchedSystem
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
+    constant_texts,
     identified_texts,
     logic_texts,
     preload_texts,
@@ -23,7 +24,7 @@ from nrs_design.switched.assumptions import (
     scale_texts,
     sensor_texts,
 )
-from nrs_design.switched.constant_parameters import with_constants
+from nrs_design.switched.constant_parameters import constants_of, with_constants
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import (
     constant_parameters,
@@ -171,6 +172,11 @@ def assemble(
         raise AssemblyError(
             f"unknown coordinates {coordinates!r}", remedy="choose deflection or force"
         )
+    drive = "actuator" if spec.velocity_interface is None else "velocity_interface"
+    constants = tuple(
+        constants_of(plant, conditions.touched, drive, sampled=conditions.sampling is not None)
+    )
+    system = with_constants(system, constants)
     period = None if conditions.sampling is None else conditions.sampling.outer
     sensed = sensor_texts(
         design.sensor, period, disturbed=bool(system.channels) and period is not None
@@ -182,6 +188,7 @@ def assemble(
         *identified_texts(spec),
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
+        *constant_texts(system.switching),
         *safety_texts(system.safety),
     )
     return replace(system, assumptions=texts)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import prod
 
 from nrs_design.errors import AssemblyError, InternalError
+from nrs_design.models.interval import Interval
+from nrs_design.models.plant import Plant
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.proof.system import SwitchedSystem
 
 MAX_CORNERS = 50_000
+# Corners of what encloses exp(-T/tau) and tau (1 - exp(-T/tau)), in the order of a box.
+_ENCLOSED = ("E-min/s-min", "E-min/s-max", "E-max/s-max")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,53 @@ class ConstantParameter:
             return None
         said = set(mode[1:])
         return next((label for label in self.labels if said.issuperset(label.split("/"))), None)
+
+
+def constants_of(
+    plant: Plant, touched: Collection[str], drive: str, *, sampled: bool
+) -> Iterator[ConstantParameter]:
+    """Yield the constant parameters of a plant.
+
+    Parameters
+    ----------
+    plant : Plant
+        With its ranges.
+    touched : collection of str
+        Environments that count.
+    drive : str
+        Which part of the spec the motor is.
+    sampled : bool
+        Whether the loop is sampled: its numbers enclose those of a constant time constant, so their
+        corners are none of its values.
+    """
+    ranges = plant.actuator_ranges
+    if ranges.gain.is_constant:
+        unit = f"rad/s/{ranges.command}"
+        yield _between_ends(f"{drive}.gain", ranges.gain, "Km", unit)
+    if ranges.time_constant.is_constant:
+        name, tau = f"{drive}.time_constant", ranges.time_constant
+        yield (
+            ConstantParameter(FixedParameter(name, tau.low, tau.high, "s"), _ENCLOSED)
+            if sampled
+            else _between_ends(name, tau, "tau", "s", inverse=True)
+        )
+    for environment in plant.environments:
+        if environment.parts or environment.name not in touched:
+            continue
+        law = environment.law
+        keys = zip(law.keys, law.parameters(), law.units(rotational=True), strict=True)
+        for (key, symbol, unit), interval in zip(keys, environment.ranges, strict=True):
+            if interval.is_constant:
+                name, inverse = f"environments.{environment.name}.{key}", symbol in law.inverse
+                found = _between_ends(name, interval, symbol, unit, inverse=inverse)
+                yield replace(found, contact=environment.name)
+
+
+def _between_ends(
+    name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool = False
+) -> ConstantParameter:
+    said = FixedParameter(name, interval.low, interval.high, unit, inverse)
+    return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"))
 
 
 def constant_sets(

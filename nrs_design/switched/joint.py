@@ -56,7 +56,7 @@ class Joint:
 
     def texts(self) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
-        moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
+        moving = self.ranges.may_change("arbitrarily fast")
         motor = motor_text(self.ranges)
         which = "nominal-motor.joint" if self.ranges.fixed else "motor.joint"
         yield say(which, motor, motor=motor, moving=moving)

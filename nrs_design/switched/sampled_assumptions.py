@@ -145,7 +145,7 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame) -> Assumption:
         corner = "a corner of that, of no motor and no times of the ranges"
     elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
-    moving = "" if ranges.fixed else ", and may change at every sample, not in between"
+    moving = ranges.may_change("at every sample, not in between")
     if frame.step.streams:
         lag = motor.partition(" and its time constant ")[2]
         return say("motor.followed", lag, motor=lag, moving=moving, corner=corner)

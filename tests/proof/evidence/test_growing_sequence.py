@@ -865,7 +865,7 @@ def test_both_ends_are_values_too(share, holds):
 @pytest.mark.parametrize("share", ["3/2", "18446744073709551617/36893488147419103232"])
 def test_shares_out_of_bounds_are_not_read(share):
     fields = {**MIDDLE.to_fields(), "shares": [share]}
-    with pytest.raises(ValueError, match="a share (is not|has too many)"):
+    with pytest.raises(ValueError, match=r"a share (is not|has too many)"):
         GrowingSequence.from_fields(fields, hidden_value(3))
     with pytest.raises(ValueError, match="no parameter is constant"):
         GrowingSequence.from_fields(

@@ -10,9 +10,9 @@ from nrs_design.spec.features import (
     AT_ONCE,
     BLEEDING,
     COMMAND,
-    CONSTANT,
     CONSTANT_FORCE,
     CONSTANT_LAG,
+    CONSTANT_MOTOR,
     CONSTANT_TISSUE,
     CONTACT_RULES,
     CONTINUOUS,
@@ -105,8 +105,8 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(LOADED_ALONE, SAMPLED),
     not_together(COUPLED, OTHERS, CONTINUOUS),
     # No proof that rests on constants knows these, or they hold what is not constant.
-    *_beside(CONSTANT, LOSABLE, COUPLED, TWO_PERIODS),
-    *_beside(CONSTANT_TISSUE, AT_ONCE, MEMORY, PRELOADED),
+    *_beside(CONSTANT_MOTOR, LOSABLE, COUPLED, TWO_PERIODS),
+    *_beside(CONSTANT_TISSUE, LOSABLE, COUPLED, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
     not_together(CONSTANT_LAG, TIMED),
     # The sampled loop.
     *_beside(PARALLEL, SAMPLED),

@@ -114,17 +114,14 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
     return None
 
 
-def _constant(*, of: str = "", key: str = "") -> Callable[[Spec], str | None]:
-    """Ask for a range that is constant, of a part or of a key if they are named."""
+def _constant(
+    holds: Callable[[tuple[str, ...]], bool],
+) -> Callable[[Spec], tuple[str, ...] | None]:
+    """Ask for a range that is constant, by the keys that lead to it."""
 
-    def find(spec: Spec) -> str | None:
-        return _first(
-            ".".join(at)
-            for at, quantity in spec.ranges.items()
-            if not (quantity.varies or quantity.fixed)
-            and at[0].startswith(of)
-            and at[-1].endswith(key)
-        )
+    def find(spec: Spec) -> tuple[str, ...] | None:
+        constant = (at for at, q in spec.ranges.items() if not (q.varies or q.fixed))
+        return next(filter(holds, constant), None)
 
     return find
 
@@ -178,18 +175,23 @@ MOTOR_RANGE = _F(
     "give the nominal {0[1]} only",
     _motor_range,
 )
-CONSTANT = _F("{0}, which is constant,", "{0}.varies", "leave varies out of {0}", _constant())
 CONSTANT_TISSUE = _F(
-    "{0}, which is constant,",
-    "{0}.varies",
-    "leave varies out of {0}",
-    _constant(of="environments"),
+    "the constant {0[2]} of {0[1]!r}",
+    "environments.{0[1]}.{0[2]}.varies",
+    "leave varies out of the {0[2]} of {0[1]}",
+    _constant(lambda at: at[0] == "environments"),
+)
+CONSTANT_MOTOR = _F(
+    "the constant {0[1]} of the {0[0]}",
+    "{0[0]}.{0[1]}.varies",
+    "leave varies out of {0[1]}",
+    _constant(lambda at: at[0] != "environments"),
 )
 CONSTANT_LAG = _F(
-    "{0}, which is constant,",
-    "{0}.varies",
-    "leave varies out of {0}",
-    _constant(key="time_constant"),
+    "the constant {0[1]} of the {0[0]}",
+    "{0[0]}.{0[1]}.varies",
+    "leave varies out of {0[1]}",
+    _constant(lambda at: at[-1] == "time_constant"),
 )
 LOADED = _F(
     "a load of the motor",

@@ -28,6 +28,11 @@ class ConstantParameter:
     labels: tuple[str, ...]
     contact: str | None = None  # The one contact that it is of; None if it is in all modes
 
+    @property
+    def first_label(self) -> int:
+        """Where its labels begin in a name: a contact, too, may be called like one of them."""
+        return 1 if self.contact is None else 2
+
     def is_at(self, mode: Sequence[str]) -> str | None:
         """Return at which corner a mode is, None if the parameter is not in it.
 
@@ -38,7 +43,7 @@ class ConstantParameter:
         """
         if self.contact is not None and self.contact not in mode[1:2]:
             return None
-        said = set(mode[1:])
+        said = set(mode[self.first_label :])
         return next((label for label in self.labels if said.issuperset(label.split("/"))), None)
 
 
@@ -116,8 +121,14 @@ def constant_sets(
     for name in names:
         mode = name.split("/")
         ends = tuple(parameter.is_at(mode) for parameter in parameters)
-        constant = {label for end in ends if end is not None for label in end.split("/")}
-        varying = (mode[0], *(label for label in mode[1:] if label not in constant))
+        constant = {
+            (label, place)
+            for parameter, end in zip(parameters, ends, strict=True)
+            if end is not None
+            for place, label in enumerate(mode)
+            if place >= parameter.first_label and label in end.split("/")
+        }
+        varying = tuple(label for k, label in enumerate(mode) if (label, k) not in constant)
         has = tuple(end is not None for end in ends)
         known[varying, ends] = name
         first[varying, has] = None

@@ -126,7 +126,7 @@ def modes_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
     return replace(system_at(system, (p,)), switching=Switching())
 
 
-def corner_modes(system: SwitchedSystem, corner: int) -> SwitchedSystem:
+def modes_at_corner(system: SwitchedSystem, corner: int) -> SwitchedSystem:
     """Return the modes at one corner of the constant parameters, switched arbitrarily.
 
     Parameters

@@ -31,6 +31,8 @@ PARALLEL = PI | {"type": "parallel"}
 SAMPLING = {"period": "2 ms", "delay": 0}
 LOAD = {"load_inertia": "1.213 kg*m^2"}
 TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
+CONSTANT = {"range": ["40 N*m/rad", "46 N*m/rad"], "varies": False}
+CONSTANT_LAG = {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"], "varies": False}
 BASE = {
     "kind": "interaction-design",
     "name": "combined",
@@ -143,6 +145,13 @@ CHANGES = {
         "motion_loop": None,
         "velocity_interface": {"time_constant": "0.03 s"},
     },
+    f.CONSTANT_TISSUE: {
+        "environments": {
+            "soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}},
+        }
+    },
+    f.CONSTANT_MOTOR: {"actuator": {"time_constant": CONSTANT_LAG}},
+    f.CONSTANT_LAG: {"actuator": {"time_constant": CONSTANT_LAG}},
 }
 
 

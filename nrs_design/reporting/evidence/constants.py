@@ -11,7 +11,7 @@ from nrs_design.reporting.evidence.page import AbstractPage
 from nrs_design.reporting.evidence.runs import Greedy, bounded_run, trials_per_step
 from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.titles import EVIDENCE
-from nrs_design.simulation.norms import corner_modes, quadratic_norm, scaled_matrices
+from nrs_design.simulation.norms import modes_at_corner, quadratic_norm, scaled_matrices
 from nrs_design.simulation.rates import mode_rates
 from nrs_design.simulation.switched import worst_direction
 
@@ -56,7 +56,7 @@ class ConstantsPage(AbstractPage):
     def run(self) -> Section:
         """Draw a run at the corner where the decay is slowest."""
         forms = scaled_matrices(*(form.Q for form in self.offer.forms))
-        corners = [corner_modes(self.system, k) for k in range(len(forms))]
+        corners = [modes_at_corner(self.system, k) for k in range(len(forms))]
         slowest = max if self.is_discrete else min
         rates = [slowest(mode_rates(at, P)) for at, P in zip(corners, forms, strict=True)]
         k = rates.index(slowest(rates))

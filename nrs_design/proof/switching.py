@@ -76,7 +76,7 @@ class Switching:
     # What these parameters are, if known. Weights are products of shares, one for each of them and
     # all of them attained, if the corners of a set are two to the power of their number: then the
     # corners are their ends, low before high, the last parameter turning fastest. Otherwise the
-    # corners enclose values, and none of them need be attained.
+    # corners enclose values, and none of them need be attained. Without names all weights are.
     fixed_parameters: tuple[FixedParameter, ...] = ()
     # Modes with a dwell time of their own, or with a longest one.
     stays: tuple[tuple[str, Stay], ...] = ()

@@ -83,8 +83,10 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
         return "not tried: that takes two modes at each value, and no resets"
     if (count := _count(system)) is None:
         return ENCLOSED
+    # There are many values, and the periods of each could take all that is left.
+    allowance = family.allowance.part(0.5)
     for shares in product(SHARES, repeat=count) if count < 3 else ((s,) * count for s in SHARES):
-        at_shares = Family.of(system_at(system, shares), family.allowance)
+        at_shares = Family.of(system_at(system, shares), allowance)
         if at_shares.system.time is Time.CONTINUOUS and at_shares.system.switching.is_arbitrary:
             yield from _at(shares, search_mixture(at_shares))
         yield from _at(shares, search_period(at_shares))

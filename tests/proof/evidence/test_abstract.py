@@ -359,7 +359,8 @@ BOUNCING = {
     "coupled-axes",
     "periodic-quadratic",
 }
-FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"} | BOUNCING
+CONSTANT = {"parameter-quadratic", "constants-quadratic"}
+FREE = {"common-quadratic", "common-polynomial"} | CONSTANT | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
 SETS |= {"periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
@@ -380,7 +381,7 @@ FACTS = {
     | {"safety-layer"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
-    "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,
+    "keeps_bound_in_mixtures": SETS | CONSTANT | {"conewise-mode-quadratic"} | RULED,
     "names_unstable_mode": {"growing-sequence"},
 }
 

@@ -211,7 +211,7 @@ def check_no_common_quadratic(told):
 def check_parameter_quadratic(told):
     Q, rate = [form(told[end], n) for end in ("low", "high")], F(told["rate"])
     steps, ends = {s.mode: s for s in steps_in_contact(False, [])}, rules["fixed_ends"]
-    need(sorted(end for pair in ends for end in pair) == sorted(names), "the modes are not ends")
+    need(sorted(e for pair in ends for e in {*pair}) == sorted(names), "the modes are not ends")
     need(flow and rate > 0 and not (required or "couplings" in o), "the rate, contact or axes")
     for a, b in ends:
         low, high = ([left(steps[end], q, q, 2 * rate) for q in Q] for end in (a, b))

@@ -14,6 +14,7 @@ _NAMES = {
     "0.name": "X",
     "0[0]": "X",
     "0[1]": "Y",
+    "0[2]": "Z",
     "0.contact": "X+Y",
     "0.controller": "C",
 }

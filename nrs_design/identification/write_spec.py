@@ -24,7 +24,7 @@ from nrs_design.models.contact import (
     AbstractLinearLaw,
     HuntCrossley,
 )
-from nrs_design.spec import InteractionDesignSpec, LoadedSpec, Spec, parse_spec
+from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
 from nrs_design.spec.axis import AxisType
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
@@ -443,7 +443,7 @@ def check_interaction(loaded: LoadedSpec) -> InteractionDesignSpec:
     return loaded.spec
 
 
-def check_turning(spec: Spec, path: Path) -> None:
+def check_turning(spec: object, path: Path) -> None:
     """Refuse a spec of an axis that slides: records are read as those of one that turns.
 
     Raises
@@ -451,7 +451,7 @@ def check_turning(spec: Spec, path: Path) -> None:
     SpecError
         If it is one.
     """
-    if spec.kind == "interaction-design" and spec.axis is AxisType.PRISMATIC:
+    if isinstance(spec, InteractionDesignSpec) and spec.axis is AxisType.PRISMATIC:
         raise SpecError(
             "the axis is prismatic, and records are read as those of an axis that turns",
             path=path,

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import pi
 
 from nrs_design.errors import AssemblyError
-from nrs_design.models.interval import Interval
+from nrs_design.models.interval import Interval, may_change
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,10 @@ class ActuatorRanges:
     def fixed(self) -> bool:
         """Whether both are known."""
         return all(len(interval.ends) == 1 for interval in (self.gain, self.time_constant))
+
+    def may_change(self, when: str) -> str:
+        """Say when its numbers may change; as `nrs_design.models.interval.may_change`."""
+        return may_change((self.gain, self.time_constant), when)
 
     def scaled(self, scale: Fraction) -> ActuatorRanges:
         """Return the ranges stretched about the nominal values.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeVar
@@ -16,6 +17,7 @@ class Interval:
     nominal: Fraction
     low: Fraction
     high: Fraction
+    varies: bool = True  # Whether it moves there; otherwise its value is unknown, but constant
 
     @classmethod
     def point(cls, value: Fraction) -> Interval:
@@ -36,10 +38,32 @@ class Interval:
 
     def scaled(self, scale: Fraction) -> Interval:
         """Return the interval stretched about its nominal value; with 0, that value only."""
-        ends = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
-        return Interval(self.nominal, *ends)
+        low, high = (self.nominal + scale * (end - self.nominal) for end in (self.low, self.high))
+        return Interval(self.nominal, low, high, self.varies)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it has a range, and one value there that does not change."""
+        return not self.varies and self.low != self.high
 
 
 def turn(value: Number, radius: Number) -> Number:
     """Convert a linear stiffness, damping or mass to the pivot: ``k r^2`` (thesis 6.3.1.1)."""
     return value * radius**2
+
+
+def may_change(numbers: Iterable[Interval], when: str) -> str:
+    """Say when numbers may change, after what says where they are; nothing if never.
+
+    Parameters
+    ----------
+    numbers : iterable of Interval
+        Of one part.
+    when : str
+        Such as "arbitrarily fast".
+    """
+    ranged = [number for number in numbers if number.low != number.high]
+    if not any(number.varies for number in ranged):
+        return ""
+    some = " the one that is not constant" if any(n.is_constant for n in ranged) else ""
+    return f", and{some} may change {when}"

@@ -137,5 +137,5 @@ def _within(
 def _stiff(environment: Environment, low: Fraction, high: Fraction) -> Environment:
     at = environment.law.parameters().index(environment.law.front)
     ranges = list(environment.ranges)
-    ranges[at] = Interval(min(max(ranges[at].nominal, low), high), low, high)
+    ranges[at] = Interval(min(max(ranges[at].nominal, low), high), low, high, ranges[at].varies)
     return replace(environment, ranges=tuple(ranges))

@@ -1,43 +1,75 @@
-"""The system at one value of a parameter that is unknown but constant."""
+"""The system at one value of parameters that are unknown but constant."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
+from math import prod
 
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
-from nrs_design.proof.switching import Stay, Switching
+from nrs_design.proof.switching import FixedParameter, Stay, Switching
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 
 
-def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
-    """TRUSTED: return the modes at one value of the constant parameter, under the same rules.
+def find_odd_shares(switching: Switching, shares: Sequence[Fraction]) -> str | None:
+    """TRUSTED: say why shares are not those of a value that constant parameters attain, or None."""
+    sets, named = switching.fixed_ends, switching.fixed_parameters
+    if not sets or not shares:
+        return "no parameter is constant, or no share is given"
+    if any(len(corners) != 2 ** len(shares) for corners in sets):
+        return "there is not one share for each constant parameter, or values are enclosed only"
+    if any(parameter.enclosed for parameter in named):
+        return "values are enclosed only"
+    if named and len(named) != len(shares):
+        return "there is not one share for each constant parameter"
+    return None if all(0 <= s <= 1 for s in shares) else "a share is not between 0 and 1"
 
-    A switch is allowed, and a stay long and short enough, if it is so at both ends of the
-    parameter. Resets are left out.
+
+def corner_weights(shares: Sequence[Fraction]) -> list[Fraction]:
+    """TRUSTED: return the weights of the corners at a value, the last parameter turning fastest.
+
+    Parameters
+    ----------
+    shares : sequence of Fraction
+        For each parameter, how far it is on the way from its low to its high end.
+    """
+    return [prod(at, start=Fraction(1)) for at in product(*((1 - s, s) for s in shares))]
+
+
+def system_at(system: SwitchedSystem, shares: Sequence[Fraction]) -> SwitchedSystem:
+    """TRUSTED: return the modes at one value of the constant parameters, under the same rules.
+
+    A switch is allowed, and a stay long and short enough, if it is so at all corners of the
+    parameters. Resets are left out.
 
     Parameters
     ----------
     system : SwitchedSystem
-        With the two ends of the parameter in `Switching.fixed_ends`.
-    share : Fraction
-        From 0 (low end) to 1 (high end): the modes are ``(1 - share) low + share high``.
+        With the corners of the parameters in `Switching.fixed_ends`.
+    shares : sequence of Fraction
+        For each parameter, from 0 (low end) to 1 (high end).
 
     Raises
     ------
     KeyError
         If an end is no mode of the system.
+    ValueError
+        If there is not one share for each parameter.
     """
+    if (odd := find_odd_shares(system.switching, shares)) is not None:
+        raise ValueError(odd)
+    weights = corner_weights(shares)
     matrices = {mode.name: mode.A.fractions() for mode in system.modes}
-    pairs = [(name_between(low, high), low, high) for low, high in system.switching.fixed_ends]
+    sets = [(name_between(*corners), *corners) for corners in system.switching.fixed_ends]
     modes = []
-    for name, low, high in pairs:
+    for name, *corners in sets:
         rows = [
-            [(1 - share) * a + share * b for a, b in zip(*ends, strict=True)]
-            for ends in zip(matrices[low], matrices[high], strict=True)
+            [_mean(weights, entries) for entries in zip(*row, strict=True)]
+            for row in zip(*(matrices[corner] for corner in corners), strict=True)
         ]
         modes.append(Mode(name, RationalMatrix.from_rows(rows)))
     allowed = system.switching.transitions
@@ -46,8 +78,8 @@ def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
         listed = frozenset(allowed)
         transitions = tuple(
             (source, target)
-            for source, *ends in pairs
-            for target, *others in pairs
+            for source, *ends in sets
+            for target, *others in sets
             if source != target and listed.issuperset(zip(ends, others, strict=True))
         )
     own = {name for name, _ in system.switching.stays}
@@ -56,10 +88,10 @@ def system_at(system: SwitchedSystem, share: Fraction) -> SwitchedSystem:
         transitions=transitions,
         resets=(),
         fixed_ends=(),
-        fixed_parameter=None,
+        fixed_parameters=(),
         stays=tuple(
             (name, _common_stay(system.switching, ends))
-            for name, *ends in pairs
+            for name, *ends in sets
             if own.intersection(ends)
         ),
     )
@@ -73,16 +105,35 @@ def _common_stay(switching: Switching, modes: Sequence[str]) -> Stay:
     return Stay(max(stay.shortest for stay in stays), min(ends, default=None))
 
 
-def value_text(system: SwitchedSystem, share: Fraction) -> str:
-    """Say which value of the constant parameter it is, such as ``At k = 12.5``."""
-    parameter = system.switching.fixed_parameter
-    if parameter is None:
-        return f"At {share} of the way from the low to the high end of the parameter"
-    value = parameter.low + share * (parameter.high - parameter.low)
-    return f"At {parameter.name} = {exact_text(value)}"
+def _mean(weights: Sequence[Fraction], entries: Sequence[Fraction]) -> Fraction:
+    if all(entry == entries[0] for entry in entries):
+        return entries[0]
+    return sum((w * entry for w, entry in zip(weights, entries, strict=True)), Fraction(0))
 
 
-def name_between(low: str, high: str) -> str:
-    """Name what two ends have in common, such as ``a`` for ``a/m-min`` and ``a/m-max``."""
-    same = [a for a, b in zip(low.split("/"), high.split("/"), strict=False) if a == b]
-    return "/".join(same) or f"{low} to {high}"
+def value_at(parameter: FixedParameter, share: Fraction) -> Fraction:
+    """Return the value of a constant parameter at a share of the way between its ends."""
+    low, high = parameter.low, parameter.high
+    if parameter.inverse:
+        return 1 / ((1 - share) / low + share / high)
+    return low + share * (high - low)
+
+
+def value_text(system: SwitchedSystem, shares: Sequence[Fraction]) -> str:
+    """Say which value of the constant parameters it is, such as ``At k = 12.5``."""
+    parameters = system.switching.fixed_parameters
+    if not parameters:
+        ways = " and ".join(map(str, shares))
+        return f"At {ways} of the way from the low to the high end of the parameter"
+    values = (
+        f"{p.name} = {exact_text(value_at(p, share))}{' ' * bool(p.unit)}{p.unit}"
+        for p, share in zip(parameters, shares, strict=True)
+    )
+    return f"At {' and '.join(values)}"
+
+
+def name_between(*corners: str) -> str:
+    """Name what corners have in common, such as ``a`` for ``a/m-min`` and ``a/m-max``."""
+    parts = zip(*(corner.split("/") for corner in corners), strict=False)
+    same = [labels[0] for labels in parts if len({*labels}) == 1]
+    return "/".join(same) or " to ".join(dict.fromkeys(corners))

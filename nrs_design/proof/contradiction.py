@@ -55,9 +55,14 @@ def _find_odd_switch(system: SwitchedSystem, names: set[str]) -> str | None:
 
 
 def _find_odd_ends(system: SwitchedSystem, names: set[str]) -> str | None:
-    ends = [name for pair in system.switching.fixed_ends for name in pair]
-    if ends and sorted(ends) != sorted(names):
-        return "the modes are not the ends of one constant parameter"
+    sets = system.switching.fixed_ends
+    ends = [name for corners in sets for name in set(corners)]
+    if sets and (sorted(ends) != sorted(names) or len({*map(len, sets)}) > 1 or len(sets[0]) < 2):
+        return "the modes are not the ends of constant parameters"
+    for parameter in system.switching.fixed_parameters:
+        reversed_ = parameter.high < parameter.low
+        if not sets or reversed_ or (parameter.inverse and parameter.low <= 0):
+            return f"constant parameter {parameter.name} has no range, or no modes"
     return None
 
 

@@ -62,7 +62,7 @@ def agrees(
 def _agrees_on_growth(system: SwitchedSystem, evidence: GrowingSequence) -> bool:
     from nrs_design.proof.evidence.growing_sequence import average
 
-    if evidence.share is not None:
+    if evidence.shares:
         return agrees(*evidence.at_value(system))
     if not evidence.is_average:
         return True
@@ -85,7 +85,7 @@ def _exponents(system: SwitchedSystem, evidence: AbstractEvidence) -> set[Expone
 
 
 def _steps(system: SwitchedSystem, evidence: GrowingSequence) -> Iterator[Exponent]:
-    if evidence.doublings is None or evidence.share is not None:
+    if evidence.doublings is None or evidence.shares:
         return iter(())
     modes = {mode.name: mode.A for mode in system.modes}
     return ((modes[name], time) for name, time in evidence.steps)

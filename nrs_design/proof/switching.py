@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -48,6 +49,9 @@ class FixedParameter:
     name: str
     low: Fraction = field(metadata={"signed": True})
     high: Fraction = field(metadata={"signed": True})
+    unit: str = ""  # Of its ends
+    inverse: bool = False  # Modes are affine in one over it; it is positive then
+    enclosed: bool = False  # Corners enclose what modes are at its values: none need be attained
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +66,19 @@ class Switching:
     # For some transitions; the others leave the state as it is. Where several lead from one mode to
     # another, a switch takes any one of them, and never leaves the state as it is.
     resets: tuple[Reset, ...] = ()
-    # Pairs of modes that are the two ends of a parameter that is unknown but does not change: the
-    # mode in force is ``(1 - p) low + p high`` with one p for all pairs and all times. Every mode
-    # is in one pair, or there are none. Transitions take no notice of it: they lead from any end to
-    # any end, as if the parameter moved. What holds for all these signals holds for the fewer ones
-    # of a constant parameter; a signal that grows must keep to one value.
-    fixed_ends: tuple[tuple[str, str], ...] = ()
-    # What that parameter is, if known; for words only.
-    fixed_parameter: FixedParameter | None = None
+    # Where parameters are unknown but do not change: for each mode its copies at the corners of
+    # these parameters, all sets in one order of corners. The mode in force is ``sum_v w_v A_v``
+    # with one set of weights, not negative and with sum one, for all modes and all times. Every
+    # mode is in one set, there perhaps several times: then it is the same at these corners.
+    # Transitions take no notice of it: they lead from any corner to any corner, as if parameters
+    # moved. What holds for all these signals holds for the fewer ones of constant parameters; a
+    # signal that grows must keep to one value.
+    fixed_ends: tuple[tuple[str, ...], ...] = ()
+    # What these parameters are, if known. Weights are products of shares, one for each of them and
+    # all of them attained, if the corners of a set are two to the power of their number: then the
+    # corners are their ends, low before high, the last parameter turning fastest. Otherwise the
+    # corners enclose values, and none of them need be attained. Without names all weights are.
+    fixed_parameters: tuple[FixedParameter, ...] = ()
     # Modes with a dwell time of their own, or with a longest one.
     stays: tuple[tuple[str, Stay], ...] = ()
 
@@ -88,6 +97,25 @@ class Switching:
         """Take a dwell time of any exact kind as a fraction of Python integers."""
         object.__setattr__(self, "dwell_time", exact_fraction(self.dwell_time))
 
+    def corners_of(self) -> dict[str, frozenset[int]]:
+        """Return at which corners of the constant parameters each mode is; none if there are none.
+
+        A mode that is the same at several corners is at all of them.
+        """
+        return {
+            name: frozenset(k for k, other in enumerate(corners) if other == name)
+            for corners in self.fixed_ends
+            for name in corners
+        }
+
+    def share_a_corner(self, names: Iterable[str]) -> bool:
+        """Tell whether constant parameters may be at one corner while these modes are in force."""
+        at = self.corners_of()
+        if not at:
+            return True
+        found = [at.get(name, frozenset()) for name in names]
+        return bool(frozenset.intersection(*found))
+
     @property
     def is_arbitrary(self) -> bool:
         """Whether every signal is possible and the state is continuous."""
@@ -104,3 +132,13 @@ class Clock:
     length: int  # Steps of a round, at least two. Time zero may be any of them.
     # Names of the modes, in contact and free, that are in force at the first steps.
     first: tuple[str, ...]
+
+
+def constants_words(switching: Switching) -> str:
+    """Name the constant parameters, such as ``k and m in their ranges``."""
+    names = [parameter.name for parameter in switching.fixed_parameters]
+    if not names:
+        return "the constant parameters in their ranges"
+    *first, last = names
+    listed = f"{', '.join(first)} and {last}" if first else last
+    return f"{listed} in {'their ranges' if first else 'its range'}"

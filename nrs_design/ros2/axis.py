@@ -90,7 +90,7 @@ def axis_damping(axis: Axis) -> Interval:
     """Return where the damping of an axis lies, in N*s/m or N*m*s/rad."""
     root, factor = square_root_between(axis.mass * axis.stiffness), 2 * axis.damping_ratio
     ends = sorted((factor * root.low, factor * root.high))
-    return Interval(ends[0], *ends)
+    return Interval(ends[0], ends[0], ends[1])
 
 
 @dataclass(frozen=True, slots=True)

@@ -118,12 +118,12 @@ def _times_beyond(matrices: Array, lasting: NDArray[np.bool_], time: Time) -> Ar
 
 def _jumps(system: SwitchedSystem) -> tuple[Jump, ...]:
     index = {mode.name: k for k, mode in enumerate(system.modes)}
-    ends = {name: end for pair in system.switching.fixed_ends for end, name in enumerate(pair)}
+    share_a_corner = system.switching.share_a_corner
     jumps: list[Jump] = []
     identity = np.eye(system.order)
     ways: dict[tuple[int, int], int] = {}
     for edge in system.edges():
-        if ends.get(edge.source.name) == ends.get(edge.target.name):
+        if share_a_corner((edge.source.name, edge.target.name)):
             pair = index[edge.source.name], index[edge.target.name]
             ways[pair] = ways.get(pair, -1) + 1
             map_ = identity if edge.map is None else np.array(edge.map.floats())

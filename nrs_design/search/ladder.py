@@ -155,8 +155,14 @@ LADDER: tuple[Rung, ...] = (
     Rung(
         "parameter quadratic",
         Method.PARAMETER_QUADRATIC,
-        lambda f: f.has_values and f.is_continuous,
+        lambda f: f.has_values and f.is_continuous and f.has_one_pair,
         _in("parameter_quadratic", "search_parameter_quadratic"),
+    ),
+    Rung(
+        "constants quadratic",
+        Method.CONSTANTS_QUADRATIC,
+        lambda f: f.has_values,
+        _in("constants_quadratic", "search_constants_quadratic"),
     ),
     Rung(
         "mode quadratic",

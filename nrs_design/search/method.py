@@ -18,6 +18,7 @@ class Method(StrEnum):
     MODE_POLYNOMIAL = "mode-polynomial"
     MODE_QUADRATIC = "mode-quadratic"
     PARAMETER_QUADRATIC = "parameter-quadratic"
+    CONSTANTS_QUADRATIC = "constants-quadratic"
     PERIOD = "period"
     PERIODIC_QUADRATIC = "periodic-quadratic"
     POLYNOMIAL = "polynomial"

@@ -1,15 +1,16 @@
-"""Search for a value of a constant parameter at which the system is not stable."""
+"""Search for a value of constant parameters at which the system is not stable."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nrs_design.proof.constant import system_at
+from nrs_design.proof.constant import find_odd_shares, system_at
 from nrs_design.proof.evidence import GrowingSequence
 from nrs_design.proof.evidence.growing_sequence import staying
 from nrs_design.proof.mode import Time
@@ -22,12 +23,17 @@ from nrs_design.search.period import search_period
 from nrs_design.work import Cost
 
 Array = NDArray[np.float64]
+Shares = tuple[Fraction, ...]
 
-# Values of the parameter that are tried, fewer where there are many modes.
+ENCLOSED = "not tried: what the corners enclose need not be attained"
+
+# Values of a parameter that are tried, fewer where there are many modes or several parameters.
 GRID, COARSE_GRID, EVALUATIONS = 257, 33, 200_000
+FEWEST = 3
 # Local maxima of the growth that are looked at closely, and how closely.
 PEAKS = 16
 GOLDEN_STEPS = 40
+SWEEPS = 3  # Over several parameters, one after the other
 GOLDEN = (5**0.5 - 1) / 2
 # Shorter shares first: they make shorter numbers in the certificate.
 DENOMINATORS = (1, 4, 16, 64, 256, 2**12, 2**20, 2**32, 2**48)
@@ -36,27 +42,35 @@ PER_MATRIX = 5e-6
 PER_PRODUCT = 3e-8
 # What rounding hides, relative to the size of the matrices.
 SLACK = 1e-9
-# Shares at which switching is looked at: the ends have no mixture rung of their own.
+# Shares at which switching is looked at: the ends have no mixture rung of their own. Of several
+# parameters, all together or each at its own.
 SHARES = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4), Fraction(0), Fraction(1))
 
 
 def search_value(family: Family) -> Candidates[GrowingSequence]:
-    """Scan the parameter's range for a mode that is not stable."""
+    """Scan the parameters' ranges for a mode that is not stable."""
     system, matrices = family.system, family.matrices
     if not np.isfinite(matrices).all():
         return OUT_OF_RANGE
+    if (count := _count(system)) is None:
+        return ENCLOSED
     slack = SLACK * max(float(np.abs(matrices).max()), 1.0)
-    lows, highs = _ends(system, matrices)
-    count = max(COARSE_GRID, min(GRID, EVALUATIONS // len(lows)))
-    shares = np.linspace(0, 1, count)
-    family.allowance.take(_cost(len(lows), count, lows.shape[-1]), f"looking at {count} values")
+    corners = _corners(system, matrices)
+    least = COARSE_GRID if count == 1 else FEWEST
+    fitting = int((EVALUATIONS / len(corners)) ** (1 / count))
+    grid = np.linspace(0, 1, max(least, min(GRID, fitting)))
+    family.allowance.take(
+        _cost(len(corners), len(grid) ** count, corners.shape[-1], count),
+        f"looking at {len(grid) ** count} values",
+    )
     found = False
-    for k, start in _peaks(lows, highs, shares, system.time):
-        share, growth = _refined(lows[k], highs[k], (start, float(shares[1])), system.time)
+    for k, start in _peaks(corners, grid, count, system.time):
+        shares, growth = _refined(corners[k], start, float(grid[1]), system.time)
         if growth < -slack:
             continue
         for denominator in DENOMINATORS:
-            for evidence in _unstable_modes(system, Fraction(share).limit_denominator(denominator)):
+            short = tuple(Fraction(s).limit_denominator(denominator) for s in shares)
+            for evidence in _unstable_modes(system, short):
                 found = True
                 yield Candidate(evidence)
     return None if found else "every mode is stable at every value tried"
@@ -67,67 +81,108 @@ def search_switching_at_values(family: Family) -> Candidates[GrowingSequence]:
     system = family.system
     if len(system.switching.fixed_ends) < 2 or system.switching.resets:
         return "not tried: that takes two modes at each value, and no resets"
-    for share in SHARES:
-        at_share = Family.of(system_at(system, share), family.allowance)
-        if at_share.system.time is Time.CONTINUOUS and at_share.system.switching.is_arbitrary:
-            yield from _at(share, search_mixture(at_share))
-        yield from _at(share, search_period(at_share))
+    if (count := _count(system)) is None:
+        return ENCLOSED
+    # There are many values, and the periods of each could take all that is left.
+    allowance = family.allowance.part(0.5)
+    for shares in product(SHARES, repeat=count) if count < 3 else ((s,) * count for s in SHARES):
+        at_shares = Family.of(system_at(system, shares), allowance)
+        if at_shares.system.time is Time.CONTINUOUS and at_shares.system.switching.is_arbitrary:
+            yield from _at(shares, search_mixture(at_shares))
+        yield from _at(shares, search_period(at_shares))
     return "nothing grows at the values tried"
 
 
-def _cost(pairs: int, shares: int, order: int) -> Cost:
-    """Predict what looking at all pairs of ends takes, at shares and closely at the peaks."""
-    return Cost((pairs * shares + 2 * PEAKS * GOLDEN_STEPS) * (PER_MATRIX + PER_PRODUCT * order**3))
+def _count(system: SwitchedSystem) -> int | None:
+    """Return how many constant parameters there are; None if their corners are enclosures."""
+    count = len(system.switching.fixed_ends[0]).bit_length() - 1
+    odd = find_odd_shares(system.switching, (Fraction(0),) * count)
+    return count if odd is None else None
+
+
+def _cost(sets: int, values: int, order: int, count: int) -> Cost:
+    """Predict what looking at all modes takes, at a grid of values and closely at the peaks."""
+    closely = 2 * PEAKS * GOLDEN_STEPS * (count if count == 1 else count * SWEEPS)
+    return Cost((sets * values + closely) * (PER_MATRIX + PER_PRODUCT * order**3))
 
 
 def _at(
-    share: Fraction, candidates: Candidates[GrowingSequence]
+    shares: Shares, candidates: Candidates[GrowingSequence]
 ) -> Iterator[Candidate[GrowingSequence]]:
-    """Make what is found about the system at a value evidence about the parameter."""
+    """Make what is found about the system at a value evidence about the parameters."""
     for candidate in candidates:
-        yield Candidate(replace(candidate.evidence, share=share))
+        yield Candidate(replace(candidate.evidence, shares=shares))
 
 
-def _ends(system: SwitchedSystem, matrices: Array) -> tuple[Array, Array]:
+def _corners(system: SwitchedSystem, matrices: Array) -> Array:
+    """Return the modes of every set, shape (sets, corners, n, n)."""
     index = {mode.name: k for k, mode in enumerate(system.modes)}
-    pairs = np.array([(index[low], index[high]) for low, high in system.switching.fixed_ends])
-    return matrices[pairs[:, 0]], matrices[pairs[:, 1]]
+    return matrices[[[index[name] for name in c] for c in system.switching.fixed_ends]]
 
 
-def _growth(low: Array, high: Array, shares: Array, time: Time) -> Array:
-    """Return how far beyond the stability limit the worst eigenvalue is, at each share."""
-    weights = shares[:, None, None]
-    values = np.linalg.eigvals((1 - weights) * low + weights * high)
+def _growth(corners: Array, shares: Array, time: Time) -> Array:
+    """Return how far beyond the stability limit the worst eigenvalue is.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (c, n, n)
+        A mode at the corners of the parameters.
+    shares : ndarray, shape (m, k)
+        Values of the parameters.
+    time : Time
+        Continuous or discrete.
+    """
+    weights = np.ones((len(shares), 1))
+    for share in shares.T:
+        both = np.stack([1 - share, share], axis=1)
+        weights = (weights[:, :, None] * both[:, None, :]).reshape(len(shares), -1)
+    values = np.linalg.eigvals(np.tensordot(weights, corners, axes=1))
     if time is Time.CONTINUOUS:
         return np.asarray(values.real.max(axis=1))
     return np.asarray(np.abs(values).max(axis=1) - 1)
 
 
-def _peaks(lows: Array, highs: Array, shares: Array, time: Time) -> list[tuple[int, float]]:
-    """Return the largest local maxima of the growth: the pair of ends, and the share."""
-    ends = zip(lows, highs, strict=True)
-    growth = np.array([_growth(low, high, shares, time) for low, high in ends])
-    padded = np.pad(growth, ((0, 0), (1, 1)), constant_values=-np.inf)
-    pairs, places = np.nonzero((growth >= padded[:, :-2]) & (growth >= padded[:, 2:]))
-    largest = np.argsort(-growth[pairs, places], kind="stable")[:PEAKS]
-    return [(int(pairs[i]), float(shares[places[i]])) for i in largest]
+def _peaks(corners: Array, grid: Array, count: int, time: Time) -> list[tuple[int, Array]]:
+    """Return the largest local maxima of the growth: the set of modes, and the shares."""
+    values = np.stack(np.meshgrid(*[grid] * count, indexing="ij"), axis=-1)
+    growth = np.array([_growth(c, values.reshape(-1, count), time) for c in corners])
+    growth = growth.reshape(-1, *values.shape[:-1])
+    highest = np.ones(growth.shape, dtype=bool)
+    for axis in range(1, count + 1):
+        beside = [(0, 0)] * growth.ndim
+        beside[axis] = (1, 1)
+        padded = np.moveaxis(np.pad(growth, beside, constant_values=-np.inf), axis, 0)
+        here = np.moveaxis(highest, axis, 0)
+        here &= (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
+    places = np.argwhere(highest)
+    largest = np.argsort(-growth[highest], kind="stable")[:PEAKS]
+    return [(int(places[i][0]), grid[places[i][1:]]) for i in largest]
 
 
-def _refined(low: Array, high: Array, near: tuple[float, float], time: Time) -> tuple[float, float]:
-    """Climb to a maximum near a share, no farther than a step; return it with its growth."""
-    start, step = near
-    a, b = max(0.0, start - step), min(1.0, start + step)
-    for _ in range(GOLDEN_STEPS):
-        inner = np.array([b - GOLDEN * (b - a), a + GOLDEN * (b - a)])
-        left, right = _growth(low, high, inner, time)
-        a, b = (a, float(inner[1])) if left > right else (float(inner[0]), b)
-    found = np.array([start, (a + b) / 2])
-    growth = _growth(low, high, found, time)
-    best = int(growth.argmax())
-    return float(found[best]), float(growth[best])
+def _refined(corners: Array, start: Array, step: float, time: Time) -> tuple[Array, float]:
+    """Climb to a maximum near shares, no farther than a step; return it with its growth."""
+    best, growth = start, float(_growth(corners, start[None], time)[0])
+    for axis in list(range(len(start))) * (1 if len(start) == 1 else SWEEPS):
+        here = best.copy()
+        a, b = max(0.0, start[axis] - step), min(1.0, start[axis] + step)
+        for _ in range(GOLDEN_STEPS):
+            inner = (b - GOLDEN * (b - a), a + GOLDEN * (b - a))
+            left, right = _growth(corners, _moved(here, axis, *inner), time)
+            a, b = (a, inner[1]) if left > right else (inner[0], b)
+        middle = _moved(here, axis, (a + b) / 2)
+        if (found := float(_growth(corners, middle, time)[0])) > growth:
+            best, growth = middle[0], found
+    return best, growth
 
 
-def _unstable_modes(system: SwitchedSystem, share: Fraction) -> Iterator[GrowingSequence]:
-    for mode in system_at(system, share).modes:
+def _moved(shares: Array, axis: int, *to: float) -> Array:
+    """Return the shares with other ones of one parameter, a row for each."""
+    rows = np.repeat(shares[None], len(to), axis=0)
+    rows[:, axis] = to
+    return rows
+
+
+def _unstable_modes(system: SwitchedSystem, shares: Shares) -> Iterator[GrowingSequence]:
+    for mode in system_at(system, shares).modes:
         if not is_stable(mode.A, system.time):
-            yield replace(staying(mode.name), share=share)
+            yield replace(staying(mode.name), shares=shares)

@@ -123,7 +123,22 @@ def modes_at(system: SwitchedSystem, p: Fraction) -> SwitchedSystem:
     p : Fraction
         From 0 (low end) to 1 (high end).
     """
-    return replace(system_at(system, p), switching=Switching())
+    return replace(system_at(system, (p,)), switching=Switching())
+
+
+def modes_at_corner(system: SwitchedSystem, corner: int) -> SwitchedSystem:
+    """Return the modes at one corner of the constant parameters, switched arbitrarily.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With the corners of the parameters.
+    corner : int
+        From 0 on, in the order of a set.
+    """
+    at = {corners[corner] for corners in system.switching.fixed_ends}
+    modes = tuple(mode for mode in system.modes if mode.name in at)
+    return system.with_modes(modes, system.states, Switching())
 
 
 def level_curve(norm: Norm, level: float) -> tuple[Array, Array]:

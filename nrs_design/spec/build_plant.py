@@ -135,7 +135,8 @@ def _preloads(spec: InteractionDesignSpec) -> Iterator[tuple[str, Preload]]:
 
 
 def _interval(written: RangedQuantity) -> Interval:
-    return Interval(written.nominal.exact, *(end.exact for end in written.range))
+    low, high = (end.exact for end in written.range)
+    return Interval(written.nominal.exact, low, high, written.varies)
 
 
 def _environment(name: str, spec: AbstractEnvironmentSpec) -> Environment:

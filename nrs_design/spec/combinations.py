@@ -11,6 +11,9 @@ from nrs_design.spec.features import (
     BLEEDING,
     COMMAND,
     CONSTANT_FORCE,
+    CONSTANT_LAG,
+    CONSTANT_MOTOR,
+    CONSTANT_TISSUE,
     CONTACT_RULES,
     CONTINUOUS,
     COUPLED,
@@ -106,6 +109,10 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     not_together(LOADED_ALONE, OTHERS),
     not_together(LOADED_ALONE, SAMPLED),
     not_together(COUPLED, OTHERS, CONTINUOUS),
+    # No proof that rests on constants knows these, or they hold what is not constant.
+    *_beside(CONSTANT_MOTOR, LOSABLE, COUPLED, TWO_PERIODS),
+    *_beside(CONSTANT_TISSUE, LOSABLE, COUPLED, TWO_PERIODS, AT_ONCE, MEMORY, PRELOADED),
+    not_together(CONSTANT_LAG, TIMED),
     # The sampled loop.
     *_beside(PARALLEL, SAMPLED),
     *_beside(OFFSET, SAMPLED),

@@ -113,6 +113,9 @@ def _of_interaction(
             yield from _range(said, ("environments", name, key), identified)
     for at in spec.motor_ranges:
         yield from _range(said, at, _identified(said, at[:1]))
+    for place, quantity in spec.ranges.items():
+        if quantity.varies and not quantity.fixed:
+            yield _with((*place, "varies"), "false", "true")
     for name, controller in spec.controllers.items():
         for key, gain in controller.gains().items():
             if gain.ranged:

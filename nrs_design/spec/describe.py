@@ -244,6 +244,8 @@ def _ranged(name: str, written: RangedQuantity, si: RangedQuantity, unit: str) -
     yield Line(name, written.nominal.text, _text(si.nominal.si), unit)
     if not written.fixed:
         yield _interval(f"{name}.range", written.range, si.range, unit)
+    if not written.varies:
+        yield Line(f"{name}.varies", "false", "unknown, but constant", "")
 
 
 def _interval(name: str, written: Ends, si: Ends, unit: str) -> Line:

@@ -174,6 +174,7 @@ class AbstractEnvironmentSpec(IdentifiedRangesSpec):
                 turn(value.nominal.exact, radius),
                 turn(value.range[0].exact, radius),
                 turn(value.range[1].exact, radius),
+                value.varies,
             )
             for name, value in self.parameters().items()
         }

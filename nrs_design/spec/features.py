@@ -115,6 +115,18 @@ def _damped_force(spec: Spec) -> tuple[str, str] | None:
     return None
 
 
+def _constant(
+    holds: Callable[[tuple[str, ...]], bool],
+) -> Callable[[Spec], tuple[str, ...] | None]:
+    """Ask for a range that is constant, by the keys that lead to it."""
+
+    def find(spec: Spec) -> tuple[str, ...] | None:
+        constant = (at for at, q in spec.ranges.items() if not (q.varies or q.fixed))
+        return next(filter(holds, constant), None)
+
+    return find
+
+
 # Every one of them is asked of an interaction design.
 _F = Feature[Spec]
 SAMPLED = _F("a sampled loop", "sampling", "leave sampling out", _given("sampling"))
@@ -169,6 +181,24 @@ MOTOR_RANGE = _F(
     "{0[0]}.{0[1]}",
     "give the nominal {0[1]} only",
     _motor_range,
+)
+CONSTANT_TISSUE = _F(
+    "the constant {0[2]} of {0[1]!r}",
+    "environments.{0[1]}.{0[2]}.varies",
+    "leave varies out of the {0[2]} of {0[1]}",
+    _constant(lambda at: at[0] == "environments"),
+)
+CONSTANT_MOTOR = _F(
+    "the constant {0[1]} of the {0[0]}",
+    "{0[0]}.{0[1]}.varies",
+    "leave varies out of {0[1]}",
+    _constant(lambda at: at[0] != "environments"),
+)
+CONSTANT_LAG = _F(
+    "the constant {0[1]} of the {0[0]}",
+    "{0[0]}.{0[1]}.varies",
+    "leave varies out of {0[1]}",
+    _constant(lambda at: at[-1] == "time_constant"),
 )
 LOADED = _F(
     "a load of the motor",

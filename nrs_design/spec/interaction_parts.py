@@ -247,6 +247,18 @@ class AbstractInteractionSpec(SpecModel):
         }
 
     @property
+    def ranges(self) -> dict[tuple[str, ...], RangedQuantity]:
+        """The numbers of what is touched and of the drive, by the keys that lead to them."""
+        found: dict[tuple[str, ...], RangedQuantity] = {
+            ("environments", name, key): quantity
+            for name in sorted(self.touched & self.environments.keys())
+            for key, quantity in self.environments[name].parameters().items()
+        }
+        for at, quantity in self.motor_ranges.items():
+            found[at] = quantity
+        return found
+
+    @property
     def late_at(self) -> tuple[str, str] | None:
         """The key that says that commands take effect later than at their sample, or None."""
         drives = ((name, "dead_time") for name in self.drives)

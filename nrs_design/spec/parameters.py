@@ -103,7 +103,7 @@ class ParameterSpec(SpecModel):
     varies: Switch = Field(
         default=True,
         description="true: may change arbitrarily fast within its range; false: unknown, but it "
-        "does not change; at most one parameter",
+        "does not change",
     )
 
     @property

@@ -13,8 +13,10 @@ from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
 from nrs_design.spec.axis import current
+from nrs_design.spec.check import Row
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel
+from nrs_design.spec.parameters import Switch
 from nrs_design.spec.quantity import (
     QUANTITY_PATTERN,
     Quantity,
@@ -142,7 +144,21 @@ class RangedQuantity(SpecModel):
         description="[lowest, highest] value that the proof covers; default: the nominal one",
     )
 
-    checks = RANGE_CHECKS
+    varies: Switch = Field(
+        default=True,
+        description="true: may change arbitrarily fast within its range; false: unknown, but it "
+        "does not change",
+    )
+
+    checks = (
+        *RANGE_CHECKS,
+        Row(
+            "varies",
+            lambda s: not s.varies and "range" not in s.model_fields_set,
+            "a constant that has one value: there is no range",
+            "add `range: [lowest, highest]`, or remove varies",
+        ),
+    )
 
     @property
     def fixed(self) -> bool:
@@ -164,7 +180,11 @@ def _bounds(kind: QuantityKind) -> ReadBefore:
     return ReadBefore(read, _pair_schema(kind, keys, ["min", "max"]))
 
 
-def _ranged(kind: QuantityKind, *, positive: bool = True, signed: bool = False) -> ReadBefore:
+def _ranged(
+    kind: QuantityKind, *, positive: bool = True, signed: bool = False, constant: bool = False
+) -> ReadBefore:
+    """Read a quantity with a range; in some places it may be said to be constant."""
+
     def reader(value: object) -> Quantity:
         return read_quantity(value, kind, positive=positive, signed=signed)
 
@@ -172,6 +192,12 @@ def _ranged(kind: QuantityKind, *, positive: bool = True, signed: bool = False) 
         if isinstance(value, str | Quantity):
             return {"nominal": reader(value)}
         entries = read_entries(value, ("nominal",), reader)
+        if isinstance(entries, dict) and "varies" in entries and not constant:
+            raise fault(
+                "no proof is about whether this value changes while the robot runs",
+                "remove varies: it is for numbers of the motor and of environments",
+                "varies",
+            )
         if isinstance(entries, dict) and "range" in entries:
             entries["range"] = read_range(entries["range"], reader)
         return entries
@@ -184,6 +210,11 @@ def _ranged(kind: QuantityKind, *, positive: bool = True, signed: bool = False) 
         "maxItems": 2,
         "description": "[lowest, highest] value that the proof covers",
     }
+    if constant:
+        schema["anyOf"][1]["properties"]["varies"] = {
+            "type": "boolean",
+            "description": "false: unknown in the range, but it does not change",
+        }
     return ReadBefore(read, schema)
 
 
@@ -263,9 +294,9 @@ TimeRange = Annotated[
     ReadBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES]}),
 ]
 ActuatorGain = Annotated[Quantity, _one(kinds.ACTUATOR_GAIN)]
-RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN)]
+RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN, constant=True)]
 Duration = Annotated[Quantity, _one(kinds.DURATION)]
-RangedDuration = Annotated[RangedQuantity, _ranged(kinds.DURATION)]
+RangedDuration = Annotated[RangedQuantity, _ranged(kinds.DURATION, constant=True)]
 DerivativeGain = Annotated[Quantity, _one(kinds.DERIVATIVE_GAIN)]
 Decay = Annotated[Quantity, _one(kinds.DECAY, positive=False)]
 DecayRate = Annotated[Quantity, _one(kinds.DECAY)]
@@ -282,14 +313,14 @@ Bandwidth = Annotated[Quantity, _one(kinds.BANDWIDTH)]
 LeverArm = Annotated[Quantity, _one(kinds.LEVER_ARM)]
 RotationalStiffness = Annotated[Quantity, _one(kinds.SPRING)]
 Impedance = Annotated[Quantity, _one(kinds.IMPEDANCE)]
-RangedImpedance = Annotated[RangedQuantity, _ranged(kinds.IMPEDANCE)]
+RangedImpedance = Annotated[RangedQuantity, _ranged(kinds.IMPEDANCE, constant=True)]
 NonnegativeImpedance = Annotated[Quantity, _one(kinds.IMPEDANCE, positive=False)]
 IntegralForceGain = Annotated[Quantity, _one(kinds.INTEGRAL_FORCE_GAIN)]
 ForceGain = Annotated[Quantity, _one(kinds.FORCE_GAIN)]
-Stiffness = Annotated[RangedQuantity, _ranged(kinds.STIFFNESS)]
-Damping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, positive=False)]
-PositiveDamping = Annotated[RangedQuantity, _ranged(kinds.DAMPING)]
-HandMass = Annotated[RangedQuantity, _ranged(kinds.HAND_MASS, positive=False)]
+Stiffness = Annotated[RangedQuantity, _ranged(kinds.STIFFNESS, constant=True)]
+Damping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, positive=False, constant=True)]
+PositiveDamping = Annotated[RangedQuantity, _ranged(kinds.DAMPING, constant=True)]
+HandMass = Annotated[RangedQuantity, _ranged(kinds.HAND_MASS, positive=False, constant=True)]
 Deflection = Annotated[Quantity, _one(kinds.DEFLECTION)]
 Mass = Annotated[Quantity, _one(kinds.MASS, positive=False)]
 RangedMass = Annotated[RangedQuantity, _ranged(kinds.MASS)]
@@ -306,7 +337,7 @@ Angle = Annotated[Quantity, _one(kinds.ANGLE)]
 Phase = Annotated[Quantity, _one(kinds.PHASE)]
 SignedAngle = Annotated[Quantity, _one(kinds.ANGLE, signed=True)]
 MomentOfInertia = Annotated[Quantity, _one(kinds.INERTIA, positive=False)]
-RangedInertia = Annotated[RangedQuantity, _ranged(kinds.INERTIA)]
+RangedInertia = Annotated[RangedQuantity, _ranged(kinds.INERTIA, constant=True)]
 RotorInertia = Annotated[Quantity, _one(kinds.INERTIA)]
 ProductOfInertia = Annotated[Quantity, _one(kinds.INERTIA, signed=True)]
 LinearVelocity = Annotated[Quantity, _one(kinds.LINEAR_VELOCITY)]

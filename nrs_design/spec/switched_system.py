@@ -202,12 +202,6 @@ def _unused(spec: SwitchedSystemSpec) -> str | None:
     return next((name for name in spec.parameters if name not in used), None)
 
 
-def _constant(spec: SwitchedSystemSpec) -> tuple[str, ...]:
-    """Return the parameters that do not vary, if they are more than one."""
-    names = tuple(name for name, parameter in spec.parameters.items() if not parameter.varies)
-    return names if len(names) > 1 else ()
-
-
 def _corners(spec: SwitchedSystemSpec) -> int:
     return sum(2 ** len(mode.parameters) for mode in spec.modes)
 
@@ -278,12 +272,6 @@ SYSTEM_CHECKS: tuple[Row[SwitchedSystemSpec], ...] = (
             "{0!r} is not a number, and there is no parameter of that name",
             "{1}",
         ),
-    ),
-    Row(
-        "parameters.{1}.varies",
-        _constant,
-        "{0!r} has varies: false already, and at most one parameter may",
-        "leave it out here: what holds for a varying parameter holds for a constant one",
     ),
     Row("parameters.{0}", _unused, "no matrix depends on this parameter", "remove it or use it"),
     short_denominator(

@@ -17,6 +17,7 @@ from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,
+    constant_texts,
     identified_texts,
     logic_texts,
     preload_texts,
@@ -24,11 +25,11 @@ from nrs_design.switched.assumptions import (
     scale_texts,
     sensor_texts,
 )
+from nrs_design.switched.constant_parameters import constants_of, with_constants
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import (
+    constant_parameters,
     corner_modes,
-    fixed_ends,
-    fixed_parameter,
     read_parameters,
 )
 
@@ -102,22 +103,19 @@ def assemble_matrices(spec: SwitchedSystemSpec, scale: Fraction = DECLARED) -> S
     """
     _check_scale(scale)
     parameters = read_parameters(spec, scale)
-    constant = fixed_parameter(parameters)
     resets = ((r.source, r.target, RationalMatrix.from_rows(r.map)) for r in spec.resets)
     corners = {mode.name: corner_modes(mode, parameters) for mode in spec.modes}
     groups = {name: tuple(mode.name for mode in modes) for name, modes in corners.items()}
     modes = tuple(chain.from_iterable(corners.values()))
-    return SwitchedSystem(
+    system = SwitchedSystem(
         spec.name,
         Time(spec.time),
         tuple(f"x{i + 1}" for i in range(spec.dimension)),
         modes,
         assume_matrices(spec, parameters, scale),
-        replace(
-            assemble_switching(spec.switching, groups, resets, fixed_ends(modes, constant)),
-            fixed_parameter=constant,
-        ),
+        assemble_switching(spec.switching, groups, resets),
     )
+    return with_constants(system, constant_parameters(parameters))
 
 
 def assemble(
@@ -175,6 +173,13 @@ def assemble(
         raise AssemblyError(
             f"unknown coordinates {coordinates!r}", remedy="choose deflection or force"
         )
+    (drive,) = spec.drives
+    constants = tuple(
+        constants_of(plant, conditions.touched, drive, sampled=conditions.sampling is not None)
+    )
+    unit = spec.axis.unit
+    constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
+    system = with_constants(system, constants)
     period = None if conditions.sampling is None else conditions.sampling.outer
     sensed = sensor_texts(
         design.sensor,
@@ -189,6 +194,7 @@ def assemble(
         *identified_texts(spec),
         *preload_texts(conditions.preloads, scale),
         *scale_texts(scale),
+        *constant_texts(system.switching),
         *safety_texts(system.safety),
     )
     return _on_axis(replace(system, assumptions=texts), spec.axis)

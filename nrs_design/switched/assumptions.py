@@ -12,6 +12,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.saturation import Governed
+from nrs_design.proof.switching import Switching
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
 from nrs_design.spec.axis import AxisType
@@ -288,6 +289,14 @@ _KEPT_BY: Mapping[str, Callable[[InteractionDesignSpec, Any], Iterable[Assumptio
         {"thresholds": lambda spec, logic: [say("logic.timer")], "estimator": _estimator_texts}
     )
 )
+
+
+def constant_texts(switching: Switching) -> Iterator[Assumption]:
+    """Say which parameters of a design do not change."""
+    for parameter in switching.fixed_parameters:
+        name, unit = parameter.name, f" {parameter.unit}" * bool(parameter.unit)
+        ends = f"[{exact_text(parameter.low)}, {exact_text(parameter.high)}]{unit}"
+        yield say("constant.value", f"{name} in {ends}", name=name, ends=ends)
 
 
 def _parameter_text(parameter: UncertainParameter) -> Assumption:

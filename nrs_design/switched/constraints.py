@@ -28,7 +28,6 @@ def assemble_switching(
     rules: SwitchingSpec,
     groups: Groups,
     resets: Iterable[Jump] = (),
-    ends: Iterable[Transition] = (),
 ) -> Switching:
     """Carry the rules of a spec over to the assembled modes.
 
@@ -43,8 +42,6 @@ def assemble_switching(
         The assembled modes that each name stands for, in their order.
     resets : iterable of (str, str, RationalMatrix)
         Source, target and map, in terms of the same names.
-    ends : iterable of (str, str)
-        Pairs of modes at the two ends of a constant parameter; transitions allow for more.
 
     Raises
     ------
@@ -58,7 +55,7 @@ def assemble_switching(
         transitions = _limited(_expand(chain(within, rules.transitions), groups))
     jumps = _limited(_assembled_resets(resets, groups))
     stays = tuple(_assembled_stays(rules, groups, Stay(common)))
-    return Switching(common, transitions, jumps, tuple(ends), stays=stays)
+    return Switching(common, transitions, jumps, stays=stays)
 
 
 def zeroing(states: Sequence[str], zeroed: Container[str]) -> RationalMatrix:

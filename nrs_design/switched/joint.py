@@ -57,7 +57,7 @@ class Joint:
 
     def texts(self, axis: AxisType) -> Iterator[Assumption]:
         """Say what is taken for granted about the motor."""
-        moving = "" if self.ranges.fixed else ", and may change arbitrarily fast"
+        moving = self.ranges.may_change("arbitrarily fast")
         motor = motor_text(self.ranges, axis)
         which = "nominal-motor.joint" if self.ranges.fixed else "motor.joint"
         yield say(which, motor, motor=motor, moving=moving)

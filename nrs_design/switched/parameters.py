@@ -6,7 +6,7 @@ corners. What decreases in all corners in continuous time therefore decreases in
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -16,9 +16,8 @@ from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.spec import ModeSpec, SwitchedSystemSpec
+from nrs_design.switched.constant_parameters import ConstantParameter
 from nrs_design.switched.parameter_box import Box
-
-Pair = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,26 +37,31 @@ def read_parameters(spec: SwitchedSystemSpec, scale: Fraction) -> tuple[Uncertai
     )
 
 
-def fixed_parameter(parameters: Sequence[UncertainParameter]) -> FixedParameter | None:
-    """Return the parameter that is unknown but constant, if there is one."""
-    for name, interval, varies in ((p.name, p.interval, p.varies) for p in parameters):
-        if not varies and interval.low != interval.high:
-            return FixedParameter(name, interval.low, interval.high)
-    return None
+def constant_parameters(
+    parameters: Sequence[UncertainParameter],
+) -> tuple[ConstantParameter, ...]:
+    """Return the parameters that are unknown but constant."""
+    return tuple(
+        ConstantParameter(
+            FixedParameter(p.name, p.interval.low, p.interval.high),
+            tuple(f"{p.name}-{end}" for end, _ in p.interval.ends),
+        )
+        for p in parameters
+        if not p.varies and p.interval.low != p.interval.high
+    )
 
 
 def corner_modes(mode: ModeSpec, parameters: Sequence[UncertainParameter]) -> tuple[Mode, ...]:
     """Return the corners of one mode.
 
-    Parameters that the mode does not depend on make no corners, except the constant one: its two
-    ends make pairs in every mode.
+    Parameters that the mode does not depend on make no corners.
 
     Raises
     ------
     InternalError
         If the matrix halfway is not the mean of the corners.
     """
-    axes = [p for p in parameters if p.name in mode.parameters or not p.varies]
+    axes = [p for p in parameters if p.name in mode.parameters]
     others = {p.name: p.interval.nominal for p in parameters}
     box = Box({p.name: p.interval for p in axes})
     corners = [(name, mode.matrix(others | at)) for name, at in box.named_values(mode.name)]
@@ -69,13 +73,3 @@ def corner_modes(mode: ModeSpec, parameters: Sequence[UncertainParameter]) -> tu
     if [[len(corners) * entry for entry in row] for row in middle] != sums:
         raise InternalError(f"mode {mode.name} is not affine in the parameters")
     return tuple(Mode(name, RationalMatrix.from_rows(A)) for name, A in corners)
-
-
-def fixed_ends(modes: Iterable[Mode], parameter: FixedParameter | None) -> Iterator[Pair]:
-    """Yield the two ends of the constant parameter in every mode, all else being equal."""
-    if parameter is not None:
-        low, high = (f"{parameter.name}-{end}" for end in ("min", "max"))
-        for mode in modes:
-            labels = mode.name.split("/")
-            if low in labels[1:]:
-                yield mode.name, "/".join(high if label == low else label for label in labels)

@@ -12,6 +12,7 @@ from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.drive import Drive, Takes
+from nrs_design.models.interval import may_change
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
 from nrs_design.spec.axis import AxisType
@@ -148,9 +149,9 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumpt
         corner = "a corner of that, of no motor and no times of the ranges"
     elif tau.low == tau.high:
         corner = f"an end, less than 2^-{EXPONENTIAL_BITS - 1} away"
-    moving = "" if ranges.fixed else ", and may change at every sample, not in between"
+    moving = ranges.may_change("at every sample, not in between")
     if frame.motor.drive is not None:
-        return _drive_text(frame.motor.drive, moving, axis)
+        return _drive_text(frame.motor.drive, axis)
     if frame.step.streams:
         lag = motor.partition(" and its time constant ")[2]
         return say("motor.followed", lag, motor=lag, moving=moving, corner=corner)
@@ -163,8 +164,9 @@ def _motor_text(ranges: ActuatorRanges, frame: Frame, axis: AxisType) -> Assumpt
     )
 
 
-def _drive_text(drive: Drive, moving: str, axis: AxisType) -> Assumption:
+def _drive_text(drive: Drive, axis: AxisType) -> Assumption:
     """Say how a robot moves that has no motor of the user's."""
+    moving = may_change(drive.ranges.values(), "at every sample, not in between")
     if drive.takes is Takes.TORQUE:
         inertia = f"{interval_text(drive.ranges['J'])} {axis.unit('kg*m^2')}"
         friction = f"{interval_text(drive.ranges['B'])} {axis.unit('N*m*s/rad')}"

@@ -63,7 +63,9 @@ def slowed_motor(ranges: ActuatorRanges, coupling: AxesCoupling) -> ActuatorRang
         What is known of the links.
     """
     s, tau = _middle(coupling), ranges.time_constant
-    return replace(ranges, time_constant=Interval(tau.nominal / s, tau.low / s, tau.high / s))
+    return replace(
+        ranges, time_constant=Interval(tau.nominal / s, tau.low / s, tau.high / s, tau.varies)
+    )
 
 
 def couplings_of(

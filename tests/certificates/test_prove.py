@@ -127,9 +127,9 @@ MAP = {"source": "a", "target": "b", "numerators": [[9, 0], [0, 9]], "denominato
         ),
         ({"stays": [["z", {"shortest": "1"}]]}, "not those of modes"),
         ({"stays": [["a", {"shortest": "2", "longest": "1"}]]}, "must be left before"),
-        ({"fixed_ends": [["a", "z"]]}, "not the ends of one constant parameter"),
-        ({"fixed_ends": [["a", "b"], ["a", "b"]]}, "not the ends of one constant parameter"),
-        ({"fixed_parameter": {"name": "k", "low": "--1", "high": "1"}}, "not a ratio"),
+        ({"fixed_ends": [["a", "z"]]}, "not the ends of constant parameters"),
+        ({"fixed_ends": [["a", "b"], ["a", "b"]]}, "not the ends of constant parameters"),
+        ({"fixed_parameters": [{"name": "k", "low": "--1", "high": "1"}]}, "not a ratio"),
     ],
 )
 def test_rules_that_make_no_sense(rules, reason):

@@ -99,7 +99,7 @@ NUMBERS = {
     "parameter-quadratic": {"low", "high", "denominator_log2"},
     "saturated-ellipsoid": {"Q", "H", "level"},
     "no-common-quadratic": {"factors"},
-    "growing-sequence": {"steps", "doublings", "share"},
+    "growing-sequence": {"steps", "doublings", "shares"},
 }
 ANY_RATE = Limits(optimize_rate=False)
 FIRST = ("statements", 0)
@@ -702,7 +702,7 @@ def test_wrong_kind_of_spec(name):
         [{"kind": "block-triangular", "blocks": [[], [0, 1]], "parts": [{}], "claim": ""}],
         [{"kind": "growing-sequence", "steps": [], "doublings": 3, "claim": ""}],
         [{"kind": "growing-sequence", "steps": [["m0"]], "doublings": 3, "claim": ""}],
-        [{"kind": "growing-sequence", "share": "1/2", "claim": ""}],
+        [{"kind": "growing-sequence", "shares": "1/2", "claim": ""}],
         [{"kind": "graph", "nodes": [], "denominator_log2": 0, "rate": "1", "claim": ""}],
         [{"kind": "graph", "nodes": [{}], "denominator_log2": 0, "rate": "1", "claim": ""}],
         [{"kind": "graph", "degree": 2, "vanishing": [[]], "rate": "1", "claim": "",

@@ -161,6 +161,46 @@ def test_examples_of_what_must_fail(tmp_path, name, words):
     run("verify", f"reports/{name}.cert.json", path, cwd=tmp_path, code=1)
 
 
+CORNERS = """\
+kind: switched-system
+name: corners
+time: discrete
+parameters:
+  k: {nominal: "1/2", range: [0, "0.9"], varies: false}
+  m: {nominal: 0, range: ["-0.95", "0.95"], varies: false}
+modes: [{name: a, A: [[0, 1], ["-k", "m"]]}, {name: b, A: [[0, "0.9"], ["-k", "0.9*m"]]}]
+switching: arbitrary
+"""
+
+
+def test_constants_are_the_difference_between_refuted_and_proved(tmp_path):
+    path = tmp_path / "a.nrs.yaml"
+    path.write_text(CORNERS)
+    result = run("certify-switching", path, cwd=tmp_path, code=0)
+    assert "For every constant value of k and m in their ranges" in result.stdout
+    run("verify", "reports/corners.cert.json", path, cwd=tmp_path, code=0)
+    path.write_text(CORNERS.replace(", varies: false", ""))
+    run("verify", "reports/corners.cert.json", path, cwd=tmp_path, code=1)
+    assert "Repeating" in run("certify-switching", path, cwd=tmp_path, code=1).stdout
+
+
+def test_a_value_inside_refutes(tmp_path):
+    """All corners are triangular and stable; in the middle both states drive each other."""
+    path = tmp_path / "a.nrs.yaml"
+    head, _, _ = CORNERS.partition("parameters:")
+    path.write_text(
+        f"""{head}parameters:
+  k: {{nominal: 0, range: [-1, 1], varies: false}}
+  m: {{nominal: 0, range: [-1, 1], varies: false}}
+modes: [{{name: a, A: [["1/2", "3/5 - 3/5*k"], ["3/5 + 3/5*k", "1/4 + m/4"]]}}]
+switching: arbitrary
+"""
+    )
+    result = run("certify-switching", path, cwd=tmp_path, code=1)
+    assert "At k = 0 and m = 1, which the range allows and which does not change" in result.stdout
+    run("verify", "reports/corners.cert.json", path, cwd=tmp_path, code=1)
+
+
 @pytest.mark.parametrize(
     ("method", "spec", "code", "verdict"),
     [

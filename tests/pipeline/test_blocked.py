@@ -139,7 +139,7 @@ def test_the_loss_of_contact(tmp_path):
 
 @pytest.mark.nightly
 def test_a_range_of_the_hand(tmp_path):
-    found = blocked(tmp_path, hand(), 4)
+    found = blocked(tmp_path, hand(), 8)
     lines = {item.lines[0].line: item.lines[0] for item in found.proved}
     damping = lines["environments.hand.damping.range"]
     assert damping.word == "down to"

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from itertools import product
 
 from nrs_design.controllers.laws import Admittance
 from nrs_design.models.contact import KelvinVoigt
@@ -51,6 +52,25 @@ def dayawansa_martin(a: Entry, switching: Switching = ARBITRARY) -> SwitchedSyst
 def oscillator(kbar: Entry, switching: Switching = ARBITRARY) -> SwitchedSystem:
     """Stable under arbitrary switching iff kbar < 6.98513... (Zelentsovsky 1994)."""
     return family([[0, 1], [-2, -1]], [[0, 1], [-2 - Fraction(kbar), -1]], switching=switching)
+
+
+CORNERS = Switching(fixed_ends=(("m0", "m1", "m2", "m3"),))
+
+
+def companion(k: Entry, m: Entry, switching: Switching = CORNERS) -> SwitchedSystem:
+    """Roots of ``z^2 - m z + k`` with k from 0 and abs(m) up to bounds.
+
+    Stable for every constant k and m iff both bounds are below 1 (Jury).
+    """
+    ends = product((0, Fraction(k)), (-Fraction(m), Fraction(m)))
+    matrices = [[[0, 1], [-product_, total]] for product_, total in ends]
+    return family(*matrices, time=Time.DISCRETE, switching=switching)
+
+
+def two_springs() -> SwitchedSystem:
+    """Stiffness and damping in wide ranges, both constant; stable iff both are positive."""
+    rows = [[[0, 1], [-k, -b]] for k, b in product((1, 60), (1, 3))]
+    return family(*rows, switching=CORNERS)
 
 
 def geromel_colaneri(dwell: Entry, **rules: object) -> SwitchedSystem:
@@ -494,6 +514,8 @@ SYSTEMS = {
     ),
     "growing-sequence, in turns": lambda: doubled_in_turns(3),
     "parameter-quadratic": lambda: oscillator(50, PAIR),
+    "constants-quadratic": lambda: companion("0.9", "0.9"),
+    "constants-quadratic, continuous": two_springs,
     "growing-sequence, value": lambda: hidden_value(3),
     "growing-sequence, value in steps": lambda: hidden_value(3, Time.DISCRETE),
     "growing-sequence, average at a value": hidden_shears,

@@ -33,7 +33,7 @@ def assembled(rules="arbitrary"):
 @pytest.mark.parametrize("share", [Fraction(0), Fraction(1), Fraction(1, 3)])
 def test_matrices_are_those_of_the_spec_at_that_value(share):
     spec, value = parse_spec(TEXT.replace("RULES", "arbitrary")), Fraction(1, 2) + share * 3 / 2
-    found = system_at(assembled(), share)
+    found = system_at(assembled(), (share,))
     expected = {
         f"{mode.name}{end}": mode.matrix({"k": k, "m": value})
         for mode in spec.modes
@@ -45,7 +45,7 @@ def test_matrices_are_those_of_the_spec_at_that_value(share):
 
 def test_the_parameter_is_known_by_name():
     parameter = FixedParameter("m", Fraction(1, 2), Fraction(2))
-    assert assembled().switching.fixed_parameter == parameter
+    assert assembled().switching.fixed_parameters == (parameter,)
     nominal = assemble_from_text(
         parse_spec(TEXT.replace("RULES", "arbitrary")), {}, None, Fraction(0)
     )
@@ -53,7 +53,7 @@ def test_the_parameter_is_known_by_name():
 
 
 def test_allowed_switches_stay_allowed():
-    found = system_at(assembled("{transitions: [[a, b], [b, c]]}"), Fraction(1, 2))
+    found = system_at(assembled("{transitions: [[a, b], [b, c]]}"), (Fraction(1, 2),))
     # Corners of one mode follow each other freely.
     assert set(found.switching.transitions) == {
         ("a/k-min", "a/k-max"),
@@ -73,7 +73,7 @@ def test_a_switch_that_one_end_forbids_is_forbidden():
         ([(low[0], high[1]), (low[1], high[0])], 0),
     ):
         rules = Switching(transitions=tuple(allowed), fixed_ends=system.switching.fixed_ends)
-        found = system_at(replace(system, switching=rules), Fraction(1, 2))
+        found = system_at(replace(system, switching=rules), (Fraction(1, 2),))
         assert len(found.switching.transitions) == count
 
 
@@ -86,7 +86,7 @@ def test_name_of_a_pair_is_what_its_ends_share():
 def test_nobody_switches_to_the_mode_that_one_is_in():
     system = hidden_value(1)
     rules = replace(system.switching, transitions=(("m0", "m0"), ("m1", "m1")))
-    found = system_at(replace(system, switching=rules), Fraction(1, 2))
+    found = system_at(replace(system, switching=rules), (Fraction(1, 2),))
     assert found.switching.transitions == ()
 
 
@@ -94,7 +94,7 @@ def test_nobody_switches_to_the_mode_that_one_is_in():
 def test_ends_of_different_sizes_are_an_error(high):
     system = family([[-1, 0], [0, -1]], high, switching=PAIR)
     with pytest.raises(ValueError, match="shorter"):
-        system_at(system, Fraction(1, 2))
+        system_at(system, (Fraction(1, 2),))
 
 
 def test_a_stay_must_suit_both_ends():
@@ -104,7 +104,7 @@ def test_a_stay_must_suit_both_ends():
         ("a/k-min/m-max", Stay(Fraction(2), Fraction(9))),
     )
     found = system_at(
-        replace(system, switching=replace(system.switching, stays=stays)), Fraction(1)
+        replace(system, switching=replace(system.switching, stays=stays)), (Fraction(1),)
     )
     assert found.switching.stays == (("a/k-min", Stay(Fraction(2), Fraction(5))),)
-    assert system_at(system, Fraction(1)).switching == ARBITRARY
+    assert system_at(system, (Fraction(1),)).switching == ARBITRARY

@@ -219,7 +219,7 @@ def test_veto_on_what_is_surely_stable(A, time, is_vetoed):
     assert agrees(halves, mixed) is not is_vetoed
     # The parameter's value in the middle of these.
     ends = replace(halves, switching=PAIR)
-    assert agrees(ends, replace(staying("m0 to m1"), share=HALF)) is not is_vetoed
+    assert agrees(ends, replace(staying("m0 to m1"), shares=(HALF,))) is not is_vetoed
 
 
 def test_every_part_of_a_block_triangular_system_is_asked():

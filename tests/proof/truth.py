@@ -18,6 +18,7 @@ from nrs_design.proof.evidence import (
     AbstractEvidence,
     BlockTriangular,
     ConstantForce,
+    ConstantsQuadratic,
     FormsOnGraph,
     GrowingSequence,
     InvariantEllipsoid,
@@ -703,6 +704,33 @@ def _parameter_quadratic(system: SwitchedSystem, item: ParameterQuadratic) -> bo
     return is_rate(item.rate, system.time)
 
 
+def weights(shares: Sequence[Fraction]) -> list[Fraction]:
+    """Return the weight of every corner of a box, the last parameter turning fastest."""
+    found = [Fraction(1)]
+    for share in shares:
+        found = [w * s for w in found for s in (1 - share, share)]
+    return found
+
+
+def _constants_quadratic(system: SwitchedSystem, item: ConstantsQuadratic) -> bool:
+    """Sample the weights; with each of them the decrease is that of a common quadratic."""
+    modes = {mode.name: mode.A.fractions() for mode in system.modes}
+    n = len(item.functions)
+    single = [[Fraction(k == v) for v in range(n)] for k in range(n)]
+    mixed = [[(a + b) / 2 for a, b in zip(*pair, strict=True)] for pair in product(single, single)]
+    tilted = [[Fraction(k * v % 7 + 1) for v in range(n)] for k in range(1, 9)]
+    for w in (*single, *mixed, *([v / sum(row) for v in row] for row in tilted)):
+        P = combine(*zip(w, item.functions, strict=True))
+        matrices = [
+            combine(*zip(w, (modes[name] for name in corners), strict=True))
+            for corners in system.switching.fixed_ends
+        ]
+        forms = [decrease(A, P, item.rate, system.time) for A in matrices]
+        if not all(map(is_definite, [P, *forms])):
+            return False
+    return is_rate(item.rate, system.time)
+
+
 def edges_of(system: SwitchedSystem) -> list[tuple[str, str, Rows]]:
     """List source, target and map of all switches, from the rules themselves."""
     sizes = {mode.name: len(mode.A.numerators) for mode in system.modes}
@@ -793,7 +821,7 @@ def _floats(rows) -> np.ndarray:
 
 
 def _growing_sequence(system: SwitchedSystem, item: GrowingSequence) -> bool:
-    if item.share is not None:
+    if item.shares:
         return _grows_at_value(system, item)
     if item.factor is not None:
         return _grows_in_contact(system, item)
@@ -914,22 +942,24 @@ def _grows_at_value(system: SwitchedSystem, item: GrowingSequence) -> bool:
     """It must hold for the averages of the ends, under the rules that both ends share."""
     modes = {mode.name: mode.A.fractions() for mode in system.modes}
     names = {}
-    for low, high in system.switching.fixed_ends:
-        same = [a for a, b in zip(low.split("/"), high.split("/"), strict=True) if a == b]
-        names["/".join(same) or f"{low} to {high}"] = (low, high)
+    for corners in system.switching.fixed_ends:
+        parts = zip(*(corner.split("/") for corner in corners), strict=False)
+        same = [labels[0] for labels in parts if len(set(labels)) == 1]
+        names["/".join(same) or " to ".join(corners)] = corners
     averages = tuple(
         Mode(
             name,
             RationalMatrix.from_rows(
-                combine((1 - item.share, modes[low]), (item.share, modes[high]))
+                combine(*zip(weights(item.shares), (modes[c] for c in corners), strict=True))
             ),
         )
-        for name, (low, high) in names.items()
+        for name, corners in names.items()
     )
-    part = replace(item, share=None)
+    part = replace(item, shares=())
     if len(item.steps) > 1 and not _obeys(system, part, names):
         return False
-    return 0 <= item.share <= 1 and holds(replace(system, modes=averages), part)
+    inside = all(0 <= share <= 1 for share in item.shares)
+    return inside and holds(replace(system, modes=averages), part)
 
 
 def _obeys(system: SwitchedSystem, part: GrowingSequence, names: Mapping[str, tuple]) -> bool:
@@ -975,6 +1005,7 @@ def restrict(system: SwitchedSystem, block: tuple[int, ...]) -> SwitchedSystem:
 
 _ORACLES = {
     ConstantForce: _constant_force,
+    ConstantsQuadratic: _constants_quadratic,
     FormsOnGraph: _graph,
     GrowingSequence: _growing_sequence,
     InvariantEllipsoid: _invariant_ellipsoid,

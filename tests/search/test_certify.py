@@ -361,7 +361,7 @@ class TestMethods:
         bad = replace(
             UNSTABLE,
             switching=CONSTANT.switching
-            if method in (Method.PARAMETER_QUADRATIC, Method.VALUE)
+            if method in (Method.PARAMETER_QUADRATIC, Method.CONSTANTS_QUADRATIC, Method.VALUE)
             else UNSTABLE.switching,
         )
         assert outcome(bad, method) == ("refuted", "impossible")

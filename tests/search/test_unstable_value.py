@@ -22,7 +22,7 @@ def test_a_value_inside_the_range_is_found(time):
     system = hidden_value("2.1", time)
     evidence, words = outcome(search_value, system)
     assert words == "found"
-    assert evidence.share == Fraction(1, 2)
+    assert evidence.shares == (Fraction(1, 2),)
     assert holds(system, evidence)
 
 
@@ -45,7 +45,7 @@ def test_switching_at_one_value(time):
     system = hidden_shears(time)
     assert outcome(search_value, system)[0] is None
     evidence, _ = outcome(search_switching_at_values, system)
-    assert evidence.share == Fraction(1, 2)
+    assert evidence.shares == (Fraction(1, 2),)
     assert holds(system, evidence)
 
 

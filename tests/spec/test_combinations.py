@@ -32,6 +32,8 @@ PARALLEL = PI | {"type": "parallel"}
 SAMPLING = {"period": "2 ms", "delay": 0}
 LOAD = {"load_inertia": "1.213 kg*m^2"}
 TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
+CONSTANT = {"range": ["40 N*m/rad", "46 N*m/rad"], "varies": False}
+CONSTANT_LAG = {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"], "varies": False}
 BASE = {
     "kind": "interaction-design",
     "name": "combined",
@@ -194,6 +196,13 @@ CHANGES = {
             for name in ("first", "second")
         },
     },
+    f.CONSTANT_TISSUE: {
+        "environments": {
+            "soft": {"stiffness": CONSTANT | {"nominal": "43 N*m/rad"}},
+        }
+    },
+    f.CONSTANT_MOTOR: {"actuator": {"time_constant": CONSTANT_LAG}},
+    f.CONSTANT_LAG: {"actuator": {"time_constant": CONSTANT_LAG}},
 }
 
 

@@ -19,6 +19,7 @@ from tests.support import ROOT, SOFT_TISSUE
 TEXT = SOFT_TISSUE.read_text(encoding="utf-8")
 BT = "Bt: {min: 0.1 N*m*s/rad, max: 20 N*m*s/rad"
 STIFFNESS = "environments.soft.stiffness.range"
+CONSTANT = "environments.soft.stiffness.varies"
 CONTROLLERS = ["controllers.insertion", "controllers.withdrawal"]
 # What a spec may have besides, and the line that it could be proved without.
 PARTS_OF = {
@@ -64,7 +65,7 @@ def at_least(spec: LoadedSpec, line: Concession) -> LoadedSpec:
 
 @pytest.mark.parametrize("name", PARTS_OF)
 def test_a_line_is_named_where_it_is_there_and_a_spec_without_it_is_valid(name):
-    assert set(lines_of(loaded(TEXT))) == {STIFFNESS, *CONTROLLERS}
+    assert set(lines_of(loaded(TEXT))) == {STIFFNESS, CONSTANT, *CONTROLLERS}
     change = PARTS_OF[name]
     text = TEXT.replace(*change, 1) if isinstance(change, tuple) else TEXT + change
     spec = loaded(text)

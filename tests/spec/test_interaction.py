@@ -136,6 +136,8 @@ IMPEDANCE_FAULTS = [
     ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N*m/rad, 2 N*m/rad]}", "[1 N*m", "one unit"),
     ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m, 2 s]}", "2 s", "not a stiffness"),
     ("747.1461 N/m", "{range: [1 N/m, 2 N/m]}", "{range", "nominal` is missing"),
+    ("747.1461 N/m", "{nominal: 1 N/m, varies: false}", "false", "a constant that has one value"),
+    ("747.1461 N/m", "{nominal: 1 N/m, range: [1 N/m, 2 N/m], varies: 0}", "0}", "true or false"),
     ("    lever_arm: 0.24 m\n", "", "747.1461", "there is no lever_arm"),
     ("    damping: 0.5 N*m*s/rad\n", "", "hand", "damping` is missing"),
     ("0.5 N*m*s/rad", "5 N*s/m", "5 N*s/m", "there is no lever_arm"),

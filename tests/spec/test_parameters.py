@@ -70,7 +70,6 @@ def test_a_matrix_needs_the_value_of_every_parameter() -> None:
         ("varies: false", "varies: no", "no}", "write true or false"),
         ("varies: false", "varies: 0", "0}", "write true or false"),
         ("varies: false", "vary: false", "vary", "did you mean varies?"),
-        ("[25, 90]}", "[25, 90], varies: false}", "false}\nmodes", "at most one parameter may"),
         ("  k:", "  2k:", "2k", "not a name of a parameter"),
         ("  k:", "  k-1:", "k-1", "not a name of a parameter"),
         ("  k:", "  κ:", "κ", "not a name of a parameter"),

@@ -58,6 +58,7 @@ switching:
   transitions: [[fast, slow], [slow, fast]]
 """
 WEAKER = {
+    "constant stiffness": ("[720 N/m, 768 N/m]}", "[720 N/m, 768 N/m], varies: false}"),
     "range": ("[720 N/m, 768 N/m]", "[730 N/m, 768 N/m]"),
     "range in another unit": ("[720 N/m, 768 N/m]", "[0.73 N/mm, 0.8 N/mm]"),
     "range that is elsewhere": ("[720 N/m, 768 N/m]", "[7 N/mm, 8 N/mm]"),

@@ -25,7 +25,7 @@ CONSTANT = """\
 parameters: {m: {nominal: 1, range: [0, 2], varies: false}}
 modes:
   - {name: a, A: [["-1 - m"]]}
-  - {name: b, A: [[-2]]}
+  - {name: b, A: [["-2 - m"]]}
 """
 PAIR = """\
 kind: interaction-design

@@ -17,6 +17,9 @@ from nrs_design.proof.system import SwitchedSystem
 if TYPE_CHECKING:
     from nrs_design.proof.evidence.block_triangular import BlockTriangular as BlockTriangular
     from nrs_design.proof.evidence.constant_force import ConstantForce as ConstantForce
+    from nrs_design.proof.evidence.constants_quadratic import (
+        ConstantsQuadratic as ConstantsQuadratic,
+    )
     from nrs_design.proof.evidence.graph import FormsOnGraph as FormsOnGraph
     from nrs_design.proof.evidence.growing_sequence import GrowingSequence as GrowingSequence
     from nrs_design.proof.evidence.invariant_ellipsoid import (
@@ -35,6 +38,7 @@ if TYPE_CHECKING:
 KINDS: Mapping[str, str] = {
     "block-triangular": "BlockTriangular",
     "constant-force": "ConstantForce",
+    "constants-quadratic": "ConstantsQuadratic",
     "graph": "FormsOnGraph",
     "growing-sequence": "GrowingSequence",
     "invariant-ellipsoid": "InvariantEllipsoid",

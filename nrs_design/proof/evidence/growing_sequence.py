@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from nrs_design.proof.bounds import at_least, nearly
 from nrs_design.proof.clock import keeps_turns
-from nrs_design.proof.constant import system_at, value_text
+from nrs_design.proof.constant import find_odd_shares, system_at, value_text
 from nrs_design.proof.evidence.abstract import AbstractEvidence, Shows
 from nrs_design.proof.evidence.growth import Steps, grows_in_contact, has_growing_trace
 from nrs_design.proof.exact import IntegerMatrix, TooLargeError, common_denominator
@@ -54,8 +54,8 @@ class GrowingSequence(AbstractEvidence):
       repeats itself, larger by that factor, for ever; contact is lost and made where that motion
       loses and makes it. Not all of v is negative deflection at rest, whose factor would be one.
 
-    With `share`, all this is about the modes ``(1 - share) low + share high``: a parameter that is
-    unknown but constant may have this one value all the time.
+    With `shares`, all this is about the modes at one value of the parameters that are unknown but
+    constant: they may have it all the time.
     """
 
     kind: ClassVar[str] = "growing-sequence"
@@ -69,7 +69,8 @@ class GrowingSequence(AbstractEvidence):
     # of the spec. Empty where there is no choice.
     edges: tuple[int, ...] = ()
     factor: tuple[Fraction, Fraction] | None = None  # In continuous time in 1/s
-    share: Fraction | None = None  # Of the way from the low end of the parameter to the high one
+    # For each constant parameter, of the way from its low end to its high one.
+    shares: tuple[Fraction, ...] = ()
 
     @property
     def shows(self) -> Shows:
@@ -84,18 +85,18 @@ class GrowingSequence(AbstractEvidence):
     @property
     def names_unstable_mode(self) -> bool:
         """Whether it is about one mode that is not stable, at any value of a parameter."""
-        return self.is_average and len(self.steps) == 1 and self.share is None
+        return self.is_average and len(self.steps) == 1 and not self.shares
 
     @property
     def used(self) -> frozenset[str] | None:
         """The modes of the sequence; at a value of a parameter, modes have other names."""
-        return None if self.share is not None else frozenset(name for name, _ in self.steps)
+        return None if self.shares else frozenset(name for name, _ in self.steps)
 
     def at_value(self, system: SwitchedSystem) -> tuple[SwitchedSystem, GrowingSequence]:
-        """TRUSTED: return the system at the value of the parameter, and this without the share."""
-        if self.share is None:
+        """TRUSTED: return the system at the value of the parameters, and this without shares."""
+        if not self.shares:
             return system, self
-        return system_at(system, self.share), replace(self, share=None)
+        return system_at(system, self.shares), replace(self, shares=())
 
     def used_matrices(self, system: SwitchedSystem) -> list[RationalMatrix]:
         """Return the matrices of the modes of the sequence."""
@@ -104,7 +105,7 @@ class GrowingSequence(AbstractEvidence):
 
     def covers_loss(self, system: SwitchedSystem) -> bool:
         """Tell whether signs are kept, or what is used is free motion or the same in both."""
-        if self.share is not None:
+        if self.shares:
             return False
         free = {mode.name for mode in system.free_motions()}
         is_free = self.names_unstable_mode and self.steps[0][0] in free
@@ -112,7 +113,7 @@ class GrowingSequence(AbstractEvidence):
 
     def fits(self, switching: Switching) -> bool:
         """Tell whether the steps may be repeated: every time and every switch is allowed."""
-        if self.share is not None:
+        if self.shares:
             alone = self.is_average and len(self.steps) == 1
             return bool(switching.fixed_ends) and (not switching.resets or alone)
         if not 1 <= len(self.steps) <= MAX_STEPS:
@@ -126,14 +127,13 @@ class GrowingSequence(AbstractEvidence):
         names = [name for name, _ in self.steps]
         following = self.switches()
         allowed = switching.transitions
-        ends = {name: end for pair in switching.fixed_ends for end, name in enumerate(pair)}
         staying = {a for a, b in following if a == b}
         return (
             (allowed is None or {(a, b) for a, b in following if a != b} <= set(allowed))
             and all(_may_stay(switching, *step, step[0] in staying) for step in self.steps)
             and self._takes_edges(switching)
-            # A constant parameter is at one of its ends all the time.
-            and len({ends.get(name) for name in names}) == 1
+            # Constant parameters are at one of their corners all the time.
+            and switching.share_a_corner(names)
         )
 
     def switches(self) -> list[tuple[str, str]]:
@@ -153,9 +153,9 @@ class GrowingSequence(AbstractEvidence):
 
     def find_misfit(self, system: SwitchedSystem) -> str | None:
         """Check the steps, and that a motion along them does not decay."""
-        if self.share is not None:
-            if not _is_share(self.share):
-                return "the share is not between 0 and 1, or has too many digits"
+        if self.shares:
+            if (odd := self._find_odd_shares(system)) is not None:
+                return odd
             at_value, plain = self.at_value(system)
             return plain.find_fault(at_value)
         return self._find_odd_steps(system) or self._find_decay(system)
@@ -238,9 +238,9 @@ class GrowingSequence(AbstractEvidence):
 
     def claim_in_scope(self, system: SwitchedSystem) -> str:
         """State the sequence and what follows."""
-        if self.share is not None:
+        if self.shares:
             at_value, plain = self.at_value(system)
-            where = value_text(system, self.share)
+            where = value_text(system, self.shares)
             return (
                 f"{where}, which the range allows and which does not change: "
                 f"{plain.claim(at_value)}"
@@ -309,9 +309,12 @@ class GrowingSequence(AbstractEvidence):
         """Say what keeps the steps from being put into words, or None."""
         if not self.steps or (self.edges and len(self.edges) != len(self.steps)):
             return "there are no steps, or there is not one edge for each of them"
-        if self.share is not None and not (_is_share(self.share) and system.switching.fixed_ends):
-            return "the share is out of bounds, or no parameter is constant"
-        return None
+        return self._find_odd_shares(system) if self.shares else None
+
+    def _find_odd_shares(self, system: SwitchedSystem) -> str | None:
+        if any(share.denominator > MAX_SHARE_DENOMINATOR for share in self.shares):
+            return "a share has too many digits"
+        return find_odd_shares(system.switching, self.shares)
 
 
 def average(system: SwitchedSystem, weights: Sequence[tuple[str, Fraction]]) -> RationalMatrix:
@@ -356,10 +359,6 @@ def staying(mode: str) -> GrowingSequence:
 def _are_short(weights: Sequence[tuple[str, Fraction]]) -> bool:
     single = all(w <= 1 and w.denominator <= MAX_SHARE_DENOMINATOR for _, w in weights)
     return single and lcm(*(w.denominator for _, w in weights)) <= MAX_SHARE_DENOMINATOR
-
-
-def _is_share(share: Fraction) -> bool:
-    return 0 <= share <= 1 and share.denominator <= MAX_SHARE_DENOMINATOR
 
 
 def _may_stay(switching: Switching, mode: str, time: Fraction, goes_on: bool) -> bool:

@@ -42,8 +42,8 @@ class ParameterQuadratic(AbstractFunction):
         """Check time, pairs, shapes and rate."""
         if system.time is not Time.CONTINUOUS:
             return "parameter-dependent functions are for continuous time"
-        paired = sorted(name for pair in system.switching.fixed_ends for name in pair)
-        if paired != sorted(mode.name for mode in system.modes):
+        sets = system.switching.fixed_ends
+        if not sets or any(len(corners) != 2 for corners in sets):
             return "the modes are not the ends of one constant parameter"
         odd = (find_odd_form(Q, self.denominator_log2, system.order) for Q in (self.low, self.high))
         return next(filter(None, odd), None) or self.find_rate_misfit(system.time)

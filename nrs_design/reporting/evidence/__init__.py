@@ -8,6 +8,7 @@ from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.evidence.blocks import BlocksPage
 from nrs_design.reporting.evidence.bound import BoundPage
+from nrs_design.reporting.evidence.constants import ConstantsPage
 from nrs_design.reporting.evidence.force import ForcePage
 from nrs_design.reporting.evidence.functions import FunctionsPage
 from nrs_design.reporting.evidence.growth import GrowthPage
@@ -36,6 +37,8 @@ def page_of(system: SwitchedSystem, evidence: AbstractEvidence) -> AbstractPage:
         return BlocksPage(system, evidence, offer, page_of)
     if any(form.place is not None for form in offer.forms):
         return ParameterPage(system, evidence, offer)
+    if any(form.corner is not None for form in offer.forms):
+        return ConstantsPage(system, evidence, offer)
     return _PAGES[evidence.shows](system, evidence, offer)
 
 

@@ -145,7 +145,7 @@ class GrowthPage(AbstractPage):
     @property
     def _shape(self) -> _Shape:
         growth = self._growth
-        if growth.share is not None:
+        if growth.shares:
             return _Shape.VALUE
         if self.offer.weights:
             return _Shape.AVERAGE
@@ -155,10 +155,9 @@ class GrowthPage(AbstractPage):
 
     @property
     def _part(self) -> GrowthPage:
-        """The page of what happens at one value of the constant parameter."""
-        share, (_, part) = self._growth.share, self.offer.parts[0]
-        assert share is not None  # asked before
-        return GrowthPage(system_at(self.system, share), part, offer_of(part))
+        """The page of what happens at one value of the constant parameters."""
+        (_, part), shares = self.offer.parts[0], self._growth.shares
+        return GrowthPage(system_at(self.system, shares), part, offer_of(part))
 
     def _in_a_mode(self) -> Iterator[Block]:
         """Stay in the mode, from the eigenvector of its worst eigenvalue."""

@@ -24,6 +24,7 @@ class Form:
     degree: int = 1  # of the monomials; 1 for a quadratic function
     free: bool = False  # in free motion, without the last state (the deflection)
     place: Fraction | None = None  # of a constant parameter: 0 low end, 1 high end
+    corner: int | None = None  # of several constant parameters
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class Growth:
     steps: tuple[tuple[str, Fraction], ...] = ()  # mode, and time in it in s (or steps)
     edges: tuple[int, ...] = ()  # which reset each switch takes; empty: no choice
     factor: Fraction | None = None  # lower bound of the growth per sequence, signs of contact kept
-    share: Fraction | None = None  # value of the constant parameter, 0 low end, 1 high end
+    shares: tuple[Fraction, ...] = ()  # value of constant parameters, 0 low end, 1 high end
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,11 @@ def _ends(e: Any) -> Offer:
     return Offer(tuple(Form(Q, name, place=p) for Q, name, p in ends), e.denominator_log2)
 
 
+def _corners(e: Any) -> Offer:
+    forms = (Form(P, f"corner {k + 1}", corner=k) for k, P in enumerate(e.functions))
+    return Offer(tuple(forms), e.denominator_log2)
+
+
 def _traces(e: Any) -> Offer:
     """Return the share of each mode in the trace of X, the heaviest first."""
     traces = {name: sum(v * v for row in L for v in row) for name, L in e.factors}
@@ -103,8 +109,8 @@ def _traces(e: Any) -> Offer:
 
 
 def _sequence(e: Any) -> Offer:
-    if e.share is not None:
-        return Offer(growth=Growth(share=e.share), parts=((0, replace(e, share=None)),))
+    if e.shares:
+        return Offer(growth=Growth(shares=e.shares), parts=((0, replace(e, shares=())),))
     if e.names_unstable_mode:
         return Offer(growth=Growth(((e.steps[0][0], Fraction(0)),)))
     if e.is_average:
@@ -116,6 +122,7 @@ def _sequence(e: Any) -> Offer:
 OFFERS: Mapping[str, Callable[[Any], Offer]] = {
     "block-triangular": lambda e: Offer(blocks=e.blocks, parts=e.parts),
     "constant-force": _constant_force,
+    "constants-quadratic": _corners,
     "graph": _graph,
     "growing-sequence": _sequence,
     "invariant-ellipsoid": _one,

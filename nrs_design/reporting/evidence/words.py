@@ -104,9 +104,11 @@ def needed_rules(system: SwitchedSystem, leaving: tuple[str, ...]) -> Iterator[s
 
 
 def unneeded_constant(system: SwitchedSystem) -> Iterator[str]:
-    """Say that a proof does not need the constant parameter to be constant."""
+    """Say that a proof does not need constant parameters to be constant."""
     if system.switching.fixed_ends:
-        yield "The proof does not need the parameter to be constant: it may change freely."
+        few = len(system.switching.fixed_parameters) < 2
+        what, they = ("the parameter", "it") if few else ("the parameters", "they")
+        yield f"The proof does not need {what} to be constant: {they} may change freely."
 
 
 def unneeded_rules(system: SwitchedSystem) -> Iterator[str]:

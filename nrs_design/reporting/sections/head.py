@@ -10,6 +10,7 @@ from nrs_design import __version__
 from nrs_design.proof.bounds import at_least, at_most, lower, rounded_down, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.reporting.document import Derived
 from nrs_design.reporting.formatting import plural, shortened
@@ -110,7 +111,7 @@ def switching_words(result: Result) -> str:
     if switching.resets:
         words.append("the state is reset at some switches")
     if switching.fixed_ends:
-        words.append("one parameter is unknown but constant")
+        words.append(f"{constants_words(switching)}: unknown but constant")
     return "; ".join(words)
 
 

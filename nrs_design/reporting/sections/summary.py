@@ -11,6 +11,7 @@ from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.proof.evidence import AbstractEvidence, Shows
 from nrs_design.proof.mode import Time
+from nrs_design.proof.switching import constants_words
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.proof.text import exact_text
 from nrs_design.reporting.document import Derived, Light, Sentence, State
@@ -124,7 +125,7 @@ def _saturated(result: Result) -> tuple[str, ...]:
 
 def _signals(system: SwitchedSystem) -> str:
     if system.switching.fixed_ends:
-        return "the declared switching, with one parameter unknown but constant"
+        return f"the declared switching, with {constants_words(system.switching)} constant"
     if system.switching.is_arbitrary and not system.switching.resets:
         return "arbitrary switching"
     return "every switching that the spec declares, and no other"

@@ -221,7 +221,7 @@ const check = (() => {
   }
   function parameterQuadratic(S, o) {
     const [low, high] = [o.low, o.high].map((rows) => form(rows, S.n)), [p, q] = ratio(o.rate), ends = S.rules.fixed_ends ?? [];
-    need(ends.flat().sort().join() === S.names.slice(0, S.count).sort().join(), "the modes are not the ends of a parameter");
+    need(ends.length && ends.every((pair) => pair.length === 2) && ends.flatMap((pair) => [...new Set(pair)]).sort().join() === S.names.slice(0, S.count).sort().join(), "the modes are not the ends of a parameter");
     need(S.flow && p > 0n && !S.rules.resets && !(S.required || S.o.couplings || S.o.clock), "it is about other systems");
     need(definite(own(low, 1n)) && definite(own(high, 1n)), "Q is not positive definite");
     for (const pair of ends) {

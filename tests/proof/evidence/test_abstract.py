@@ -149,7 +149,7 @@ def test_where_the_environment_does_not_act_nothing_pulls():
     assert Said().claim(slack).endswith(f"{pulling}.")
     assert not Said().claim(replace(slack, modes=slack.modes[:1])).endswith(f"{pulling}.")
     for share, tail in (("0", "."), ("1/2", f"{pulling}.")):
-        value = replace(staying("m0 to m1"), share=Fraction(share))
+        value = replace(staying("m0 to m1"), shares=(Fraction(share),))
         assert value.claim(constant).endswith(f"in kept contact{tail}")
     among = replace(
         slack,
@@ -359,7 +359,8 @@ BOUNCING = {
     "coupled-axes",
     "periodic-quadratic",
 }
-FREE = {"common-quadratic", "common-polynomial", "parameter-quadratic"} | BOUNCING
+CONSTANT = {"parameter-quadratic", "constants-quadratic"}
+FREE = {"common-quadratic", "common-polynomial"} | CONSTANT | BOUNCING
 SETS = {"common-quadratic", "conewise-quadratic", "coupled-axes", "invariant-ellipsoid"}
 SETS |= {"periodic-quadratic"}
 RULED = {"mode-quadratic", "mode-polynomial"}
@@ -380,7 +381,7 @@ FACTS = {
     | {"safety-layer"},
     "is_common_quadratic": {"common-quadratic", "conewise-quadratic", "coupled-axes"},
     # The blocks of the example have polynomials.
-    "keeps_bound_in_mixtures": SETS | {"parameter-quadratic", "conewise-mode-quadratic"} | RULED,
+    "keeps_bound_in_mixtures": SETS | CONSTANT | {"conewise-mode-quadratic"} | RULED,
     "names_unstable_mode": {"growing-sequence"},
 }
 

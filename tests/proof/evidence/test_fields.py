@@ -149,7 +149,7 @@ RULES = Switching(
     transitions=(("m0", "m1"), ("m1", "m0")),
     resets=(RESET, RESET),
     fixed_ends=(("m0", "m1"),),
-    fixed_parameter=FixedParameter("k", Fraction(-3, 8), Fraction(5)),
+    fixed_parameters=(FixedParameter("k", Fraction(-3, 8), Fraction(5)),),
     stays=(("m0", Stay(Fraction(1, 2))), ("m1", Stay(Fraction(1), Fraction(7, 2)))),
 )
 RULED = family([[-1, 0], [0, -1]], [["-1/2", 1], [0, -2]], switching=RULES)

@@ -1,0 +1,199 @@
+"""Search for a quadratic function that depends on parameters that are unknown but constant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nrs_design.proof.evidence import ConstantsQuadratic
+from nrs_design.proof.evidence.fields import Matrix
+from nrs_design.proof.mode import Time
+from nrs_design.search.balance import mean_norm_coordinates
+from nrs_design.search.candidates import NO_MARGIN, OUT_OF_RANGE, Candidate, Candidates
+from nrs_design.search.decay import fastest_first
+from nrs_design.search.family import Family
+from nrs_design.search.lmi import time_unit
+from nrs_design.search.rounding import digits
+from nrs_design.search.sdp import (
+    Sparse,
+    begin,
+    maximize_margin,
+    pack,
+    program_cost,
+    symmetric_basis,
+)
+from nrs_design.work import Allowance
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+NEAREST = 0.999
+FEWEST_BITS = 8
+# To this share of itself the largest rate is found; where no rate is asked for, one within a factor
+# of two is enough.
+RESOLUTION, COARSE = 2.0**-7, 0.5
+
+
+def search_constants_quadratic(family: Family) -> Candidates[ConstantsQuadratic]:
+    """Search for the function with the largest rate.
+
+    Raises
+    ------
+    NotAffordableError
+        If work or memory do not suffice.
+    """
+    system = family.system
+    if not np.isfinite(family.matrices).all() or not np.isfinite(family.limit):
+        return OUT_OF_RANGE
+    coordinates = mean_norm_coordinates(family.matrices, system.time)
+    if not np.isfinite(coordinates).all():
+        return OUT_OF_RANGE
+    program = _Program.of(family, coordinates)
+    if program.solve(1.0 if system.time is Time.DISCRETE else 0.0, family.allowance) is None:
+        return NO_MARGIN
+    resolution = RESOLUTION if family.optimize_rate else COARSE
+    for solution, claim in fastest_first(
+        program.solve,
+        family.limit,
+        system.time,
+        family.allowance,
+        resolution=resolution,
+        nearest=NEAREST,
+    ):
+        for bits in digits(FEWEST_BITS):
+            yield Candidate(solution.rounded(family.exponents, bits, claim))
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class _Solution:
+    """What a solver found, in the coordinates of a family."""
+
+    functions: Array  # Shape (corners, n, n)
+    multipliers: Array  # Shape (sets, 2, n, n): F, and G in seconds
+    more_bits: int  # That G needs for its unit
+
+    def rounded(self, exponents: Indices, bits: int, rate: Fraction) -> ConstantsQuadratic:
+        """Round to integers.
+
+        Parameters
+        ----------
+        exponents : ndarray of int, shape (n,)
+            Of the coordinates of the family.
+        bits : int
+            After the binary point.
+        rate : Fraction
+            That is claimed.
+        """
+        top, bits = max(int(exponents.max()), 0), bits + self.more_bits
+        shifts = top - exponents
+
+        def whole(M: Array) -> Matrix:
+            entries = np.ldexp(M, bits)
+            if not np.isfinite(entries).all():
+                raise OverflowError("a form beyond the range of floating point")
+            return tuple(
+                tuple(round(float(v)) << int(i + j) for v, j in zip(row, shifts, strict=True))
+                for row, i in zip(entries, shifts, strict=True)
+            )
+
+        return ConstantsQuadratic(
+            tuple(whole((P + P.T) / 2) for P in self.functions),
+            tuple((whole(F), whole(G)) for F, G in self.multipliers),
+            bits + 2 * top,
+            rate,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Program:
+    """One inequality for each set of modes and each corner of the constant parameters."""
+
+    modes: Array  # Shape (sets, corners, n, n), in coordinates in which their norms are round
+    time: Time
+    unit: int  # Of time, two to this power in s
+    coordinates: Array  # Shape (n, n); x = T z
+
+    @classmethod
+    def of(cls, family: Family, coordinates: Array) -> _Program:
+        """Take the modes of a family."""
+        system = family.system
+        index = {mode.name: k for k, mode in enumerate(system.modes)}
+        sets = np.array([[index[name] for name in c] for c in system.switching.fixed_ends])
+        modes: Array = np.asarray(np.linalg.solve(coordinates, family.matrices @ coordinates))
+        unit = time_unit(modes, system.time)
+        return cls(np.ldexp(modes, unit)[sets], system.time, unit, coordinates)
+
+    def solve(self, rate: float, allowance: Allowance) -> _Solution | None:
+        """Make the margin of all inequalities as large as it gets with ``P <= I``."""
+        sets, corners, n = self.modes.shape[:3]
+        basis = symmetric_basis(n)
+        size, square = len(basis), n * n
+        unknowns = corners * size + 2 * sets * square + 1
+        touched = size + 2 * square + 1
+        cones = [(n, size)] * corners + [(2 * n, touched)] * (sets * corners)
+        # Most entries are zero: each inequality knows its own function and multipliers.
+        cost = program_cost(touched, corners * size + 1, cones)
+        begun = begin(allowance, cost, f"a program of {unknowns} unknowns")
+        own = np.arange(size)
+        parts = [(np.eye(n), -basis, k * size + own) for k in range(corners)]
+        functions = self._of_functions(basis, rate)
+        last = np.array([unknowns - 1])
+        for k in range(sets):
+            at = corners * size + 2 * k * square + np.arange(2 * square)
+            for v, A in enumerate(self.modes[k]):
+                images = np.concatenate([functions, _of_multipliers(A), -np.eye(2 * n)[None]])
+                columns = np.concatenate([v * size + own, at, last])
+                parts.append((np.zeros((2 * n, 2 * n)), images, columns))
+        x = maximize_margin(
+            _stacked(parts, unknowns),
+            np.concatenate([pack(constant) for constant, _, _ in parts]),
+            [len(constant) for constant, _, _ in parts],
+            begun,
+        )
+        if x is None or x[-1] <= 0:
+            return None
+        P = np.tensordot(x[: corners * size].reshape(corners, size), basis, axes=1)
+        slack = x[corners * size : -1].reshape(sets, 2, n, n)
+        inverse = np.linalg.inv(self.coordinates)
+        slack[:, 1] = np.ldexp(slack[:, 1], self.unit)
+        functions, slack = inverse.T @ P @ inverse, inverse.T @ slack @ inverse
+        scale = int(np.frexp(np.abs(functions).max())[1])
+        return _Solution(np.ldexp(functions, -scale), np.ldexp(slack, -scale), max(-self.unit, 0))
+
+    def _of_functions(self, basis: Array, rate: float) -> Array:
+        """Return what the entries of P add to an inequality, shape (N, 2n, 2n)."""
+        nothing = np.zeros_like(basis)
+        if self.time is Time.CONTINUOUS:
+            slow = -2 * float(np.ldexp(rate, self.unit)) * basis
+            return np.block([[slow, -basis], [-basis, nothing]])
+        return np.block([[rate**2 * basis, nothing], [nothing, -basis]])
+
+
+def _of_multipliers(A: Array) -> Array:
+    """Return what the entries of F and then of G add to an inequality, shape (2 n^2, 2n, 2n)."""
+    n = len(A)
+    E = np.eye(n * n).reshape(n * n, n, n)
+    turned, moved = np.swapaxes(E, 1, 2), E @ A
+    back, nothing = np.swapaxes(moved, 1, 2), np.zeros_like(E)
+    first = np.block([[-(moved + back), E], [turned, nothing]])
+    second = np.block([[nothing, -back], [-moved, E + turned]])
+    return np.concatenate([first, second])
+
+
+def _stacked(parts: list[tuple[Array, Array, Indices]], unknowns: int) -> Sparse:
+    """Put the constraints of all blocks below each other, without their zeros."""
+    values, rows, columns, first = [], [], [], 0
+    for _, images, at in parts:
+        packed = -pack(images)
+        unknown, row = np.nonzero(packed)
+        values.append(packed[unknown, row])
+        rows.append(first + row)
+        columns.append(at[unknown])
+        first += packed.shape[1]
+    return Sparse.of(
+        np.concatenate(values), np.concatenate(rows), np.concatenate(columns), (first, unknowns)
+    )

@@ -1,0 +1,203 @@
+"""Parameters that are unknown but constant: which modes are one mode at their corners."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import prod
+
+from nrs_design.errors import AssemblyError, InternalError
+from nrs_design.models.drive import Drive
+from nrs_design.models.interval import Interval
+from nrs_design.models.plant import Plant
+from nrs_design.proof.switching import FixedParameter
+from nrs_design.proof.system import SwitchedSystem
+
+MAX_CORNERS = 50_000
+# Corners of what encloses exp(-T/tau) and tau (1 - exp(-T/tau)), in the order of a box.
+_ENCLOSED = ("E-min/s-min", "E-min/s-max", "E-max/s-max")
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantParameter:
+    """One parameter that does not change while the robot runs."""
+
+    said: FixedParameter  # Its name and range
+    # How the name of a mode says at which of its corners the mode is, low before high: one label
+    # such as ``k-min``, or several such as ``E-min/s-max``.
+    labels: tuple[str, ...]
+    contact: str | None = None  # The one contact that it is of; None if it is in all modes
+
+    @property
+    def first_label(self) -> int:
+        """Where its labels begin in a name: a contact, too, may be called like one of them."""
+        return 1 if self.contact is None else 2
+
+    def is_at(self, mode: Sequence[str]) -> str | None:
+        """Return at which corner a mode is, None if the parameter is not in it.
+
+        Parameters
+        ----------
+        mode : sequence of str
+            Its name, then its labels: those of contact and corners.
+        """
+        if self.contact is not None and self.contact not in mode[1:2]:
+            return None
+        said = set(mode[self.first_label :])
+        return next((label for label in self.labels if said.issuperset(label.split("/"))), None)
+
+
+def constants_of(
+    plant: Plant, touched: Collection[str], drive: str, *, sampled: bool
+) -> Iterator[ConstantParameter]:
+    """Yield the constant parameters of a plant.
+
+    Parameters
+    ----------
+    plant : Plant
+        With its ranges.
+    touched : collection of str
+        Environments that count.
+    drive : str
+        Which part of the spec the motor is.
+    sampled : bool
+        Whether the loop is sampled: its numbers enclose those of a constant time constant, so their
+        corners are none of its values.
+    """
+    if plant.drive is not None and sampled:
+        yield from _enclosed(_of_drive(plant.drive, drive))
+        yield from _enclosed(_of_tissue(plant, touched))
+        return
+    ranges = plant.actuator_ranges
+    if ranges.gain.is_constant:
+        unit = f"rad/s/{ranges.command}"
+        yield _between_ends(f"{drive}.gain", ranges.gain, "Km", unit)
+    if ranges.time_constant.is_constant:
+        name, tau = f"{drive}.time_constant", ranges.time_constant
+        yield (
+            ConstantParameter(FixedParameter(name, tau.low, tau.high, "s"), _ENCLOSED)
+            if sampled
+            else _between_ends(name, tau, "tau", "s", inverse=True)
+        )
+    yield from _of_tissue(plant, touched)
+
+
+# Of a drive of its own: the symbols of its numbers, their keys in a spec, and their units.
+_DRIVEN = {
+    "J": ("inertia", "kg*m^2"),
+    "B": ("friction", "N*m*s/rad"),
+    "tau": ("time_constant", "s"),
+}
+
+
+def _enclosed(found: Iterable[ConstantParameter]) -> Iterator[ConstantParameter]:
+    """Yield parameters whose corners enclose what the modes are."""
+    return (replace(one, said=replace(one.said, enclosed=True)) for one in found)
+
+
+def _of_drive(drive: Drive, part: str) -> Iterator[ConstantParameter]:
+    for symbol, interval in drive.ranges.items():
+        if interval.is_constant:
+            key, unit = _DRIVEN[symbol]
+            inverse = symbol in drive.inverse
+            yield _between_ends(f"{part}.{key}", interval, symbol, unit, inverse=inverse)
+
+
+def _of_tissue(plant: Plant, touched: Collection[str]) -> Iterator[ConstantParameter]:
+    for environment in plant.environments:
+        if environment.parts or environment.name not in touched:
+            continue
+        law = environment.law
+        keys = zip(law.keys, law.parameters(), law.units(rotational=True), strict=True)
+        for (key, symbol, unit), interval in zip(keys, environment.ranges, strict=True):
+            if interval.is_constant:
+                name, inverse = f"environments.{environment.name}.{key}", symbol in law.inverse
+                found = _between_ends(name, interval, symbol, unit, inverse=inverse)
+                yield replace(found, contact=environment.name)
+
+
+def _between_ends(
+    name: str, interval: Interval, symbol: str, unit: str, *, inverse: bool = False
+) -> ConstantParameter:
+    said = FixedParameter(name, interval.low, interval.high, unit, inverse)
+    return ConstantParameter(said, (f"{symbol}-min", f"{symbol}-max"))
+
+
+def constant_sets(
+    names: Iterable[str], parameters: Sequence[ConstantParameter]
+) -> Iterator[tuple[str, ...]]:
+    """Yield, for each mode, what it is at the corners of the constant parameters.
+
+    A mode that a parameter is not in is the same at both of its ends.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Of all modes, with their labels.
+    parameters : sequence of ConstantParameter
+        In the order in which corners turn, the last one fastest.
+
+    Raises
+    ------
+    InternalError
+        If a corner has no mode.
+    """
+    if not parameters:
+        return
+    # By what is not constant, and the corner of what is.
+    known: dict[tuple[tuple[str, ...], tuple[str | None, ...]], str] = {}
+    first: dict[tuple[tuple[str, ...], tuple[bool, ...]], None] = {}
+    for name in names:
+        mode = name.split("/")
+        ends = tuple(parameter.is_at(mode) for parameter in parameters)
+        constant = {
+            (label, place)
+            for parameter, end in zip(parameters, ends, strict=True)
+            if end is not None
+            for place, label in enumerate(mode)
+            if place >= parameter.first_label and label in end.split("/")
+        }
+        varying = tuple(label for k, label in enumerate(mode) if (label, k) not in constant)
+        has = tuple(end is not None for end in ends)
+        known[varying, ends] = name
+        first[varying, has] = None
+    for varying, has in first:
+        corners = product(*(parameter.labels for parameter in parameters))
+        keys = [tuple(c if h else None for c, h in zip(at, has, strict=True)) for at in corners]
+        if any((varying, key) not in known for key in keys):
+            raise InternalError(f"a corner of {varying[0]} has no mode")
+        yield tuple(known[varying, key] for key in keys)
+
+
+def with_constants(
+    system: SwitchedSystem, parameters: Sequence[ConstantParameter]
+) -> SwitchedSystem:
+    """Return the system with parameters that do not change.
+
+    Parameters
+    ----------
+    system : SwitchedSystem
+        With a mode for each corner of them.
+    parameters : sequence of ConstantParameter
+        That have a range.
+
+    Raises
+    ------
+    AssemblyError
+        If they have too many corners.
+    """
+    if not parameters:
+        return system
+    corners = prod(len(parameter.labels) for parameter in parameters) * len(system.modes)
+    if corners > MAX_CORNERS:
+        raise AssemblyError(
+            f"the modes at all corners of the constant parameters are up to {corners}, at most "
+            f"{MAX_CORNERS} are looked at",
+            remedy="leave out `varies: false` for some of the ranges",
+        )
+    sets = tuple(constant_sets((mode.name for mode in system.modes), parameters))
+    said = tuple(parameter.said for parameter in parameters)
+    return replace(
+        system, switching=replace(system.switching, fixed_ends=sets, fixed_parameters=said)
+    )

@@ -1,0 +1,253 @@
+"""Evidence of kind constants-quadratic: published bounds, the argument, attacks."""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from nrs_design.proof.constant import system_at
+from nrs_design.proof.contact import Contact
+from nrs_design.proof.evidence import ConstantsQuadratic
+from nrs_design.proof.mode import Mode, Time
+from nrs_design.proof.switching import Clock, FixedParameter, Switching
+from nrs_design.search.certify import Verdict, certify
+from nrs_design.search.method import Method
+from tests.proof.systems import (
+    companion,
+    family,
+    genuine,
+    matrix,
+    oscillator,
+    resets_between,
+    shears,
+    two_springs,
+)
+from tests.proof.truth import combine, decrease, holds, is_definite, weights
+
+KINDS = ("constants-quadratic", "constants-quadratic, continuous")
+PAIR = Switching(fixed_ends=(("m0", "m1"),))
+# de Oliveira, Bernussou and Geromel, A new discrete-time robust stability condition, Systems &
+# Control Letters 37 (1999): A + B a C with one uncertain a, abs(a) up to a bound.
+A0 = [["0.8", "-0.25", 0, 1], [1, 0, 0, 0], [0, 0, "0.2", "0.03"], [0, 0, 1, 0]]
+C = ["0.8", "-0.5", 0, 1]
+
+
+def published(bound, switching=PAIR):
+    ends = []
+    for a in (-Fraction(bound), Fraction(bound)):
+        rows = [[Fraction(v) for v in row] for row in A0]
+        rows[2] = [v + a * Fraction(c) for v, c in zip(rows[2], C, strict=True)]
+        ends.append(rows)
+    return family(*ends, time=Time.DISCRETE, switching=switching)
+
+
+@pytest.mark.parametrize(
+    ("bound", "quadratic", "constants"),
+    [
+        ("0.427", True, True),
+        ("0.429", False, True),
+        ("0.461", False, True),
+        ("0.463", False, False),
+    ],
+)
+def test_published_bounds(bound, quadratic, constants):
+    """Quadratic stability ends at 0.4279, the condition at 0.4619 as stability itself does."""
+    varying = certify(published(bound, Switching()), Method.LMI)
+    assert (varying.verdict is Verdict.PROVED) is quadratic
+    constant = certify(published(bound), Method.CONSTANTS_QUADRATIC)
+    assert (constant.verdict is Verdict.PROVED) is constants
+    if constants:
+        assert holds(constant.system, constant.evidence)
+
+
+def test_two_constants_where_a_jump_is_unstable():
+    """By Jury's criterion every constant pair is stable; of jumps, a period of two grows."""
+    found = certify(companion("0.9", "0.95"))
+    assert found.verdict is Verdict.PROVED
+    assert found.evidence.kind == "constants-quadratic"
+    assert holds(found.system, found.evidence)
+    assert certify(companion("0.9", "0.95", Switching())).verdict is Verdict.REFUTED
+
+
+def test_what_holds_for_parameters_that_vary_is_shown_first():
+    found = certify(companion("0.1", "0.2"))
+    assert found.verdict is Verdict.PROVED
+    assert found.evidence.is_common_quadratic
+
+
+@pytest.mark.parametrize("kbar", [7, 50])
+def test_the_oscillator_of_one_constant_stiffness(kbar):
+    """Unstable for a stiffness that jumps, once kbar > 6.98513 (Zelentsovsky 1994)."""
+    found = certify(oscillator(kbar, PAIR), Method.CONSTANTS_QUADRATIC)
+    assert found.verdict is Verdict.PROVED
+    assert holds(found.system, found.evidence)
+
+
+@cache
+def proved(kind):
+    return genuine(kind)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    st.sampled_from(KINDS),
+    st.tuples(st.fractions(0, 1, max_denominator=50), st.fractions(0, 1, max_denominator=50)),
+)
+def test_every_mode_decreases_the_function_of_its_value_exactly(kind, shares):
+    system, evidence = proved(kind)
+    P = combine(*zip(weights(shares), evidence.functions, strict=True))
+    assert is_definite(P)
+    for mode in system_at(system, shares).modes:
+        assert is_definite(decrease(mode.A.fractions(), P, evidence.rate, system.time))
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    st.lists(st.fractions(-1, 1, max_denominator=20), min_size=12, max_size=12),
+    st.fractions(0, 1, max_denominator=50),
+    st.lists(st.integers(0, 1), min_size=1, max_size=6),
+)
+def test_random_switching_at_a_random_value_decreases(entries, share, word):
+    """Two modes with two corners each: at one value, every product shrinks one norm."""
+    rows = [[entries[4 * k : 4 * k + 2], entries[4 * k + 2 : 4 * k + 4]] for k in range(3)]
+    rows = [[[v * Fraction(4, 5) for v in row] for row in A] for A in rows]
+    sets = Switching(fixed_ends=(("m0", "m1"), ("m2", "m2")))
+    system = family(*rows, time=Time.DISCRETE, switching=sets)
+    found = certify(system, Method.CONSTANTS_QUADRATIC)
+    if found.verdict is not Verdict.PROVED:
+        return
+    P = combine(*zip(weights((share,)), found.evidence.functions, strict=True))
+    modes = system_at(system, (share,)).modes
+    for k in word:
+        assert is_definite(decrease(modes[k].A.fractions(), P, found.evidence.rate, system.time))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_altered_numbers_are_refused(kind):
+    system, evidence = proved(kind)
+    assert evidence.find_fault(system) is None
+    zero = ((0, 0), (0, 0))
+    negative = tuple(tuple(-v for v in row) for row in evidence.functions[1])
+    first, *others = evidence.functions
+    for functions in (
+        (first, negative, *others[1:]),
+        (first, zero, *others[1:]),
+        (first, ((1, 2), (3, 4)), *others[1:]),
+        tuple(others),
+        (*evidence.functions, first),
+        (first, ((1,),), *others[1:]),
+    ):
+        assert replace(evidence, functions=functions).find_fault(system) is not None
+    ((F, G),) = evidence.multipliers
+    turned = tuple(zip(*F, strict=True)), tuple(tuple(-v for v in row) for row in G)
+    for multipliers in (((F, zero),), (turned,), (), ((F, G), (F, G)), ((F, ((1,),)),)):
+        assert replace(evidence, multipliers=multipliers).find_fault(system) is not None
+    for log2 in (-1, 10**6):
+        assert replace(evidence, denominator_log2=log2).find_fault(system) is not None
+    fast = Fraction(100) if system.time is Time.CONTINUOUS else Fraction(1, 100)
+    for rate in (Fraction(0), Fraction(-1), fast):
+        assert replace(evidence, rate=rate).find_fault(system) is not None
+    assert replace(evidence, rate=1.5).find_fault(system) is not None
+
+
+def test_functions_belong_to_their_corners():
+    """The function of one corner is none of the opposite one."""
+    system, evidence = proved("constants-quadratic")
+    reversed_ = replace(evidence, functions=evidence.functions[::-1])
+    assert reversed_.find_fault(system) is not None
+    paired = Switching(fixed_ends=(("m3", "m2", "m1", "m0"),))
+    assert evidence.find_fault(replace(system, switching=paired)) is not None
+    assert reversed_.find_fault(replace(system, switching=paired)) is None
+
+
+def test_multipliers_of_each_corner_alone_prove_nothing():
+    """Both shears are stable and their mean is not: only multipliers in common are refused."""
+    k = Fraction(1000)
+    system = shears(PAIR)
+    modes = [mode.A.fractions() for mode in system.modes]
+    for log2 in (0, 4):
+        for P in (((1, 0), (0, 100)), ((100, 0), (0, 1)), ((1, 0), (0, 1))):
+            for G in (((1, 0), (0, 1)), ((k.numerator, 0), (0, 1))):
+                item = ConstantsQuadratic((P, P), ((P, G),), log2, Fraction(1, 1000))
+                assert item.find_fault(system) is not None
+    assert certify(system).verdict is not Verdict.PROVED
+    assert len(modes) == 2
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        (),
+        (("m0", "m1", "m2"),),
+        (("m0", "m1", "m2", "m2"),),
+        (("m0", "m1"), ("m2", "m3")),
+        (("m0", "m1", "m2", "m9"),),
+        (("m0", "m1", "m2", "m3"), ("m0", "m1", "m2", "m3")),
+        (("m0", "m0", "m1", "m1"), ("m2", "m2", "m2")),
+    ],
+)
+def test_a_mode_without_its_corners_is_refused(sets):
+    system, evidence = proved("constants-quadratic")
+    other = replace(system, switching=Switching(fixed_ends=sets))
+    assert evidence.find_fault(other) is not None
+
+
+def test_another_mode_is_not_covered():
+    system, evidence = proved("constants-quadratic")
+    more = replace(system, modes=(*system.modes, Mode("m4", matrix([[2, 0], [0, 2]]))))
+    assert evidence.find_fault(more) is not None
+    altered = (*system.modes[:3], Mode("m3", matrix([[0, 1], [-1, 1]])))
+    assert evidence.find_fault(replace(system, modes=altered)) is not None
+
+
+def test_nothing_is_said_of_parameters_that_vary_nor_of_resets_clocks_and_loss():
+    system, evidence = proved("constants-quadratic")
+    assert evidence.find_fault(replace(system, switching=Switching())) is not None
+    resets = resets_between(("m0", "m1", [[1, 0], [0, 1]]))
+    with_resets = replace(system.switching, resets=resets)
+    assert evidence.find_fault(replace(system, switching=with_resets)) is not None
+    turns = replace(system, switching=Switching(), clock=Clock(2, ("m0", "m1")))
+    assert evidence.find_fault(turns) is not None
+    free = Contact((Mode("air", matrix([["0.5", 0], [1, 1]])),), required=True)
+    assert "loss of contact" in evidence.find_fault(replace(system, contact=free))
+
+
+def test_one_mode_at_all_corners_is_stable_or_not():
+    """A mode that no constant parameter is in has to decrease all functions."""
+    system, _ = proved("constants-quadratic")
+    corners = system.switching.fixed_ends[0]
+    for entry, verdict in (("0.1", True), ("1.1", False)):
+        modes = (*system.modes, Mode("b", matrix([[entry, 0], [0, entry]])))
+        sets = Switching(fixed_ends=(corners, ("b",) * 4))
+        found = certify(replace(system, modes=modes, switching=sets))
+        assert (found.verdict is Verdict.PROVED) is verdict
+
+
+def test_forms_by_hand():
+    """One state 1/2 and 1/4 with P = 3 and 5, F = 1, G = 4, at the rate 9/10."""
+    system = family([["1/2"]], [["1/4"]], time=Time.DISCRETE, switching=PAIR)
+    item = ConstantsQuadratic((((3,),), ((5,),)), ((((1,),), ((4,),)),), 0, Fraction(9, 10))
+    *_, first, second = (form for _, form in item.forms(system))
+    for form, P, a, d in ((first, 3, Fraction(1, 2), 2), (second, 5, Fraction(1, 4), 4)):
+        expected = [[Fraction(81, 100) * P - 2 * a, 1 - 4 * a], [1 - 4 * a, 8 - P]]
+        assert form == [[v * d * 100 for v in row] for row in expected]
+    flow = family([[-1]], [["-1/2"]], switching=PAIR)
+    item = replace(item, rate=Fraction(1, 3))
+    *_, first, second = (form for _, form in item.forms(flow))
+    for form, P, a, d in ((first, 3, Fraction(-1), 1), (second, 5, Fraction(-1, 2), 2)):
+        expected = [[-2 * a - Fraction(2, 3) * P, 1 - P - 4 * a], [1 - P - 4 * a, 8]]
+        assert form == [[v * d * 3 for v in row] for row in expected]
+
+
+def test_the_claim_names_the_parameters():
+    system, evidence = proved("constants-quadratic, continuous")
+    assert "every constant value of the constant parameters in their ranges" in evidence.claim(
+        system
+    )
+    named = (FixedParameter("k", 1, 60), FixedParameter("b", 1, 3))
+    said = replace(system, switching=replace(system.switching, fixed_parameters=named))
+    assert "every constant value of k and b in their ranges" in evidence.claim(said)
+    assert two_springs().time is Time.CONTINUOUS

@@ -53,9 +53,9 @@ PUSHED = pushed(bouncing(1))
         ({"resets": (Reset("m0", "m1", RationalMatrix(((1,),), 0)),)}, "not a matrix over"),
         ({"resets": (Reset("m0", "m1", RationalMatrix(((1,),), -1)),)}, "not a matrix over"),
         ({"resets": (Reset("m0", "m1", RationalMatrix(((1,), (1, 2)))),)}, "not a matrix over"),
-        ({"fixed_ends": (("m0", "m0"),)}, "not the ends of one"),
-        ({"fixed_ends": (("m0", "m9"),)}, "not the ends of one"),
-        ({"fixed_ends": (("m0", "m1"), ("m0", "m1"))}, "not the ends of one"),
+        ({"fixed_ends": (("m0", "m0"),)}, "not the ends of constant"),
+        ({"fixed_ends": (("m0", "m9"),)}, "not the ends of constant"),
+        ({"fixed_ends": (("m0", "m1"), ("m0", "m1"))}, "not the ends of constant"),
     ],
 )
 def test_rules_that_make_no_sense(rules, reason):

@@ -309,7 +309,7 @@ SAID = {
         ["The resets are part of the claim", "other than the declared resets"],
     ),
     "parameter": (
-        ["one parameter is unknown but constant"],
+        ["k in its range: unknown but constant"],
         ["The parameter must be constant", "A parameter that changes while the system moves"],
     ),
     "blocks": (
@@ -337,7 +337,7 @@ SAID = {
         ["so would be every average of them", "Nothing is said about slower switching"],
     ),
     "value": (
-        ["one parameter is unknown but constant"],
+        ["k in its range: unknown but constant"],
         [
             "At k = 2, which the range allows and which does not change: Mode m is not Hurwitz",
             "it may have this one value all the time",

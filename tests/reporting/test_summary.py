@@ -26,7 +26,7 @@ from tests.support import ROOT, SOFT_TISSUE
         ("proved", "for all values in the declared ranges"),
         ("dwell", "every switching that the spec declares, and no other"),
         ("dwell", "up to one constant factor"),
-        ("parameter", "with one parameter unknown but constant"),
+        ("parameter", "with k in its range constant"),
         pytest.param(
             "resets", "every switching that the spec declares, and no other", marks=pytest.mark.slow
         ),

@@ -110,6 +110,7 @@ def build_conditions(spec: InteractionDesignSpec) -> OperatingConditions:
         spec.offset,
         spec.sampling,
         spec.late,
+        None if spec.constant_late is None else ".".join(spec.constant_late),
         None if disturbed is None else disturbed.bounds(),
         None if angle is None else angle.not_below,
         limits.torque.exact,

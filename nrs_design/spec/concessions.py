@@ -268,6 +268,8 @@ def _in_unit_of(quantity: str, number: str) -> str:
 def _times(said: dict[str, Data], at: Keys) -> Iterator[Concession]:
     """Yield a range of times, if one is written: what is asked for least is the shortest."""
     part = _get(said, at)
+    if isinstance(part, dict):
+        at, part = (*at, "range"), part.get("range")
     if not isinstance(part, tuple) or len(part) != 2:
         return
     low, high = map(str, part)

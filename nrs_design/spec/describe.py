@@ -28,7 +28,7 @@ from nrs_design.spec.provenance import (
     IdentifiedSpec,
 )
 from nrs_design.spec.quantity import Quantity
-from nrs_design.spec.quantity_fields import RangedQuantity
+from nrs_design.spec.quantity_fields import RangedQuantity, Times
 from nrs_design.spec.robot import RobotSpec
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -178,10 +178,11 @@ def _actuator(actuator: ActuatorSpec) -> Iterator[Line]:
     yield from _identified("actuator", actuator, MOTOR_COVERS)
 
 
-def _times(key: str, times: tuple[Quantity, Quantity] | None) -> Iterator[Line]:
+def _times(key: str, times: Times | None) -> Iterator[Line]:
     if times is not None:
-        first, last = (end.text for end in times)
-        yield Line(key, first if first == last else f"[{first}, {last}]", "", "")
+        first, last = times.shortest.text, times.longest.text
+        how = "unknown, but constant" if times.is_constant else ""
+        yield Line(key, first if first == last else f"[{first}, {last}]", how, "")
 
 
 def _sampling(sampling: SamplingSpec) -> Iterator[Line]:

@@ -121,7 +121,8 @@ def _constant(
     """Ask for a range that is constant, by the keys that lead to it."""
 
     def find(spec: Spec) -> tuple[str, ...] | None:
-        constant = (at for at, q in spec.ranges.items() if not (q.varies or q.fixed))
+        constant = [at for at, q in spec.ranges.items() if not (q.varies or q.fixed)]
+        constant += [at for at, times in spec.late_times.items() if times.is_constant]
         return next(filter(holds, constant), None)
 
     return find

@@ -256,6 +256,17 @@ def _weightless(spec: Spec) -> tuple[str, Touched] | None:
     return None
 
 
+def _constant_over_samples(spec: Spec) -> tuple[str, str, str, str] | None:
+    """Return where a constant lateness is that begins and ends between other samples."""
+    at = spec.constant_late
+    if at is None or spec.sampling is None:
+        return None
+    low, high, period = *spec.late, spec.sampling.step
+    if high <= (low // period + 1) * period:
+        return None
+    return *at, f"{float(low):g}", f"{float(high):g}"
+
+
 def _contacts(spec: Spec) -> set[object]:
     return {contact for c in spec.controllers.values() for contact in c.contacts}
 
@@ -390,6 +401,28 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         "{2} s from a sample to its command, dead time and latency, is more than {3} periods, and "
         "is not modelled",
         "shorten them, or run the law less often",
+    ),
+    Row(
+        "{0}.{1}.varies",
+        _constant_over_samples,
+        "a constant time from {2} s to {3} s crosses a sample, and is not modelled as a constant",
+        "narrow it to less than a period, from one whole number of periods to the next, or leave "
+        "`varies: false` out",
+    ),
+    Row(
+        "{0}.{1}.varies",
+        lambda s: next(
+            (
+                at
+                for at, times in s.late_times.items()
+                if times.is_constant
+                and (s.constant_late is None or (s.sampling and s.sampling.jitter))
+            ),
+            None,
+        ),
+        "{0}.{1} is constant beside what varies: dead time and latency add up, and a jitter moves "
+        "both",
+        "let all of them vary, or none",
     ),
     Row(
         "goals.delay",

@@ -38,7 +38,8 @@ from nrs_design.spec.motion import (
     VelocityInterfaceSpec,
 )
 from nrs_design.spec.provenance import IdentifiedSpec
-from nrs_design.spec.quantity_fields import RangedQuantity, ends_of
+from nrs_design.spec.quantity import is_less
+from nrs_design.spec.quantity_fields import RangedQuantity, Times, ends_of
 from nrs_design.spec.safety import SafetySpec
 from nrs_design.spec.sampling import DisturbancesSpec, SamplingSpec
 from nrs_design.spec.scenarios import ScenarioSpec
@@ -273,14 +274,27 @@ class AbstractInteractionSpec(SpecModel):
         return alone and self.sampling is not None and self.sampling.round == 1
 
     @property
+    def late_times(self) -> dict[tuple[str, str], Times]:
+        """How late commands are, by the keys that say it."""
+        found = {(name, "dead_time"): drive.dead_time for name, drive in self.drives.items()}
+        found |= {("sampling", "latency"): None if self.sampling is None else self.sampling.latency}
+        return {at: times for at, times in found.items() if times is not None}
+
+    @property
+    def constant_late(self) -> tuple[str, str] | None:
+        """The key of a lateness that is unknown but constant, if all are known or constant."""
+        ranged = {at: t for at, t in self.late_times.items() if is_less(t.shortest, t.longest)}
+        constant = all(times.is_constant for times in ranged.values())
+        return next(iter(ranged), None) if constant else None
+
+    @property
     def late(self) -> tuple[Fraction, Fraction]:
         """Shortest and longest time from a sample to where its command takes effect, in s."""
-        parts = (
-            *(drive.dead_time for drive in self.drives.values()),
-            None if self.sampling is None else self.sampling.latency,
+        each = [ends_of(times) for times in self.late_times.values()]
+        return (
+            sum((shortest for shortest, _ in each), Fraction(0)),
+            sum((longest for _, longest in each), Fraction(0)),
         )
-        shortest, longest = zip(*map(ends_of, parts), strict=True)
-        return sum(shortest, Fraction(0)), sum(longest, Fraction(0))
 
     @property
     def takes_motor_ranges(self) -> bool:

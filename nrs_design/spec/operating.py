@@ -35,6 +35,7 @@ class OperatingConditions:
     offset: Offset  # Where the offset of the force controllers is taken from
     sampling: SamplingSpec | None  # The processor; None in continuous time
     late: tuple[Fraction, Fraction]  # Shortest and longest time from a sample to its command, in s
+    constant_late: str | None  # The key that says it, where it is unknown but constant
     disturbances: Bounds | None  # None where nothing is said to disturb
     largest_angle: Fraction | None  # Of the joint in rad, rounded up
     torque: Fraction  # Limit about the pivot in N m

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import Field
 from pydantic_core import PydanticCustomError
@@ -266,18 +266,50 @@ def _pair_schema(kind: QuantityKind, keys: dict[str, str], required: list[str]) 
     return {"anyOf": [single, mapping]}
 
 
-def _read_times(value: object) -> tuple[Quantity, Quantity]:
-    """Read one time, or the shortest and the longest."""
+class Times(NamedTuple):
+    """The shortest and the longest time, and whether it is another one each time."""
+
+    shortest: Quantity
+    longest: Quantity
+    varies: bool = True
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it has a range, and one value there that does not change."""
+        return not self.varies and is_less(self.shortest, self.longest)
+
+
+_CONSTANT_TIMES = "write `{range: [0.3 ms, 0.8 ms], varies: false}`"
+
+
+def _read_times(value: object) -> Times:
+    """Read one time, or the shortest and the longest, which may be those of a constant one."""
+    if isinstance(value, Times):
+        return value
+    if not isinstance(value, dict):
+        return _between(value)
+    if not {"range"} <= value.keys() <= {"range", "varies"}:
+        raise fault("expected a range, and whether it varies", _CONSTANT_TIMES)
+    varies = {"true": True, "false": False}.get(str(value.get("varies", "true")).lower())
+    if varies is None:
+        raise fault("expected true or false", _CONSTANT_TIMES, "varies")
+    found = _between(value["range"])
+    if not varies and not is_less(found.shortest, found.longest):
+        raise fault("a constant that may have one value is known", "write it as one time", "varies")
+    return found._replace(varies=varies)
+
+
+def _between(value: object) -> Times:
     ends = tuple(value) if isinstance(value, tuple | list) else (value, value)
     if len(ends) != 2:
         raise fault("expected a time, or two of them", "write `0.4 ms`, or `[0.3 ms, 0.8 ms]`")
     low, high = (read_quantity(end, kinds.DURATION, positive=False) for end in ends)
     if is_less(high, low):
         raise fault("the range of the times ends below its start", "write [shortest, longest]")
-    return low, high
+    return Times(low, high)
 
 
-def ends_of(times: tuple[Quantity, Quantity] | None) -> tuple[Fraction, Fraction]:
+def ends_of(times: Times | None) -> tuple[Fraction, Fraction]:
     """Return the shortest and the longest time in s; none is no time."""
     return (times[0].exact, times[1].exact) if times else (Fraction(0), Fraction(0))
 
@@ -288,10 +320,16 @@ _TIMES = {
     "minItems": 2,
     "maxItems": 2,
 }
-# One time for both ends, or a range.
+_RANGED_TIMES = {
+    "type": "object",
+    "properties": {"range": _TIMES, "varies": {"type": "boolean"}},
+    "required": ["range"],
+    "additionalProperties": False,
+}
+# One time for both ends, or a range, in which it may be constant.
 TimeRange = Annotated[
-    tuple[Quantity, Quantity],
-    ReadBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES]}),
+    Times,
+    ReadBy(_read_times, {"anyOf": [quantity_schema(kinds.DURATION), _TIMES, _RANGED_TIMES]}),
 ]
 ActuatorGain = Annotated[Quantity, _one(kinds.ACTUATOR_GAIN)]
 RangedActuatorGain = Annotated[RangedQuantity, _ranged(kinds.ACTUATOR_GAIN, constant=True)]

@@ -25,7 +25,11 @@ from nrs_design.switched.assumptions import (
     scale_texts,
     sensor_texts,
 )
-from nrs_design.switched.constant_parameters import constants_of, with_constants
+from nrs_design.switched.constant_parameters import (
+    constant_lateness,
+    constants_of,
+    with_constants,
+)
 from nrs_design.switched.constraints import assemble_switching
 from nrs_design.switched.parameters import (
     constant_parameters,
@@ -177,6 +181,9 @@ def assemble(
     constants = tuple(
         constants_of(plant, conditions.touched, drive, sampled=conditions.sampling is not None)
     )
+    if conditions.sampling is not None and conditions.constant_late is not None:
+        said = conditions.constant_late, conditions.late, conditions.sampling.step
+        constants = (*constants, constant_lateness(*said))
     unit = spec.axis.unit
     constants = tuple(replace(c, said=replace(c.said, unit=unit(c.said.unit))) for c in constants)
     system = with_constants(system, constants)

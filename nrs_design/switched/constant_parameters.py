@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from itertools import product
 from math import prod
 
@@ -46,6 +47,28 @@ class ConstantParameter:
             return None
         said = set(mode[self.first_label :])
         return next((label for label in self.labels if said.issuperset(label.split("/"))), None)
+
+
+def constant_lateness(
+    name: str, late: tuple[Fraction, Fraction], period: Fraction
+) -> ConstantParameter:
+    """Return the time from a sample to its command as a constant parameter.
+
+    It is within one period, so one command takes effect in each, and a mode is at an end of what is
+    left of the period then: the longer it is, the earlier the command.
+
+    Parameters
+    ----------
+    name : str
+        The key of a spec.
+    late : tuple of Fraction
+        Its ends in s.
+    period : Fraction
+        In s.
+    """
+    symbol = f"h{late[0] // period}"
+    said = FixedParameter(name, *late, "s", enclosed=True)
+    return ConstantParameter(said, (f"{symbol}-max", f"{symbol}-min"))
 
 
 def constants_of(

@@ -92,7 +92,7 @@ def assume_sampled(
     inputs = "sampled-position" if "under force control" in loss else "sampled"
     return (
         *_period_texts(sampling, design),
-        *_late_texts(frame.timing),
+        *_late_texts(frame.timing, conditions.constant_late),
         _delay_text(*sampling.delay),
         _motor_text(ranges, frame, conditions.axis),
         *([] if design.takes is Takes.TORQUE else [say("unloaded.sampled")]),
@@ -131,13 +131,15 @@ def _period_texts(sampling: SamplingSpec, design: ControllerDesign) -> Iterator[
     yield say("period.order", "the order that is named")
 
 
-def _late_texts(timing: CommandTiming) -> Iterator[Assumption]:
+def _late_texts(timing: CommandTiming, constant: str | None) -> Iterator[Assumption]:
     """Say when commands take effect, unless they do so at once."""
     earliest, late = exact_text(timing.earliest), exact_text(timing.latest)
     if not timing.latest:
         return
     if timing.earliest == timing.latest:
         yield say("command-age.fixed", f"{late} s, exactly", late=late)
+    elif constant is not None:
+        yield say("command-age.constant", f"{earliest} s to {late} s", earliest=earliest, late=late)
     else:
         yield say("command-age.range", f"{earliest} s to {late} s", earliest=earliest, late=late)
 

@@ -1,0 +1,148 @@
+"""Constants of drives and times: sets of corners, and the proof at values that lie between."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from nrs_design.errors import SpecError
+from nrs_design.pipeline import run_certification, run_design
+from nrs_design.pipeline.certification import assemble_spec
+from nrs_design.spec import parse_spec, read_spec
+
+TORQUES = """\
+kind: interaction-design
+name: constant-inertia
+torque_interface:
+  inertia: {nominal: 0.2 kg*m^2, range: [0.05 kg*m^2, 0.6 kg*m^2], varies: false}
+  friction: 0.5 N*m*s/rad
+limits: {velocity: 8 deg/s, torque: 3 N*m, bandwidth: 2 Hz}
+environments:
+  tissue: {model: elastic, stiffness: {nominal: 42 N*m/rad, range: [17 N*m/rad, 45 N*m/rad]}}
+controllers:
+  soft: &soft
+    type: torque-impedance
+    environment: tissue
+    stiffness: 30 N*m/rad
+    damping: 3 N*m*s/rad
+  firm:
+    type: torque-impedance
+    environment: tissue
+    stiffness: 60 N*m/rad
+    damping: 5 N*m*s/rad
+switching: arbitrary
+sampling: {period: 1 ms, delay: 0}
+contact: kept
+""".replace(" &soft", "")
+LATE = """\
+kind: interaction-design
+name: late
+actuator: {gain: 4.8417e-4 rad/s/rpm, time_constant: 0.0351 s}
+motion_loop: {damping_ratio: 0.707, settling_time: 0.1404 s}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments:
+  soft: {model: elastic, stiffness: 43 N*m/rad}
+controllers:
+  only: {type: impedance, environment: soft, Mt: 0.01 kg*m^2, Bt: 2.15 N*m*s/rad}
+switching: arbitrary
+sampling: {period: 2 ms, delay: 0, latency: {range: [2.4 ms, 3.6 ms], varies: false}}
+contact: kept
+"""
+
+
+def read(tmp_path, text):
+    path = tmp_path / "one.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    return read_spec(path)
+
+
+def test_an_inertia_that_jumps_is_refuted_and_one_that_does_not_is_proved(tmp_path):
+    """At every inertia and stiffness between, the true map decreases the function of that value."""
+    result = run_certification(read(tmp_path, TORQUES))
+    found = result.certification
+    assert found.verdict == "proved"
+    (evidence,) = (s for s in found.statements if s.kind == "constants-quadratic")
+    assert "For every constant value of torque_interface.inertia" in evidence.claim(found.system)
+    low, high = (np.array(P, float) / 2.0**evidence.denominator_log2 for P in evidence.functions)
+    rho, T, B = float(evidence.rate), 0.001, 0.5
+    rng = np.random.default_rng(4)
+    assert found.system.states == ("omega [rad/s]", "e before [rad]", "delta [rad]")
+    for J, k in zip(rng.uniform(0.05, 0.6, 60), rng.uniform(17, 45, 60), strict=True):
+        share = (1 / J - 1 / 0.05) / (1 / 0.6 - 1 / 0.05)
+        P = (1 - share) * low + share * high
+        E = expm(np.array([[-B / J, -k / J, 1 / J], [1, 0, 0], [0, 0, 0]]) * T)
+        for K, D in ((30, 3), (60, 5)):
+            law = np.array([0.0, -D / T, -K - D / T])
+            A = np.array([[E[0, 0], 0, E[0, 1]], [0, 0, -1.0], [E[1, 0], 0, E[1, 1]]])
+            A += np.outer([E[0, 2], 0, E[1, 2]], law)
+            gap = rho**2 * P - A.T @ P @ A
+            assert np.linalg.eigvalsh(gap).min() > -1e-9 * np.abs(P).max()
+    jumping = run_certification(read(tmp_path, TORQUES.replace(", varies: false", "")))
+    assert jumping.certification.verdict == "refuted"
+
+
+def test_values_of_a_drive_are_enclosed_and_refute_nothing(tmp_path):
+    loaded = read(tmp_path, TORQUES)
+    system = assemble_spec(loaded, run_design(loaded), "deflection")
+    (said,) = system.switching.fixed_parameters
+    assert (said.name, said.unit, said.inverse) == ("torque_interface.inertia", "kg*m^2", True)
+    assert said.enclosed
+    for low, high in system.switching.fixed_ends:
+        assert low.replace("J-min", "J-max") == high
+
+
+def test_a_constant_latency_is_what_is_left_of_the_period(tmp_path):
+    """The shortest one leaves most; what the way is above its chord goes on to vary."""
+    loaded = read(tmp_path, LATE)
+    system = assemble_spec(loaded, run_design(loaded), "deflection")
+    (said,) = system.switching.fixed_parameters
+    assert (said.name, float(said.low), float(said.high)) == ("sampling.latency", 0.0024, 0.0036)
+    assert said.enclosed
+    for early, late in system.switching.fixed_ends:
+        assert early.replace("h1-max", "h1-min") == late
+    varying = read(
+        tmp_path, LATE.replace("{range: [2.4 ms, 3.6 ms], varies: false}", "[2.4 ms, 3.6 ms]")
+    )
+    other = assemble_spec(varying, run_design(varying), "deflection")
+    assert other.modes == system.modes
+    assert not other.switching.fixed_ends
+    texts = " ".join(system.assumptions)
+    assert "by a time that is unknown from 0.0024 s to 0.0036 s, but always the same" in texts
+
+
+@pytest.mark.parametrize(
+    ("new", "what"),
+    [
+        ("{range: [1.4 ms, 2.6 ms], varies: false}", "crosses a sample"),
+        ("{range: [2.4 ms, 2.4 ms], varies: false}", "one value is known"),
+        ("{range: [2.4 ms, 3.6 ms], varies: sometimes}", "true or false"),
+        ("{range: [3.6 ms, 2.4 ms], varies: false}", "below its start"),
+        ("{nominal: 2.4 ms, varies: false}", "expected a range"),
+        ("{range: [2.4 ms, 3.6 ms], varies: false}, jitter: 0.1 ms", "jitter"),
+    ],
+)
+def test_a_constant_time_that_contradicts_is_refused(new, what):
+    text = re.sub(r"latency: \{.*?\}", f"latency: {new}", LATE)
+    with pytest.raises(SpecError) as caught:
+        parse_spec(text)
+    faults = caught.value.faults or (caught.value,)
+    assert what in " ".join(f"{fault.message} {fault.remedy}" for fault in faults)
+    assert all(fault.remedy for fault in faults)
+
+
+def test_a_constant_beside_one_that_varies_is_refused():
+    text = LATE.replace(
+        "time_constant: 0.0351 s}", "time_constant: 0.0351 s, dead_time: [0.1 ms, 0.2 ms]}"
+    )
+    with pytest.raises(SpecError, match="beside what varies"):
+        parse_spec(text)
+
+
+def test_a_range_that_varies_may_say_so():
+    both = (
+        LATE.replace("{range: [2.4 ms, 3.6 ms], varies: false}", new)
+        for new in ("[2.4 ms, 3.6 ms]", "{range: [2.4 ms, 3.6 ms]}")
+    )
+    one, other = map(parse_spec, both)
+    assert one.sampling.latency == other.sampling.latency

@@ -363,6 +363,61 @@ def merge_delay(loaded: LoadedSpec, found: DelayIdentification) -> str:
     return document.text()
 
 
+def merge_latency(loaded: LoadedSpec, found: DelayIdentification) -> str:
+    """Return the text of a spec with the time from a sample to its command.
+
+    Raises
+    ------
+    SpecError
+        If the spec is no interaction design, or takes no latency.
+    DataError
+        If the record shows dynamics and no mere delay, or a latency that no spec takes.
+    """
+    sampling = check_latency_place(loaded)
+    sent, seen = found.record.names
+    if found.is_lag:
+        raise DataError(
+            f"{seen} follows {sent} by {found.chosen.follower.name}: that is more than a latency",
+            remedy="name the command as the law computed it by --command, and as the drive took it "
+            "by --measured; what the drive does with it belongs into its model",
+        )
+    low, high = found.held_s
+    if high <= 0 or high > LONGEST_DELAY * sampling.period.exact:
+        raise DataError(
+            f"{seen} comes up to {float(high):.4g} s after {sent}; a spec takes up to "
+            f"{LONGEST_DELAY} periods, and none before",
+            remedy="see that the columns are not swapped, and record more rows in a period",
+        )
+    document = SpecDocument(loaded)
+    node = document.root["sampling"]
+    ends = (
+        few_digits(max(float(low), 0.0), _DIGITS, ROUND_FLOOR),
+        few_digits(float(high), _DIGITS, ROUND_CEILING),
+    )
+    document.put(node, "latency", [f"{_plain(end) if end else 0} s" for end in ends])
+    _put_origin(document, node, found.sources, found.caveats)
+    return document.text()
+
+
+def check_latency_place(loaded: LoadedSpec) -> SamplingSpec:
+    """Refuse, before a fit, a spec that no latency can go into.
+
+    Raises
+    ------
+    SpecError
+        If it is no interaction design, or not about a loop whose commands may be late.
+    """
+    sampling, spec = check_delay_place(loaded), check_interaction(loaded)
+    if not spec.takes_dead_time:
+        raise SpecError(
+            "commands of this loop take effect at once: with two periods, a safety layer or "
+            "coupled axes a latency is not modelled",
+            path=loaded.path,
+            remedy="write into the spec of one axis with one period",
+        )
+    return sampling
+
+
 def check_delay_place(loaded: LoadedSpec) -> SamplingSpec:
     """Refuse, before a fit, a spec that no delay can go into.
 

@@ -14,6 +14,7 @@ from nrs_design.identification.write_spec import (
     law_to_write,
     merge_actuator,
     merge_delay,
+    merge_latency,
     merge_tissue,
 )
 from nrs_design.models.contact import Elastic, KelvinVoigt
@@ -22,7 +23,7 @@ from nrs_design.spec.changes import spec_changes
 from nrs_design.spec.environment import KelvinBoltzmannSpec
 from tests.identification import motors, signals, synthetic
 from tests.identification.support import MOTOR, quick, record, sinusoids, slow
-from tests.support import COMMUTING, ROBOT, SOFT_TISSUE
+from tests.support import COMMUTING, ROBOT, ROOT, SOFT_TISSUE
 
 SAMPLED = ROBOT / "soft-tissue-sampled.nrs.yaml"
 
@@ -222,7 +223,7 @@ def test_a_dead_time_is_no_age_of_the_force(late):
     loaded = read_spec(SAMPLED)
     written = parse_spec(merge_actuator(loaded, late))
     assert late.doubts == written.actuator.doubts == ()
-    first, last = (end.exact for end in written.actuator.dead_time)
+    first, last = (end.exact for end in written.actuator.dead_time[:2])
     assert float(first) <= late.late.low < late.late.high <= float(last)
     assert written.sampling == loaded.spec.sampling
 
@@ -246,6 +247,33 @@ def test_delay_in_periods_of_the_processor():
     written = parse_spec(merge_delay(replace(loaded, spec=faster), found)).sampling
     assert (written.delay, written.doubts) == ((3, 7), ())
     assert [source.file for source in written.provenance] == ["pair.csv"]
+
+
+def test_a_latency_in_seconds():
+    """From 1.84 to 3.06 samples of 2 ms, and what a held command hides, rounded outwards."""
+    found = delayed(signals.DELAY)
+    loaded = read_spec(SAMPLED)
+    written = parse_spec(merge_latency(loaded, found)).sampling
+    low, high = (float(end.exact) for end in written.latency[:2])
+    held = [float(end) for end in found.held_s]
+    assert held[0] - 1e-4 <= low <= held[0] < held[1] <= high <= held[1] + 1e-4
+    assert low / 0.002 < signals.DELAY < high / 0.002
+    assert written.delay == loaded.spec.sampling.delay
+    assert [source.file for source in written.provenance] == ["pair.csv"]
+
+
+@pytest.mark.parametrize(
+    ("spec", "delay", "error", "message"),
+    [
+        (SOFT_TISSUE, signals.DELAY, SpecError, "has no sampling"),
+        (ROOT / "docs/examples/everything-at-once.nrs.yaml", signals.DELAY, SpecError, "at once"),
+        (SAMPLED, 30.0, DataError, "10 periods"),
+    ],
+)
+def test_what_is_no_latency(spec, delay, error, message):
+    with pytest.raises(error, match=message) as caught:
+        merge_latency(read_spec(spec), delayed(delay))
+    assert caught.value.remedy
 
 
 @pytest.mark.parametrize(

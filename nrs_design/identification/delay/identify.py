@@ -156,6 +156,12 @@ class DelayIdentification:
         """Return what is held, in whole periods of another length in s, rounded outward."""
         return self._outward(Fraction(self.record.step) / period)
 
+    @property
+    def held_s(self) -> tuple[Fraction, Fraction]:
+        """What is held, in s."""
+        low, high = (Fraction(end) * Fraction(self.record.step) for end in self.held)
+        return low, high
+
     def _outward(self, sample: Fraction) -> tuple[int, int]:
         """Return what is held, where a sample is so many of what is counted."""
         low, high = (Fraction(end) * sample for end in self.held)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,6 +28,13 @@ if TYPE_CHECKING:
 INPUT, OUTPUT = "input_any", "output_any"
 
 
+class Into(StrEnum):
+    """Where a delay is written to."""
+
+    DELAY = "delay"
+    LATENCY = "latency"
+
+
 @command("identify-delay")
 def delay(
     log: Annotated[Path, typer.Argument(metavar="LOG", help="Record of a running loop.")],
@@ -38,6 +46,9 @@ def delay(
         typer.Option(metavar="COLUMN", help="What follows; default: angle, velocity or force."),
     ] = None,
     columns: ColumnMap = None,
+    into: Annotated[
+        Into, typer.Option(help="What --write puts down: delay of the force, or latency.")
+    ] = Into.DELAY,
     write: WriteTo = None,
     report: ReportTo = None,
     date: Date = None,
@@ -48,34 +59,45 @@ def delay(
     copy, a lag of first or second order, a lag with an integrator; the simplest decides that no
     other beats by 10 in BIC. The interval is at 95 %; parts of the record show whether the delay
     varies. --write is for two forces, the one that the sensor measured and the one that the law
-    used: its age is the delay of sampling.
+    used: its age is the delay of sampling. With --into latency it is for two commands, as the law
+    computed it and as the drive took it: the time between is the latency of sampling.
 
     Example: nrs-design identify delay run.csv --command force_raw --measured force_used
     """
     from nrs_design.identification.datasets import read_signals
     from nrs_design.identification.delay import identify_delay
     from nrs_design.identification.reporting.delay import delay_report
-    from nrs_design.identification.write_spec import check_delay_place, merge_delay
+    from nrs_design.identification.write_spec import (
+        check_delay_place,
+        check_latency_place,
+        merge_delay,
+        merge_latency,
+    )
 
+    late = into is Into.LATENCY
     if (command is None) != (measured is None):
         raise typer.BadParameter("name both columns or none", param_hint="--command, --measured")
     if command is not None and command == measured:
         raise typer.BadParameter("name two columns", param_hint="--command, --measured")
     if write is not None and command is None:
         raise typer.BadParameter(
-            "name the force as measured by --command, and as the law used it by --measured",
+            "name the command as computed by --command, and as the drive took it by --measured"
+            if late
+            else "name the force as measured by --command, and as the law used it by --measured",
             param_hint="--write",
         )
     outputs = Destinations.checked(write, report, date)
     if outputs.spec is not None:
-        check_delay_place(outputs.spec)
+        (check_latency_place if late else check_delay_place)(outputs.spec)
     entries = list(columns or [])
     if command is not None:
         entries += [f"{INPUT}={command}", f"{OUTPUT}={measured}"]
     (record,) = read_all([log], read_signals, entries)
     with progress("fitting"):
         found = identify_delay(record)
-    return deliver(outputs, found, _facts, _print, delay_report, merge_delay)
+    return deliver(
+        outputs, found, _facts, _print, delay_report, merge_latency if late else merge_delay
+    )
 
 
 def _print(found: DelayIdentification) -> None:

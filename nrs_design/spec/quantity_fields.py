@@ -322,7 +322,13 @@ _TIMES = {
 }
 _RANGED_TIMES = {
     "type": "object",
-    "properties": {"range": _TIMES, "varies": {"type": "boolean"}},
+    "properties": {
+        "range": _TIMES | {"description": "[shortest, longest] time that the proof covers"},
+        "varies": {
+            "type": "boolean",
+            "description": "false: it is unknown, but always the same; default: true",
+        },
+    },
     "required": ["range"],
     "additionalProperties": False,
 }

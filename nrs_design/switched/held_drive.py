@@ -5,6 +5,9 @@ numbers in A and B and of the time h. Between the corners of their ranges it is 
 one number after the other, but for the sum of ``(length of a range)^2/8`` times the largest second
 derivative by that number. That, and what is rounded, is enclosed: all entries together are in the
 simplex around the box of what they may be off (docs/certificates/drives.md).
+
+What is touched may change its stiffness and damping within a period, too. Its mean over the period
+is in the range, and takes the place of a constant one; by how much that is off is enclosed as well.
 """
 
 from __future__ import annotations
@@ -200,6 +203,7 @@ def _entries(
     n, count = drive.order, 0
     ranged = [s for s, interval in numbers.items() if interval.low < interval.high]
     _check_length(drive, numbers, times["T"])
+    moved = _moved(drive, numbers, times)
     for span, (time, length) in enumerate(times.items()):
         moving = [*ranged, *([time] if length.low < length.high else [])]
         known = {**numbers, time: length}
@@ -214,6 +218,7 @@ def _entries(
             if span and column != n:
                 continue
             off = sum((_square(ends[s]) * abs(bends[s][row, column]) for s in moving), _ball(ZERO))
+            off += moved[time][row, column]
             values = {corner: M[row, column] for corner, M in at.items()}
             if row == column == n - 1:
                 # How far the joint goes, not where it is then.
@@ -225,6 +230,61 @@ def _entries(
                 raise _too_long()
             yield (span, row, column), PeriodEntry(f"off{count}", tuple(moving), *found)
             count += 1
+
+
+def _moved(
+    drive: Drive, numbers: Mapping[str, Interval], times: Mapping[str, Interval]
+) -> dict[str, Any]:
+    """Return by how much entries are off at most where the load changes within a period.
+
+    Let A be the generator at the moment, with entries of at most M by size, and k a number of the
+    load, which acts by N: ``A(s) = A + (k(s) - k) N`` with k the mean over the period. What the
+    state becomes is off by the integral of ``(k(s) - k) g(s)`` with ``g = exp(A (T - s)) N E(s)``,
+    E what the changing A makes of the state until s. The first factor has the mean zero and a range
+    of some width, so that is at most ``T^2/8`` times the width and the largest derivative of g
+    (Ostrowski 1970), which is at most ``exp(M T) (|N| M + M |N|) exp(M T)``. What commands add is
+    off by at most the integral of ``exp(M (h - s)) |N| exp(M s)``, which is the corner block of
+    the exponential of ``[[M, |N|], [0, M]] h``.
+    """
+    from flint import arb_mat
+
+    n = drive.order
+    m = n + 1
+    nothing = arb_mat(m, m)
+    if not drive.loaded:
+        return dict.fromkeys(times, nothing)
+    ends = {s: _ends(i, inverse=s in drive.inverse) for s, i in numbers.items()}
+    anywhere = {s: _hull(*e) for s, e in ends.items()}
+    M = _sizes(_generator(drive.rates, anywhere, n))
+    ranged = [s for s in LOAD if numbers[s].low < numbers[s].high]
+    widths = [_ball(numbers[s].high - numbers[s].low) for s in ranged]
+    slopes = [_sizes(_generator(drive.rates.slope(s), anywhere, n)) for s in ranged]
+    found = {}
+    for time, length in times.items():
+        h = _ball(length.high)
+        grown, total = (M * h).exp(), nothing
+        for width, N in zip(widths, slopes, strict=True):
+            states = grown * (N * M + M * N) * grown * (width * h * h / 8)
+            blocks = [[M, N], [nothing, M]]
+            whole = arb_mat(
+                [[blocks[i // m][j // m][i % m, j % m] for j in range(2 * m)] for i in range(2 * m)]
+            )
+            doubled = (whole * h).exp()
+            total += arb_mat(
+                [
+                    [width * doubled[i, m + j] if j == n else states[i, j] for j in range(m)]
+                    for i in range(m)
+                ]
+            )
+        found[time] = total
+    return found
+
+
+def _sizes(M: Any) -> Any:
+    """Return the largest sizes of the entries of a matrix of balls."""
+    from flint import arb_mat
+
+    return arb_mat([[M[i, j].abs_upper() for j in range(M.ncols())] for i in range(M.nrows())])
 
 
 def _check_length(drive: Drive, numbers: Mapping[str, Interval], period: Interval) -> None:

@@ -47,6 +47,7 @@ from nrs_design.switched.sampled_coupled import couplings_of, slowed_motor
 from nrs_design.switched.sampled_frame import Frame, Turn
 from nrs_design.switched.sampled_inputs import (
     SampledMode,
+    anything_of,
     channels_of,
     damping_of,
     roundings_of,
@@ -100,9 +101,9 @@ def close_sampled_loop(
     if plant.drive is not None:
         motor = HeldDrive.of(plant.drive, timing)
     frame = _frame(conditions.idle, sampling, design, each, motor, timing)
-    loop = _Loop(frame, sampling.delay)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
+    loop = _Loop(frame, sampling.delay, loses=loss.startswith("anywhere"))
     parts, free = _motions(frame, loop, plant, design, laws, loss)
     groups = {key: tuple(item.mode.name for item in part) for key, part in parts.items()}
     motions = tuple(chain.from_iterable(parts.values()))
@@ -248,6 +249,7 @@ class _Loop:
 
     frame: Frame
     delays: tuple[int, int]
+    loses: bool = False  # Whether contact may be lost anywhere
 
     def in_contact(
         self, controller: Controller, gains: RangedLaw, environments: Iterable[Environment]
@@ -261,8 +263,12 @@ class _Loop:
         if not controller.contacts:
             found += self._corners(gains, self.frame.motor.box, controller.name)
             environments = environments if self.frame.remembers else ()
+        environments = tuple(environments)
         for environment in environments:
             touched = {"k": environment.stiffness, "b": damping_of(environment)}
+            if self.loses and self.frame.motor.drive is not None and self.frame.motor.drive.loaded:
+                # Within a period, too, anything may be touched, or nothing.
+                touched = anything_of(environments)
             forced = any(FORCE_GAIN in law.numbers for law in self.frame.laws)
             motor = self.frame.motor.touching(touched, forced=forced)
             loop = replace(self, frame=replace(self.frame, motor=motor))

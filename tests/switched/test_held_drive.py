@@ -1,6 +1,7 @@
 """Drives over a period: enclosures, and loops by hand."""
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -279,3 +280,45 @@ def test_free_motion_is_the_same_wherever_it_is():
             n = len(frame.states)
             rows = frame.rows(law, 1, values)[:n]
             assert [row[n - 1] for row in rows] == [*(0,) * (n - 1), 1]
+
+
+@settings(max_examples=40)
+@given(
+    st.lists(
+        st.tuples(st.floats(0, 1), st.floats(0, 1), st.floats(0.05, 1)), min_size=2, max_size=5
+    ),
+    st.sampled_from([0.0, 0.3]),
+)
+def test_what_is_touched_may_change_within_a_period(pieces, late):
+    """Contact that comes, goes and stiffens at any moment is a constant one of its mean, nearly."""
+    T, J, B = 0.001, 0.15, 0.5
+    drive = torque_drive(Interval.point(F("0.15")), Interval.point(F(1, 2)))
+    touched = {"k": Interval(F(20), F(0), F(60)), "b": Interval(F(1, 10), F(0), F(1, 5))}
+    timing = CommandTiming(F(1, 1000), F(late) * F(1, 1000), F(late) * F(1, 1000))
+    held = HeldDrive.of(drive, timing, touched)
+    lengths = np.array([piece[2] for piece in pieces])
+    lengths *= T / lengths.sum()
+    loads = [(60 * x, 0.2 * y) for x, y, _ in pieces]
+    mean = {
+        symbol: float(sum(load[i] * time for load, time in zip(loads, lengths, strict=True)) / T)
+        for i, symbol in enumerate(("k", "b"))
+    }
+    cuts = sorted({0.0, late * T, *np.cumsum(lengths)[:-1], T})
+    z = np.hstack([np.eye(2), np.zeros((2, 2))])
+    for begin, end in pairwise(cuts):
+        at = int(np.searchsorted(np.cumsum(lengths), (begin + end) / 2))
+        k, b = loads[min(at, len(loads) - 1)]
+        G = np.array([[-(B + b) / J, -k / J, 1 / J], [1, 0, 0], [0, 0, 0]])
+        E = expm(G * (end - begin))
+        z = E[:2, :2] @ z
+        z[:, 2 + int(begin >= late * T and late > 0)] += E[:2, 2]
+    changes = len(timing.within)
+    found = forms(held, {symbol: F(value) for symbol, value in mean.items()}, changes)
+    wanted = z if changes else z[:, :3]
+    off = np.zeros_like(found)
+    for (span, row, column), entry in held.entries.items():
+        off[row, column + span] += float(entry.off)
+        if span:
+            off[row, 2] += float(entry.off)
+    assert (abs(found - wanted) <= off + 1e-13).all()
+    assert off.max() < 0.002

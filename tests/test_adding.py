@@ -9,6 +9,7 @@ from typing import get_args
 import pytest
 from pydantic import BaseModel
 
+from nrs_design.axis import COMMAND_UNITS
 from nrs_design.controllers.laws import LAWS as CONTROL
 from nrs_design.models.contact import LAWS as CONTACT
 from nrs_design.models.contact import LINEAR_LAWS
@@ -16,7 +17,6 @@ from nrs_design.proof.evidence import KINDS as EVIDENCE
 from nrs_design.spec.environment_estimator import EstimatorSpec
 from nrs_design.spec.load import SPEC_KINDS
 from nrs_design.spec.threshold_logic import ThresholdLogicSpec
-from nrs_design.spec.units import COMMAND_UNITS
 from tests.package import FILES, PACKAGE, names_in, nodes_of
 from tests.support import ROOT
 

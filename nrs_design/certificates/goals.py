@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import axis_with
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.certificates.certificate import Certificate, Verdict
 from nrs_design.certificates.certified_goal import CertifiedGoal
@@ -13,7 +14,6 @@ from nrs_design.certificates.people import contact_goals
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.evidence import Shows
 from nrs_design.proof.mode import Time
-from nrs_design.spec.axis import axis_with
 
 if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec, Spec

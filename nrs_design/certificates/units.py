@@ -13,8 +13,8 @@ def gain_units(certificate: Certificate) -> dict[str, dict[str, str]]:
     if not certificate.gains:
         return {}
     # Controllers are slow to load, and a certificate of given matrices has none.
+    from nrs_design.axis import axis_with
     from nrs_design.controllers.gains import units_of
-    from nrs_design.spec.axis import axis_with
     from nrs_design.switched.assumptions import command_in
 
     system = certificate.system

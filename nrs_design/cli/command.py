@@ -64,7 +64,7 @@ def command(
     def decorate(function: Callable[..., Answer]) -> Callable[..., None]:
         @wraps(function)
         def run(*, as_json: bool = False, quiet: bool = False, **arguments: Any) -> None:
-            from nrs_design.spec.axis import AxisType, about
+            from nrs_design.axis import AxisType, about
 
             with output(as_json=as_json, quiet=quiet), about(AxisType.ROTARY):
                 function(**arguments).deliver(name)

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import unit
 from nrs_design.cli.command import spec_facts
 from nrs_design.proof.bounds import lower_float, upper_float
-from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from fractions import Fraction

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.goals import design_answer, goals_summary
 from nrs_design.cli.options import SpecFile
@@ -14,7 +15,6 @@ from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.bounds import lower, lower_float, upper_float
-from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis

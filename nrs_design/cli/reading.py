@@ -22,8 +22,8 @@ def take_spec(path: Path) -> LoadedSpec:
     SpecError
         If anything about the file is wrong.
     """
+    from nrs_design.axis import take
     from nrs_design.spec import read_spec
-    from nrs_design.spec.axis import take
 
     loaded = read_spec(path)
     take(getattr(loaded.spec, "axis", None))

@@ -6,13 +6,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import unit
 from nrs_design.cli import exit_codes
 from nrs_design.cli.command import Answer, spec_facts
 from nrs_design.cli.printing import note, say
 from nrs_design.cli.run_files import RunFiles, write_runs
 from nrs_design.cli.tables import print_table
 from nrs_design.progress import Progress
-from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import current, unit
 from nrs_design.cli.command import Answer, command
 from nrs_design.cli.goals import design_answer, goals_summary
 from nrs_design.cli.optimize import motion_summary
@@ -13,7 +14,6 @@ from nrs_design.cli.printing import progress, say
 from nrs_design.cli.reading import take_spec
 from nrs_design.cli.tables import print_table
 from nrs_design.proof.bounds import lower_float
-from nrs_design.spec.axis import current, unit
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign

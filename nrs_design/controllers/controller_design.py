@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.laws import AbstractLaw, CompliantLaw, ProportionalDerivative
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.models.drive import Takes, taken_in
-from nrs_design.spec.axis import AxisType
 
 # What lets the modes of all controllers share one state.
 SHARED_STATES = (

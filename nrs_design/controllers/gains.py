@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import Controller, ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal, is_float32, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges
@@ -13,7 +14,6 @@ from nrs_design.controllers.sensor import build_sensor
 from nrs_design.errors import CertificateError
 from nrs_design.proof.taylor import exponential_between
 from nrs_design.spec import ControllerSpec, IdleStatesSpec, InteractionDesignSpec, parse_exact
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.controllers import contact_names
 
 MOTION = ProportionalDerivative.name

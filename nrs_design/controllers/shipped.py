@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import SHARED_STATES, Controller, ControllerDesign
 from nrs_design.controllers.float32 import float32_not_above
 from nrs_design.controllers.gains import idle_share
@@ -18,7 +19,6 @@ from nrs_design.controllers.step_law import StepFrame, StepLimits, build_law
 from nrs_design.controllers.step_logic import StepLogic
 from nrs_design.errors import DesignError
 from nrs_design.spec import IdleStatesSpec, InteractionDesignSpec
-from nrs_design.spec.axis import AxisType
 
 
 def shipped_law(

@@ -8,6 +8,7 @@ from itertools import product
 
 import numpy as np
 
+from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.goals import NOT_COMPUTED, Requirement
 from nrs_design.design.impedance_optimum import (
@@ -23,7 +24,6 @@ from nrs_design.design.nested_search import search_square
 from nrs_design.design.pattern_search import Objective
 from nrs_design.design.transfer import FloatArray
 from nrs_design.errors import DesignError
-from nrs_design.spec.axis import unit
 
 # Above every cost: what misses a goal is worse than all that meets it.
 _MISSED = 1e6

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nrs_design.axis import unit
 from nrs_design.design.root_locus import dominant_pair
 from nrs_design.design.transfer import (
     FloatArray,
@@ -18,7 +19,6 @@ from nrs_design.design.transfer import (
     trim,
 )
 from nrs_design.errors import DesignError
-from nrs_design.spec.axis import unit
 
 
 @dataclass(frozen=True)

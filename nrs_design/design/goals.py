@@ -20,6 +20,7 @@ from math import pi, tan
 
 import numpy as np
 
+from nrs_design.axis import unit
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.force_limit import NO_OFFSET, Approach, steady_force_error
 from nrs_design.design.hands_on import hand_effort, transparency
@@ -46,7 +47,6 @@ from nrs_design.design.transfer import BoolArray, ComplexArray, FloatArray, Tran
 from nrs_design.errors import DesignError
 from nrs_design.models.contact import AbstractLinearLaw
 from nrs_design.models.contact.environment import Environment
-from nrs_design.spec.axis import unit
 from nrs_design.switched.cut_loop import AbstractAxis, Place
 
 # In the place of a corner.

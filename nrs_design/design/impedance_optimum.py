@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import ImpedanceOptimum
 from nrs_design.design.impedance import (
     ImpedanceLoop,
@@ -19,7 +20,6 @@ from nrs_design.design.impedance import (
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
 from nrs_design.design.transfer import BoolArray, FloatArray, frequency_response
 from nrs_design.errors import DesignError
-from nrs_design.spec.axis import unit
 
 # Midpoint rule over (0, bandwidth]. The absolute value in the cost has kinks, which spoil a
 # Gauss rule; with 256 midpoints the cost is within 1e-6 of its integral on the published designs

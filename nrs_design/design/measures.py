@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
-from nrs_design.spec.axis import current, unit
+from nrs_design.axis import current, unit
 
 _DIGITS = 4
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from nrs_design.axis import unit
 from nrs_design.controllers.float32 import round_significant
 from nrs_design.design.goals import Requirement
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import Doubt
-from nrs_design.spec.axis import unit
 
 # How far to look for a damping, as a factor, and how near to the least one to come.
 _FURTHEST, _NEAR = 1e4, 1e-3

@@ -7,9 +7,9 @@ from html import escape
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
+from nrs_design.axis import unit
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.exporters.c_names import harmless, literal
-from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from jinja2 import Environment

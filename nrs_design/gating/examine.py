@@ -9,6 +9,7 @@ from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import unit
 from nrs_design.certificates.bounds import bounds_summary
 from nrs_design.certificates.certificate import (
     Certificate,
@@ -44,7 +45,6 @@ from nrs_design.proof.spectrum import affordable, is_stable, worst_eigenvalue
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.peak_metrics import PEAKS, UNITS
 from nrs_design.spec import LoadedSpec, doubt_spec
-from nrs_design.spec.axis import unit
 from nrs_design.spec.document import Position
 from nrs_design.wings import load_wing
 

@@ -8,6 +8,7 @@ from math import hypot, isfinite
 from pathlib import Path
 from typing import Any
 
+from nrs_design.axis import AxisType
 from nrs_design.errors import DataError, SpecError
 from nrs_design.identification.actuator import ActuatorIdentification
 from nrs_design.identification.datasets import Source
@@ -25,7 +26,6 @@ from nrs_design.models.contact import (
     HuntCrossley,
 )
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, parse_spec
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.fields import MAX_TITLE
 from nrs_design.spec.preload import FINEST, LARGEST, LEAST
 from nrs_design.spec.provenance import MAX_DOUBTS

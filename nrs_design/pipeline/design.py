@@ -7,9 +7,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import about
 from nrs_design.errors import DesignError, NrsDesignError
 from nrs_design.spec import LoadedSpec
-from nrs_design.spec.axis import about
 
 if TYPE_CHECKING:
     from nrs_design.controllers.controller_design import ControllerDesign

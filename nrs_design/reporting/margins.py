@@ -8,11 +8,11 @@ from functools import partial
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import unit
 from nrs_design.proof.bounds import nearly, rounded_down, rounded_up
 from nrs_design.reporting.document import Sentence
 from nrs_design.reporting.sections.places import linked
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from nrs_design.pipeline.margins import ProofMargins

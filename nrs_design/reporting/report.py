@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import about
 from nrs_design.certificates.certificate import canonical, to_document
 from nrs_design.reporting.document import Report
 from nrs_design.reporting.sections.design import design_sections
@@ -25,7 +26,6 @@ from nrs_design.reporting.sections.tail import (
     spec_section,
 )
 from nrs_design.reporting.sections.worst_case import worst_case_section
-from nrs_design.spec.axis import about
 
 if TYPE_CHECKING:
     import datetime

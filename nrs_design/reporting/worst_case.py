@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import current, labelled
+from nrs_design.axis import unit as shown
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.figures.bounded_run import BoundedSignal, draw_bounded_run
 from nrs_design.simulation.switched import SwitchedRun
 from nrs_design.simulation.time_response import Signal, TimeResponse
 from nrs_design.simulation.worst_outputs import DEFLECTION, output_values, pushes_only
-from nrs_design.spec.axis import current, labelled
-from nrs_design.spec.axis import unit as shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

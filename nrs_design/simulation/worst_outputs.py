@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from nrs_design.axis import axis_with
 from nrs_design.certificates.bounds import bound_on
 from nrs_design.models.contact.environment import Environment
 from nrs_design.proof.bounds import upper_float
@@ -15,7 +16,6 @@ from nrs_design.proof.channels import Output
 from nrs_design.proof.evidence import AbstractEvidence
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.simulation.norms import Array, deflected
-from nrs_design.spec.axis import axis_with
 
 DEFLECTION = "deflection"
 _PUSHED = ("force", DEFLECTION)

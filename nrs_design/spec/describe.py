@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
+from nrs_design.axis import current, unit
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import kinds
-from nrs_design.spec.axis import current, unit
 from nrs_design.spec.controllers import (
     ControllerSpec,
     contact_names,

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field
 
+from nrs_design.axis import AxisType, current
 from nrs_design.models.contact import (
     AbstractLinearLaw,
     AbstractNonlinearLaw,
@@ -20,7 +21,6 @@ from nrs_design.models.contact import (
 )
 from nrs_design.models.interval import Interval, turn
 from nrs_design.spec import kinds
-from nrs_design.spec.axis import AxisType, current
 from nrs_design.spec.check import Row, each
 from nrs_design.spec.faults import Location
 from nrs_design.spec.fields import Title

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from operator import attrgetter
 from typing import NamedTuple
 
-from nrs_design.spec.axis import AxisType
+from nrs_design.axis import AxisType
 from nrs_design.spec.check import Feature
 from nrs_design.spec.controllers import ControllerSpec, contact_name, names_in
 from nrs_design.spec.environment import AbstractEnvironmentSpec

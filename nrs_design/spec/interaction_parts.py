@@ -10,8 +10,8 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
+from nrs_design.axis import AxisType
 from nrs_design.models.drive import COMMANDS, Takes
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.certification import CertificationSpec
 from nrs_design.spec.controllers import (
     ControllerSpec,

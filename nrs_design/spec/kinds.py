@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from nrs_design.axis import COMMAND_UNITS
 from nrs_design.spec.quantity import QuantityKind, written_as
-from nrs_design.spec.units import COMMAND_UNITS
 
 _FREQUENCY = "{value} 1/s names no angle: write '{value} Hz' or '{value} rad/s'"
 _STIFFNESS = "that is a torque: a rotational stiffness is per radian, write '{value} N*m/rad'"

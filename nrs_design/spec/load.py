@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from pydantic import TypeAdapter, ValidationError
 
+from nrs_design.axis import about
 from nrs_design.errors import Fault, SpecError
 from nrs_design.proof.text import quoted
-from nrs_design.spec.axis import about
 from nrs_design.spec.document import (
     Data,
     Mapping,

@@ -8,8 +8,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from nrs_design.axis import AxisType
     from nrs_design.models.contact.law import AbstractNonlinearLaw
-    from nrs_design.spec.axis import AxisType
     from nrs_design.spec.controllers import IdleStatesSpec, Offset
     from nrs_design.spec.coupling import CouplingSpec
     from nrs_design.spec.gain_fields import GainSpec

@@ -9,11 +9,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from nrs_design.axis import COMMAND_UNITS, AxisType
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.exact import DECIMAL_PATTERN, MAX_LENGTH, RATIO_PATTERN, parse_exact
-from nrs_design.spec.units import COMMAND_UNITS, MAX_UNIT_LENGTH, Unit, parse_unit, respelt
+from nrs_design.spec.units import MAX_UNIT_LENGTH, Unit, parse_unit, respelt
 
 # Beyond these a number is a slip of the pen, and products of such numbers leave the floats.
 SMALLEST = 1e-30

@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import Field
 from pydantic_core import PydanticCustomError
 
+from nrs_design.axis import current
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 from nrs_design.spec import kinds
-from nrs_design.spec.axis import current
 from nrs_design.spec.check import Row
 from nrs_design.spec.faults import as_text, fault, reported
 from nrs_design.spec.model import ReadBefore, ReadBy, SpecModel

@@ -14,10 +14,10 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 
+from nrs_design.axis import COMMAND_UNITS
 from nrs_design.errors import SpecError
 from nrs_design.proof.text import quoted
 
-COMMAND_UNITS = ("rpm", "V", "A", "counts")
 # Of the thesis, and of a spec that names none.
 THESIS_COMMAND = "rpm"
 BASE_UNITS = ("kg", "m", "s", "rad", *COMMAND_UNITS)

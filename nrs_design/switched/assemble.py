@@ -9,11 +9,11 @@ from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Time
 from nrs_design.proof.system import SwitchedSystem
-from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumptions import (
     GIVEN_MATRICES,
     assume_matrices,

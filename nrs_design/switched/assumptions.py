@@ -8,6 +8,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
@@ -15,7 +16,6 @@ from nrs_design.proof.saturation import Governed
 from nrs_design.proof.switching import Switching
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import DwellTime, SwitchedSystemSpec, SwitchingSpec
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.units import THESIS_COMMAND
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameters import UncertainParameter

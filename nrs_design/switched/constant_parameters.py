@@ -7,13 +7,16 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from math import prod
+from typing import TYPE_CHECKING
 
 from nrs_design.errors import AssemblyError, InternalError
-from nrs_design.models.drive import Drive
 from nrs_design.models.interval import Interval
-from nrs_design.models.plant import Plant
 from nrs_design.proof.switching import FixedParameter
 from nrs_design.proof.system import SwitchedSystem
+
+if TYPE_CHECKING:
+    from nrs_design.models.drive import Drive
+    from nrs_design.models.plant import Plant
 
 MAX_CORNERS = 50_000
 # Corners of what encloses exp(-T/tau) and tau (1 - exp(-T/tau)), in the order of a box.

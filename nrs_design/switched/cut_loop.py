@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
+from nrs_design.axis import unit
 from nrs_design.controllers.float32 import to_float32
 from nrs_design.controllers.laws import (
     Admittance,
@@ -38,7 +39,6 @@ from nrs_design.models.plant import Plant
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.matrix import multiply as multiply_matrices
 from nrs_design.spec import InteractionDesignSpec
-from nrs_design.spec.axis import unit
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.command_timing import CommandTiming
 from nrs_design.switched.coupled import AxesCoupling

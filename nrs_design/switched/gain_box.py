@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gain_range import gain_interval
@@ -15,7 +16,6 @@ from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.proof.text import exact_text
 from nrs_design.spec import GainSpec
-from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.parameter_box import Box
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.laws import ProportionalDerivative
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.motion_loop import JointMotionLoop
 from nrs_design.models.plant import Plant
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.axis import AxisType
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import motor_text
 from nrs_design.switched.parameter_box import Box

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from itertools import chain
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.controllers.gains import idle_decay
 from nrs_design.controllers.laws import LAWS
 from nrs_design.models.contact.environment import Environment
 from nrs_design.spec import IdleStatesSpec, SwitchingSpec
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.controllers import Command
 from nrs_design.switched.assumption import Assumption, say
 from nrs_design.switched.assumptions import (

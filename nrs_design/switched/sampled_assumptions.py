@@ -7,6 +7,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Literal
 
+from nrs_design.axis import AxisType
 from nrs_design.controllers.controller_design import ControllerDesign
 from nrs_design.controllers.float32 import exact_decimal
 from nrs_design.models.actuator import ActuatorRanges
@@ -15,7 +16,6 @@ from nrs_design.models.drive import Drive, Takes
 from nrs_design.models.interval import may_change
 from nrs_design.proof.bounds import rounded_down
 from nrs_design.proof.text import exact_text
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.operating import OperatingConditions
 from nrs_design.spec.sampling import SamplingSpec
 from nrs_design.switched.assumption import Assumption, say

@@ -7,12 +7,12 @@ from string import Formatter
 
 import pytest
 
+from nrs_design.axis import AxisType
 from nrs_design.errors import AssemblyError, SpecError
 from nrs_design.pipeline.certification import assemble_spec
 from nrs_design.pipeline.design import run_design
 from nrs_design.spec import doubt_spec, parse_spec, read_spec
 from nrs_design.spec import features as f
-from nrs_design.spec.axis import AxisType
 from nrs_design.spec.check import Row
 from nrs_design.spec.combinations import CHANGING, COMBINATIONS
 from nrs_design.spec.interaction_doubts import INTERACTION_DOUBTS

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from nrs_design.axis import unit
 from nrs_design.controllers.controller_design import Controller, ImpedanceOptimum
 from nrs_design.controllers.float32 import neighbors, round_significant, to_float32
 from nrs_design.controllers.gain_range import faults_of_ranges, gain_interval
@@ -42,7 +43,6 @@ from nrs_design.errors import DesignError
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
-from nrs_design.spec.axis import unit
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
 from nrs_design.switched.cut_loop import ContinuousAxis
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 
+from nrs_design.axis import unit
 from nrs_design.exporters import SAMPLED, Format
 from nrs_design.exporters.c_names import CNames, block_comment
 from nrs_design.exporters.export import Export
@@ -17,7 +18,6 @@ from nrs_design.exporters.program import Program, program_of
 from nrs_design.exporters.sector_numbers import sector_macros, sector_words
 from nrs_design.exporters.template import fill_template
 from nrs_design.output import C_MONITOR, C_MONITOR_HEADER
-from nrs_design.spec.axis import unit
 
 FORMAT = Format(
     "C99 that tells when a running loop first leaves its proof; takes the header of c",

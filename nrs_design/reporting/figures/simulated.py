@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import current, labelled, unit
 from nrs_design.proof.bounds import upper
 from nrs_design.reporting.figures.panels import Curve, Panel, PanelColumn, draw_panels
-from nrs_design.spec.axis import current, labelled, unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

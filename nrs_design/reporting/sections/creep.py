@@ -5,12 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import AxisType, current, labelled
 from nrs_design.controllers.sensor import Sensor
 from nrs_design.proof.bounds import upper
 from nrs_design.reporting.document import Bullets, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
-from nrs_design.spec.axis import AxisType, current, labelled
 
 if TYPE_CHECKING:
     from nrs_design.design.analysis import DesignAnalysis, ImpedanceAnalysis

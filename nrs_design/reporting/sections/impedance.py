@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import labelled
 from nrs_design.design.measures import (
     COST_MEANING,
     IMPEDANCE_ERROR,
@@ -35,7 +36,6 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.spec.axis import labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

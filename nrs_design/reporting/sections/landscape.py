@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import labelled
 from nrs_design.design.landscape import CostMap, alternatives, delay_borne, map_cost
 from nrs_design.reporting.document import Block, Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
@@ -24,7 +25,6 @@ from nrs_design.reporting.style import (
     settle,
     styled,
 )
-from nrs_design.spec.axis import labelled
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import labelled, unit
 from nrs_design.design.parallel import border
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
@@ -21,7 +22,6 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.spec.axis import labelled, unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

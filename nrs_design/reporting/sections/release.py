@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import current, labelled
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.pipeline.release import physical_outputs
 from nrs_design.proof.mode import Time
@@ -19,7 +20,6 @@ from nrs_design.reporting.sections.modes import hardest_modes
 from nrs_design.reporting.sections.places import linked
 from nrs_design.simulation.greedy import all_modes
 from nrs_design.simulation.release import certified, simulate_release
-from nrs_design.spec.axis import current, labelled
 
 if TYPE_CHECKING:
     from nrs_design.pipeline import Result

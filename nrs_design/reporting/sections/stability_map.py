@@ -5,12 +5,12 @@ from __future__ import annotations
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from nrs_design.axis import unit
 from nrs_design.certificates.certificate import Verdict
 from nrs_design.proof.bounds import lower, upper
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.sections.places import linked
 from nrs_design.reporting.style import BLUE, INK, MUTED, VERMILLION, legend, new_axes, styled
-from nrs_design.spec.axis import unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

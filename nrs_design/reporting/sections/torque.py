@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nrs_design.axis import labelled
 from nrs_design.reporting.document import Illustration, Paragraph, Section, Table
 from nrs_design.reporting.formatting import number
 from nrs_design.reporting.sections.places import linked
@@ -19,7 +20,6 @@ from nrs_design.reporting.style import (
     new_axes,
     styled,
 )
-from nrs_design.spec.axis import labelled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

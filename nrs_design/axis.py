@@ -14,8 +14,9 @@ from enum import StrEnum
 from functools import cache
 
 from nrs_design.errors import InternalError
-from nrs_design.spec.units import COMMAND_UNITS
 
+# What the driver of a motor takes.
+COMMAND_UNITS = ("rpm", "V", "A", "counts")
 # Units of an axis that turns, and of one that slides. Frequencies are in rad/s on both, and none of
 # these.
 _SLIDING: Mapping[str, str] = {

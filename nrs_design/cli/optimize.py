@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from nrs_design.axis import unit
 from nrs_design.cli.command import Answer, command
-from nrs_design.cli.goals import design_answer, goals_summary
+from nrs_design.cli.goals import (
+    design_answer,
+    goals_summary,
+    print_responses,
+    responses_summary,
+)
 from nrs_design.cli.options import SpecFile
 from nrs_design.cli.printing import note, progress, say
 from nrs_design.cli.reading import take_spec
@@ -28,7 +33,8 @@ if TYPE_CHECKING:
 def optimize(spec: SpecFile) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 
-    Goals of the spec are respected; the exit code is 1 if gains that are given miss one.
+    Goals of the spec are respected; the exit code is 1 if gains that are given miss one, or if
+    transparency or accuracy over a band is not proved.
 
     Example: nrs-design optimize specs/neuroboscope/soft-tissue.nrs.yaml
     """
@@ -52,8 +58,10 @@ def optimize(spec: SpecFile) -> Answer:
         if not analysis.impedance:
             note("no impedance controllers in this spec; see nrs-design tune for the others")
         _print(designed.spec, analysis)
+        print_responses(analysis)
 
-    return design_answer(designed, analysis, analysis.impedance, facts, show)
+    proved = all(found.proved for item in analysis.impedance for found in item.responses)
+    return design_answer(designed, analysis, analysis.impedance, facts, show, proved=proved)
 
 
 def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
@@ -114,6 +122,7 @@ def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, 
         "sampled_passivity": [_band(band) for band in item.sampled],
         "creep": _creep(item),
         "goals": goals_summary(item),
+        "responses": responses_summary(item),
         "units": {
             "Mt": unit("kg*m^2"),
             "Bt": unit("N*m*s/rad"),

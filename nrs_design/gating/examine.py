@@ -29,6 +29,7 @@ from nrs_design.gating.rules import (
     GOAL,
     MODE_STABLE,
     NOT_DOUBTED,
+    RESPONSE_GOAL,
     ROBOT_BOUNDS,
     SCENARIO_LIMIT,
     SPEC,
@@ -266,6 +267,16 @@ class Examiner:
                 subject = f"{item.name}: {measure.goal}"
                 place = self.places.goal(item.name, measure.goal)
                 yield self.obligation(GOAL, subject, _met(found.met), message, place)
+
+    def responses(self, analysis: DesignAnalysis) -> Iterator[Obligation]:
+        """Yield NRS112 for every goal for a frequency response of every controller."""
+        for item in analysis.impedance:
+            for found in item.responses:
+                status = Status.PROVED if found.proved else Status.INCONCLUSIVE
+                status = Status.REFUTED if found.refuted else status
+                message = f"controller {item.name}: {found.said}; {found.wanted} is wanted"
+                subject, place = f"{item.name}: {found.key}", self.places.goal(item.name, found.key)
+                yield self.obligation(RESPONSE_GOAL, subject, status, message, place)
 
     def certified_goals(self, certificate: Certificate | None) -> Iterator[Obligation]:
         """Yield NRS108 for every goal, and limit of contact with people, to be proved."""

@@ -57,7 +57,7 @@ def judge_margins(
     DesignAnalysis or None
         None for given matrices, and where a nominal loop is unstable.
     tuple of Obligation
-        NRS103 and NRS106.
+        NRS103, NRS106 and NRS112.
     """
     if result.designed is None:
         return None, ()
@@ -66,7 +66,8 @@ def judge_margins(
         analysis = run_analysis(result.designed)
     except DesignError as error:
         return None, (examiner.no_margins(error),)
-    return analysis, (*examiner.stiffness_ranges(analysis), *examiner.goals(analysis))
+    judged = (examiner.stiffness_ranges, examiner.goals, examiner.responses)
+    return analysis, tuple(item for judge in judged for item in judge(analysis))
 
 
 def judge_scenarios(result: Result, examiner: Examiner, progress: Progress) -> Iterator[Obligation]:

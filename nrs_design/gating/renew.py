@@ -119,6 +119,10 @@ def _still_holds(entry: LockedSpec, spec: SpecOutcome) -> bool:
     return spec.verdict is None and spec.sha256 == entry.sha256
 
 
+# What is shown by no certificate is taken from a lock file on trust, so it is not proved there.
+_LOCKED = {Status.PROVED: "met", Status.REFUTED: "missed"}
+
+
 def certificates_of(lock: Lock, file: Path) -> Mapping[Path, Path]:
     """Return which spec every locked certificate file belongs to, as real paths."""
     return {
@@ -172,7 +176,7 @@ def _entry(spec: SpecOutcome, file: Path) -> LockedSpec:
                 {
                     "rule": item.rule.id,
                     "subject": item.subject,
-                    "status": str(item.status),
+                    "status": _LOCKED.get(item.status, str(item.status)),
                     "message": item.message,
                 }
                 for item in spec.obligations

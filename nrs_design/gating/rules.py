@@ -245,6 +245,19 @@ ROBOT_BOUNDS = Rule(
     "file.",
     "Make the file anew with `nrs-design robot bounds ROBOT --write`; never edit it.",
 )
+RESPONSE_GOAL = Rule(
+    "NRS112",
+    "The frequency response meets its goal",
+    "The goals `transparency` (largest force of the hand over the velocity of the tool, in free "
+    "motion) and `accuracy` (largest share by which the tool is off the commanded velocity) hold "
+    "for every impedance controller, at every frequency of their band and at all values of the "
+    "ranges of gains, motor and what is touched, each of them constant. The response is a quotient "
+    "of polynomials with exact coefficients, enclosed over the whole box. Proved by a bound; "
+    "refuted by a frequency and values at which it is exceeded. What is not covered is said to be "
+    "not judged, and the gate fails on it. docs/design/transparency.md has the details.",
+    "Lower Bt for less impedance, narrow the band or the ranges, or relax the goal; where it is "
+    "not judged, remove the goal.",
+)
 ROS_PARAMETERS = Rule(
     "NRS201",
     "The parameters of a ROS 2 controller are read as they are meant",
@@ -306,6 +319,7 @@ RULES: Mapping[str, Rule] = MappingProxyType(
             SCENARIO_LIMIT,
             NOT_WEAKER,
             ROBOT_BOUNDS,
+            RESPONSE_GOAL,
             ROS_PARAMETERS,
             ROS_AXIS,
             ROS_OTHERS,

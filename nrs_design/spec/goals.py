@@ -24,6 +24,7 @@ from nrs_design.spec.quantity_fields import (
     Torque,
     TorqueOrLargest,
 )
+from nrs_design.spec.response_goals import AccuracySpec, TransparencySpec
 
 # What only one type of controller has.
 ONLY_FOR = {
@@ -32,12 +33,16 @@ ONLY_FOR = {
     "max_hand_effort": "impedance",
     "max_creep": "impedance",
     "max_creep_angle": "impedance",
+    "transparency": "impedance",
+    "accuracy": "impedance",
     "max_force_error": "force",
 }
 # What a certificate must show, for all controllers together.
 OF_THE_CERTIFICATE = frozenset(
     {"peak_torque", "decay_rate", "delay", "constant_force", "initial_force"}
 )
+# A goal for a frequency response, decided by an enclosure of it over all ranges.
+ResponseGoal = TransparencySpec | AccuracySpec
 
 
 def _below_half_turn(angle: Quantity) -> Quantity:
@@ -85,6 +90,14 @@ class GoalsSpec(SpecModel):
         "largest angle that the robot creeps in free motion by errors of the force "
         "signal, such as 2 deg; impedance controllers with a spring Kt only, and with sensor"
     )
+    transparency: TransparencySpec | None = optional(
+        "proved: what the hand feels of the robot in free motion over a band, such as "
+        "{max_impedance: 3 N*m*s/rad, band: [0 Hz, 1 Hz]}; impedance controllers only"
+    )
+    accuracy: AccuracySpec | None = optional(
+        "proved: how far the tool is off the commanded velocity over a band, such as "
+        "{max_error: 0.1, band: [0 Hz, 1 Hz]}; impedance controllers only"
+    )
     max_force_error: UnitFraction | None = optional(
         "largest steady force error over the commanded force, between 0 and 1, no "
         "unit; force controllers only"
@@ -125,6 +138,6 @@ class GoalsSpec(SpecModel):
         """Whether there is a goal that errors of the force signal decide."""
         return self.max_creep is not None or self.max_creep_angle is not None
 
-    def given(self) -> Iterator[tuple[str, Quantity | Fraction | str]]:
+    def given(self) -> Iterator[tuple[str, Quantity | Fraction | str | ResponseGoal]]:
         """Yield the goals that are set, by key."""
         return ((key, value) for key, value in self if value is not None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
 
 from nrs_design.models.drive import Takes
@@ -23,13 +24,14 @@ from nrs_design.spec.features import (
     Touched,
     touched,
 )
-from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec
+from nrs_design.spec.goals import OF_THE_CERTIFICATE, ONLY_FOR, GoalsSpec, ResponseGoal
 from nrs_design.spec.interaction_parts import FREE, INTERFACES, MOTION
 from nrs_design.spec.interaction_parts import AbstractInteractionSpec as Spec
 from nrs_design.spec.logic_checks import LOGIC_CHECKS
 from nrs_design.spec.motion import IN_ITS_UNIT, AboutCommands
-from nrs_design.spec.quantity import Quantity
+from nrs_design.spec.quantity import PI_BETWEEN, Quantity
 from nrs_design.spec.references import NO_SUCH, Reference
+from nrs_design.spec.response_goals import AccuracySpec
 from nrs_design.spec.sampling import LONGEST_DELAY
 from nrs_design.spec.scenario_checks import SCENARIO_CHECKS
 from nrs_design.spec.switching import DwellTime, switching_checks
@@ -166,6 +168,46 @@ class _Goals:
         """Return a goal for another law, and that law."""
         laws = ((key, ONLY_FOR[key]) for key in self.keys if key in ONLY_FOR)
         return next(((key, law) for key, law in laws if law not in self.types), None)
+
+
+def _responses(spec: Spec) -> Iterator[tuple[Location, ResponseGoal]]:
+    """Yield the goals for a frequency response, of all controllers and of each."""
+    goals: dict[Location, GoalsSpec | None] = {("goals",): spec.goals}
+    goals |= {("controllers", name, "goals"): c.goals for name, c in spec.controllers.items()}
+    for at, given in goals.items():
+        for key in () if given is None else ("transparency", "accuracy"):
+            if (goal := getattr(given, key)) is not None:
+                yield (*at, key), goal
+
+
+@dataclass(frozen=True, slots=True)
+class _SampledBand:
+    """A band of frequencies, and the rate of the samples."""
+
+    end: Quantity
+    period: Fraction
+
+    def too_high(self) -> tuple[str, str] | None:
+        """Return where it ends and half the rate, if it does not end below."""
+        # In Hz, with a pi that is not above.
+        end, half = self.end.not_below / 2 / PI_BETWEEN[0], 1 / self.period / 2
+        return (self.end.text, f"{float(half):g}") if end >= half else None
+
+
+def _sampled_bands(spec: Spec) -> Iterator[tuple[Location, _SampledBand]]:
+    if spec.sampling is not None:
+        for at, goal in _responses(spec):
+            yield (*at, "band"), _SampledBand(goal.band[1], spec.sampling.outer)
+
+
+def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
+    """Yield the environments in which a tool shall follow."""
+    for at, goal in _responses(spec):
+        if isinstance(goal, AccuracySpec) and goal.environment is not None:
+            yield (
+                (*at, "environment"),
+                Reference("environment", name=goal.environment, choices=spec.environments),
+            )
 
 
 def _common_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
@@ -310,6 +352,7 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Names.
     *each(_named_environments, NO_SUCH),
     *each(_named_at_regions, NO_SUCH),
+    *each(_accurate_in, NO_SUCH),
     Row(
         "environments.free",
         lambda s: FREE in s.environments,
@@ -375,6 +418,15 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Goals.
     *each(_common_goals, *_GOALS),
     *each(_own_goals, *_GOALS),
+    *each(
+        _sampled_bands,
+        Row[_SampledBand](
+            "",
+            _SampledBand.too_high,
+            "the band reaches {0}, and half the sampling rate is {1} Hz",
+            "end it below {1} Hz, or sample more often",
+        ),
+    ),
     Row(
         "goals.peak_torque",
         lambda s: (

@@ -54,7 +54,7 @@ _ABOUT_VALUES = _BESIDE | {
     *("doubts", "accept_doubt", "range_covers", "range_id", "linearized_about"),
 }
 # Ranges that stand alone, as lists of their ends.
-_RANGES = frozenset({"range", "delay", "latency", "dead_time", "preload", "inertia"})
+_RANGES = frozenset({"range", "band", "delay", "latency", "dead_time", "preload", "inertia"})
 
 Place = tuple[str | int, ...]
 

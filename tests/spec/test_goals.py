@@ -58,6 +58,37 @@ def test_check_shows_goals_and_those_of_a_controller():
         ("goals: {}", "goals", "no goal"),
         ("goals: {peak_torque: 0.3}", "0.3}", "no unit"),
         ("goals: {decay_rate: 0 1/s}", "0 1/s", "positive"),
+        (
+            "goals: {transparency: {max_impedance: 3, band: [0 Hz, 1 Hz]}}",
+            "3,",
+            "no unit",
+        ),
+        (
+            "goals: {transparency: {max_impedance: -3 N*m*s/rad, band: [0 Hz, 1 Hz]}}",
+            "-3",
+            "positive",
+        ),
+        (
+            "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: [1 Hz, 0.5 Hz]}}",
+            "[1 Hz",
+            "not above its start",
+        ),
+        (
+            "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: [0 Hz, 1]}}",
+            "1]",
+            "no unit",
+        ),
+        (
+            "goals: {transparency: {max_impedance: 3 N*m*s/rad, band: 1 Hz}}",
+            "1 Hz",
+            "two frequencies",
+        ),
+        ("goals: {accuracy: {max_error: 1, band: [0 Hz, 1 Hz]}}", "1,", "between 0 and 1"),
+        (
+            "goals: {accuracy: {max_error: 0.1, band: [0 Hz, 1 Hz], environment: hard}}",
+            "hard",
+            "no environment 'hard'",
+        ),
     ],
 )
 def test_a_wrong_goal_is_refused_at_its_place(text, piece, message):
@@ -112,3 +143,31 @@ def test_a_delay_is_wanted_only_of_a_sampled_loop():
     spec = interaction(with_goals("goals: {delay: 4 ms}\nsampling: {period: 2 ms, delay: 1}\n"))
     assert spec.goals.delay.exact == Fraction(4, 1000)
     assert spec.sampling.oldest == Fraction(2, 1000)
+
+
+RESPONSES = """goals:
+  transparency: {max_impedance: 3 N*m*s/rad, band: [0 Hz, 1 Hz]}
+  accuracy: {max_error: 0.1, band: [1 rad/s, 1 Hz], environment: soft}
+"""
+
+
+def test_goals_for_frequency_responses_are_read_and_shown():
+    spec = interaction(with_goals(RESPONSES))
+    assert spec.goals.transparency.limit == 3
+    assert spec.goals.accuracy.limit == Fraction(1, 10)
+    rows = {row.name: row for row in describe(spec)}
+    assert rows["goals.transparency.max_impedance"].written == "3 N*m*s/rad"
+    assert rows["goals.accuracy.band[0]"].written == "1 rad/s"
+
+
+def test_they_are_for_impedance_controllers():
+    assert "for impedance controllers" in refusal(with_goals(RESPONSES, sample=FORCE)).message
+
+
+def test_a_band_ends_below_half_the_sampling_rate():
+    """Samples every 0.5 s: half the rate is 1 Hz."""
+    sampled = RESPONSES + "sampling: {period: 0.5 s, delay: 0}\n"
+    error = refusal(with_goals(sampled))
+    assert "half the sampling rate is 1 Hz" in error.message
+    assert "below 1 Hz" in error.remedy
+    assert interaction(with_goals(sampled.replace("1 Hz]", "0.99 Hz]")))

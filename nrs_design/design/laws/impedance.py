@@ -38,12 +38,14 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
+from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import lower, upper_float
 from nrs_design.spec import Doubt, GainSpec, ImpedanceControllerSpec, InteractionDesignSpec
 from nrs_design.spec.controllers import contact_names, names_in, touched_in
+from nrs_design.spec.response_goals import AccuracySpec
 from nrs_design.switched.cut_loop import ContinuousAxis
 
 
@@ -87,6 +89,8 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
         ranges of gains or motor, and beside other axes.
     lever_arm : float or None
         Of everything that it touches, in m; None if there is none, or not the same for all.
+    responses : tuple of JudgedResponse
+        Goals for its frequency responses, and what is proved of them.
     """
 
     given: ImpedanceControllerSpec
@@ -104,6 +108,7 @@ class ImpedanceAnalysis(AbstractControllerAnalysis):
     band: PassiveBand | None = None
     sampled: tuple[SampledBand, ...] = ()
     lever_arm: float | None = None
+    responses: tuple[JudgedResponse, ...] = ()
 
     @property
     def limit_at_arm(self) -> float | None:
@@ -188,6 +193,7 @@ def analyze(
         band=_band(task, given, controller),
         sampled=_sampled_bands(task, given, controller),
         lever_arm=_lever_arm(task, given),
+        responses=tuple(_responses(task, given, controller)),
     )
 
 
@@ -241,11 +247,30 @@ def _band(task: Task, given: ImpedanceControllerSpec, controller: Controller) ->
     """Return where the displayed admittance is passive, over the ranges of gains and motor."""
     if not isinstance(task.axis, ContinuousAxis):
         return None
+    return passive_band(task.axis, controller.law, _moving(task, given, controller))
+
+
+def _responses(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> Iterator[JudgedResponse]:
+    """Yield the goals for frequency responses, and what is proved of them."""
+    goals = response_goals(task.spec.goals, given.goals)
+    if not goals:
+        return
+    names = [goal.environment for goal in goals.values() if isinstance(goal, AccuracySpec)]
+    environments = {name: task.plant.environment(name) for name in names if name is not None}
+    moving = _moving(task, given, controller)
+    yield from judged_responses(task.spec, goals, task.axis, controller.law, moving, environments)
+
+
+def _moving(
+    task: Task, given: ImpedanceControllerSpec, controller: Controller
+) -> dict[str, Interval]:
+    """Return the numbers of motor and gains that have ranges, and where they are."""
     motor = task.plant.actuator_ranges
     ranges = {"Km": motor.gain, "tau": motor.time_constant}
     ranges |= _gain_ranges(given, controller)
-    moving = {name: r for name, r in ranges.items() if r.low != r.high}
-    return passive_band(task.axis, controller.law, moving)
+    return {name: r for name, r in ranges.items() if r.low != r.high}
 
 
 def _gain_ranges(given: ImpedanceControllerSpec, controller: Controller) -> dict[str, Interval]:

@@ -183,7 +183,7 @@ def goals_of(
     given: dict[str, Quantity | Fraction] = {}
     for goals in (spec.goals, controller.goals):
         found = goals.given() if goals is not None else ()
-        given |= {key: value for key, value in found if not isinstance(value, str)}
+        given |= {key: value for key, value in found if isinstance(value, Quantity | Fraction)}
     return tuple(
         (measure, _number(given[measure.goal])) for measure in measures if measure.goal in given
     )

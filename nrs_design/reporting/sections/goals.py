@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
 from nrs_design.design.measures import MEANING
+from nrs_design.design.response_goals import MEANING as RESPONSES_MEANING
 from nrs_design.reporting.document import (
     Block,
     Bullets,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import Spec
 
 _CERTIFIED = ("Goal", "Wanted", "What the certificate shows", "Result")
+_RESPONSES = ("Controller", "Wanted", "What is shown", "Result")
 _PROOFS = (
     "These goals are for all controllers together, and what is proved decides them, in exact "
     "arithmetic, as in nrs-design gate (NRS108). One that is not proved is not refuted: more may "
@@ -57,7 +59,7 @@ def goals_section(result: Result, analysis: DesignAnalysis | None) -> Section | 
     Section or None
         None where nothing is measured and no goal asks for a proof.
     """
-    blocks = [*_measured(result, analysis), *_certified(result)]
+    blocks = [*_measured(result, analysis), *_responses(result, analysis), *_certified(result)]
     return Section(GOALS, tuple(blocks)) if blocks else None
 
 
@@ -73,7 +75,10 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
     measured = () if analysis is None else analysis.measured
     goals = [f for item in measured for f in item.achieved if f.goal is not None]
     missed = sum(not found.met for found in goals)
+    responses = [f for item in (analysis.impedance if analysis else ()) for f in item.responses]
+    refuted = [found.key for found in responses if found.refuted]
     open_ = [goal.key for goal in proofs if not goal.met]
+    open_ += [found.key for found in responses if not (found.proved or found.refuted)]
     uncomputed = analysis is None and _are_measured(result.loaded.spec)
     said = []
     if uncomputed:
@@ -82,14 +87,15 @@ def judged_goals(result: Result, analysis: DesignAnalysis | None) -> tuple[State
         said.append(f"{missed} of {len(goals)} missed (floating point)")
     elif goals:
         said.append(f"all {len(goals)} met (floating point)")
-    if proofs:
-        said.append(f"NOT proved: {', '.join(open_)}" if open_ else "")
-        shown = [goal.key for goal in proofs if goal.met]
-        said.append(f"proved: {', '.join(shown)}" if shown else "")
+    shown = [goal.key for goal in proofs if goal.met]
+    shown += [found.key for found in responses if found.proved]
+    for how, keys in (("REFUTED", refuted), ("NOT proved", open_), ("proved", shown)):
+        if keys:
+            said.append(f"{how}: {', '.join(dict.fromkeys(keys))}")
     if not said:
         return State.UNKNOWN, "no goals set"
     state = State.DOUBTFUL if open_ or uncomputed else State.GOOD
-    return State.BAD if missed else state, "; ".join(filter(None, said))
+    return State.BAD if missed or refuted else state, "; ".join(filter(None, said))
 
 
 def goal_facts(result: Result, analysis: DesignAnalysis | None) -> tuple[tuple[str, str], ...]:
@@ -129,6 +135,32 @@ def _measured(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block
     )
     if doubts:
         yield Bullets("Warnings", doubts)
+
+
+def _responses(result: Result, analysis: DesignAnalysis | None) -> Iterator[Block]:
+    """Yield the goals for frequency responses, and what is proved of them."""
+    rows = tuple(
+        (
+            item.name,
+            linked(result.loaded, found.wanted, *_place(result, item.name, found.key)),
+            found.said,
+            found.ends if found.proved else found.ends.upper(),
+        )
+        for item in (() if analysis is None else analysis.impedance)
+        for found in item.responses
+    )
+    if rows:
+        yield Paragraph(RESPONSES_MEANING)
+        yield Table("Transparency and accuracy", _RESPONSES, rows)
+
+
+def _place(result: Result, controller: str, goal: str) -> tuple[str, ...]:
+    """Return the keys of the controller's own goal, or of the one for all."""
+    spec = result.loaded.spec
+    assert isinstance(spec, InteractionDesignSpec), "it has controllers"
+    own = spec.controllers[controller].goals
+    is_own = own is not None and getattr(own, goal) is not None
+    return ("controllers", controller, "goals", goal) if is_own else ("goals", goal)
 
 
 def _certified(result: Result) -> Iterator[Block]:

@@ -1,0 +1,328 @@
+"""What the surgeon feels and how well the tool follows, bounded over a band and all ranges.
+
+The **displayed impedance** ``Z = F/V`` is the force of the hand over the velocity of the tool, in
+free motion: ``Z = D/N``, with the characteristic polynomial D of the assembled mode that touches
+nothing and ``D + b N`` that with a damper b, as in `nrs_design.design.passivity`. The **tracking
+error** is ``|1 - V/Vcmd|`` of a commanded velocity. With the part M of N that passes the law,
+``M/D = G H Y``, so V/Vcmd is ``M/(H Y)`` over D in free motion, and over the characteristic
+polynomial of the mode in contact else.
+
+Times Mt (or Bt without inertia) and the time constant, all of these are affine in each of Km, tau,
+Mt, Bt, Kt, and k and b of the contact; so the squares of the magnitudes are polynomials in omega^2
+and of second degree in each parameter, and `nrs_design.proof.largest_ratio` bounds their quotient.
+Each parameter is unknown but constant: that is what a frequency response is about.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from math import comb, isqrt
+from typing import NamedTuple
+
+from nrs_design.controllers.laws import Admittance, CompliantLaw
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.errors import InternalError
+from nrs_design.models.contact import KelvinVoigt
+from nrs_design.models.interval import Interval
+from nrs_design.proof.largest_ratio import bernstein, largest_ratio
+from nrs_design.proof.matrix import RationalMatrix
+from nrs_design.proof.mode import Time
+from nrs_design.proof.spectrum import is_stable
+from nrs_design.switched.cut_loop import ContinuousAxis, Place, multiply
+
+ZERO, ONE = Fraction(0), Fraction(1)
+# Between low and high frequencies, (rad/s)^2, where all of them are looked at.
+_MIDDLE = Fraction(100)
+# Digits of a root.
+_FINE = 10**20
+
+Polynomial = Sequence[Fraction]  # Highest power first
+Band = tuple[Fraction, Fraction]  # In rad/s
+
+
+class Quotient(NamedTuple):
+    """A response at fixed parameters, as polynomials in s."""
+
+    above: Polynomial
+    below: Polynomial
+    poles: Polynomial  # Whose roots are the poles of what is closed
+
+
+@dataclass(frozen=True, slots=True)
+class LargestResponse:
+    """Two bounds on the largest magnitude over a band and ranges."""
+
+    # No parameters in their ranges and no frequency in the band give more; None if not shown.
+    above: Fraction | None
+    below: Fraction  # At one point there is at least this
+    square: Fraction  # Of the frequency there in rad/s, exactly
+    at: Mapping[str, Fraction]  # The parameters there, exactly
+
+
+def displayed_impedance(
+    axis: ContinuousAxis,
+    law: CompliantLaw,
+    ranges: Mapping[str, Interval],
+    band: Band,
+    limit: Fraction | None = None,
+) -> LargestResponse | None:
+    """Bound the largest displayed impedance, in N m s/rad.
+
+    Parameters
+    ----------
+    axis : ContinuousAxis
+        From which the modes follow.
+    law : CompliantLaw
+        An admittance with its gains.
+    ranges : mapping of str to Interval
+        Where ``Km``, ``tau`` of the motor and ``Mt``, ``Bt``, ``Kt`` are, if they have ranges.
+    band : tuple of Fraction
+        Lowest and highest frequency, rad/s.
+    limit : Fraction, optional
+        What it should stay below.
+
+    Returns
+    -------
+    LargestResponse or None
+        None where the robot that nobody holds is not shown to be stable.
+    """
+
+    def at(values: Mapping[str, Fraction]) -> Quotient:
+        held, place, factor = _at(axis, law, values)
+        free, damped = (
+            [factor * c for c in axis.cut(held, KelvinVoigt(ZERO, b), place).closed]
+            for b in (ZERO, ONE)
+        )
+        felt = [b - a for a, b in zip(free, damped, strict=True)]
+        return Quotient(free, felt, free)
+
+    return _largest(at, ranges, band, limit)
+
+
+def tracking_error(
+    axis: ContinuousAxis,
+    law: CompliantLaw,
+    ranges: Mapping[str, Interval],
+    band: Band,
+    limit: Fraction | None = None,
+    *,
+    in_contact: bool = False,
+) -> LargestResponse | None:
+    """Bound the largest ``|1 - V/Vcmd|``, a share of the commanded velocity.
+
+    Parameters
+    ----------
+    axis, law, band, limit
+        As for `displayed_impedance`.
+    ranges : mapping of str to Interval
+        As for `displayed_impedance`, and ``k`` and ``b`` of what is touched.
+    in_contact : bool
+        Whether something is touched; in free motion the law has no part in it.
+
+    Returns
+    -------
+    LargestResponse or None
+        None where the loop is not shown to be stable.
+    """
+    if not in_contact:
+        # Any law will do: the simplest.
+        axis, law = replace(axis, low_pass=None), Admittance(ZERO, ONE)
+        ranges = {name: r for name, r in ranges.items() if name in ("Km", "tau")}
+
+    def at(values: Mapping[str, Fraction]) -> Quotient:
+        held, place, factor = _at(axis, law, values)
+        damped = axis.cut(held, KelvinVoigt(ZERO, ONE), place)
+        touched = KelvinVoigt(values.get("k", ZERO), values.get("b", ZERO))
+        closed = [factor * c for c in axis.cut(held, touched, place).closed]
+        passed = [b - a for a, b in zip(damped.opened, damped.closed, strict=True)]
+        driven = multiply([factor * c for c in passed], _over_admittance(held, axis.low_pass))
+        # The spring of the law is one over s.
+        below = multiply(closed, [ONE, ZERO]) if held.gains.get("Kt") else closed
+        return Quotient(_subtracted(below, driven), below, closed)
+
+    return _largest(at, ranges, band, limit)
+
+
+def _at(
+    axis: ContinuousAxis, law: CompliantLaw, values: Mapping[str, Fraction]
+) -> tuple[CompliantLaw, Place, Fraction]:
+    """Return law and motor at parameters, and what makes polynomials affine in all of them."""
+    nominal = axis.places[0].motor
+    gain, tau = values.get("Km", nominal.gain), values.get("tau", nominal.time_constant)
+    place = Place(replace(nominal, gain=gain, time_constant=tau))
+    gains = {name: values.get(name, given) for name, given in law.gains.items()}
+    return law.of(gains), place, tau * (gains["Mt"] or gains["Bt"])
+
+
+def _over_admittance(law: CompliantLaw, low_pass: LowPass | None) -> Polynomial:
+    """Return ``1/(H Y)``, times s with a spring."""
+    gains = law.gains
+    rows = [gains["Mt"], gains["Bt"], *([gains["Kt"]] if gains.get("Kt") else [])]
+    if low_pass is None:
+        return rows
+    n, lag = low_pass.order, 1 / low_pass.pole
+    return multiply(rows, [lag**k * comb(n, k) for k in range(n, -1, -1)])
+
+
+def _subtracted(P: Polynomial, Q: Polynomial) -> list[Fraction]:
+    size = max(len(P), len(Q))
+    first, second = ([ZERO] * (size - len(p)) + [*p] for p in (P, Q))
+    return [a - b for a, b in zip(first, second, strict=True)]
+
+
+def _largest(
+    at: Callable[[Mapping[str, Fraction]], Quotient],
+    ranges: Mapping[str, Interval],
+    band: Band,
+    limit: Fraction | None,
+) -> LargestResponse | None:
+    """Bound a response over a band and a box of parameters."""
+    corners = [
+        at(dict(zip(ranges, ends, strict=True)))
+        for ends in product(*((r.low, r.high) for r in ranges.values()))
+    ]
+    _check_affine(at, ranges, corners)
+    above, below, poles = (
+        [_lowest_first(corner[i]) for corner in corners] for i in range(len(Quotient._fields))
+    )
+    shared = min(map(_zeros, (*above, *below)))
+    above, below = ([p[shared:] for p in each] for each in (above, below))
+    # What no force and no command sees: the deflection of nothing.
+    poles = [p[_zeros(poles[0]) if _unseen(poles) else 0 :] for p in poles]
+    if not _is_stable(poles):
+        return None
+    tensors = [_squared(each) for each in (above, below)]
+    size = max(len(grid[0]) for grid in tensors)
+    low, high = (omega**2 for omega in band)
+    numerator, denominator = (
+        _coefficients([[*p, *[ZERO] * (size - len(p))] for p in grid], low, high)
+        for grid in tensors
+    )
+    found = largest_ratio(
+        numerator,
+        denominator,
+        (3,) * len(ranges) + (size,),
+        limit=None if limit is None else limit**2,
+    )
+    *places, x = found.at
+    return LargestResponse(
+        above=None if found.above is None else root_above(found.above),
+        below=root_below(found.below),
+        square=low + x * (high - low),
+        at={
+            name: r.low + u * (r.high - r.low)
+            for (name, r), u in zip(ranges.items(), places, strict=True)
+        },
+    )
+
+
+def _check_affine(
+    at: Callable[[Mapping[str, Fraction]], Quotient],
+    ranges: Mapping[str, Interval],
+    corners: Sequence[Quotient],
+) -> None:
+    """Hold the middle of the box against the mean of its corners."""
+    middle = at({name: r.middle for name, r in ranges.items()})
+    for i, found in enumerate(middle):
+        for k, c in enumerate(found):
+            if c != sum(corner[i][k] for corner in corners) / len(corners):
+                raise InternalError("a response is not affine in the parameters of its loop")
+
+
+def _is_stable(poles: Sequence[list[Fraction]]) -> bool:
+    """Tell whether polynomials, and all means of them, are shown to have their roots on the left.
+
+    The polynomials are those at the corners of a box in which they are affine in each parameter.
+    Where none has a root on the imaginary axis, nor at infinity, all have as many on the left as
+    those at the corners.
+    """
+    if not all(map(_is_hurwitz, poles)):
+        return False
+    square, parameters = _squared(poles), len(poles).bit_length() - 1
+    for powers, end in ((square, _MIDDLE), ([p[::-1] for p in square], 1 / _MIDDLE)):
+        below = _coefficients(powers, ZERO, end)
+        above = [ONE] * len(below)
+        shape = (3,) * parameters + (len(powers[0]),)
+        if largest_ratio(above, below, shape, nearly=None).above is None:
+            return False
+    return True
+
+
+def _is_hurwitz(P: Sequence[Fraction]) -> bool:
+    """Tell whether the roots of a polynomial, lowest power first, are on the left."""
+    *rest, leading = P
+    if not leading:
+        return False
+    n = len(rest)
+    rows = [[ONE * (j == i + 1) for j in range(n)] for i in range(n - 1)]
+    rows += [[-c / leading for c in rest]] * (n > 0)
+    return not rows or is_stable(RationalMatrix.from_rows(rows), Time.CONTINUOUS)
+
+
+def _lowest_first(P: Polynomial) -> list[Fraction]:
+    return list(reversed(P))
+
+
+def _zeros(P: Sequence[Fraction]) -> int:
+    """Return by which power of s a polynomial, lowest power first, can be divided."""
+    return next((i for i, c in enumerate(P) if c), len(P))
+
+
+def _unseen(poles: Sequence[Sequence[Fraction]]) -> bool:
+    return all(_zeros(p) == 1 for p in poles)
+
+
+def _squared(corners: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
+    """Return ``|P(j omega)|^2`` in omega^2, in Bernstein form in every parameter.
+
+    Parameters
+    ----------
+    corners : sequence of sequence of Fraction
+        P at the corners of the box, the last parameter turning fastest; lowest power first. It is
+        affine in each parameter.
+    """
+    count = len(corners).bit_length() - 1
+    grid = dict(zip(product((0, 2), repeat=count), corners, strict=True))
+    for axis in range(count):
+        for at in [at for at in grid if at[axis] == 0]:
+            ends = grid[at], grid[(*at[:axis], 2, *at[axis + 1 :])]
+            middle = [(a + b) / 2 for a, b in zip(*ends, strict=True)]
+            grid[(*at[:axis], 1, *at[axis + 1 :])] = middle
+    squares = {at: _magnitude(grid[at]) for at in sorted(grid)}
+    for axis in range(count):
+        for at in [at for at in squares if at[axis] == 1]:
+            low, high = (squares[(*at[:axis], end, *at[axis + 1 :])] for end in (0, 2))
+            triples = zip(squares[at], low, high, strict=True)
+            squares[at] = [2 * m - (a + b) / 2 for m, a, b in triples]
+    return list(squares.values())
+
+
+def _magnitude(P: Sequence[Fraction]) -> list[Fraction]:
+    """Return ``|P(j omega)|^2`` in omega^2, lowest powers first."""
+    real = [(-1) ** k * c for k, c in enumerate(P[::2])]
+    imaginary = [(-1) ** k * c for k, c in enumerate(P[1::2])]
+    square = [ZERO] * len(P)
+    for part, shift in ((real, 0), (imaginary, 1)):
+        for k, c in enumerate(multiply(part, part) if part else []):
+            square[k + shift] += c
+    return square
+
+
+def _coefficients(
+    powers: Sequence[Sequence[Fraction]], low: Fraction, high: Fraction
+) -> list[Fraction]:
+    """Return Bernstein coefficients in omega^2 too, between two values of it."""
+    return [c for p in powers for c in bernstein(p, low, high)]
+
+
+def root_below(square: Fraction) -> Fraction:
+    """Return a number whose square is not above, near the root."""
+    return Fraction(isqrt(int(square * _FINE**2)), _FINE)
+
+
+def root_above(square: Fraction) -> Fraction:
+    """Return a number whose square is not below, near the root."""
+    return Fraction(isqrt(int(square * _FINE**2)) + 1, _FINE)

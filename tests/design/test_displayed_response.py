@@ -1,0 +1,147 @@
+"""What is felt and how well the tool follows: by hand, python-control, and random parameters."""
+
+from fractions import Fraction
+from math import sqrt
+
+import control
+import numpy as np
+import pytest
+
+from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.design.displayed_response import displayed_impedance, tracking_error
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
+from nrs_design.models.motion_loop import MotionLoop, realize
+from nrs_design.switched.cut_loop import ContinuousAxis
+from nrs_design.switched.joint import Joint
+from nrs_design.thesis import thesis
+from tests.design.motion_loops import PLACE
+
+ONE = Fraction(1)
+LAG = MotionLoop((ONE,), (ONE, ONE))
+BAND = Fraction(0), Fraction(12)
+PD = ProportionalDerivative(Fraction("117359.436"), Fraction(2060))
+
+
+def plain(loop=LAG, low_pass=None):
+    return ContinuousAxis((PLACE,), realize(loop), None, low_pass)
+
+
+def interval(low, high):
+    return Interval(Fraction(low), Fraction(low), Fraction(high))
+
+
+def test_by_hand():
+    """G = 1/(s + 1): Z = (Mt s + Bt)(s + 1), and 1 - G = s/(s + 1)."""
+    law = Admittance(Fraction(2), Fraction(8))
+    felt = displayed_impedance(plain(), law, {}, (Fraction(0), ONE))
+    assert felt.below**2 <= 2 * 68 <= felt.above**2
+    assert felt.square == 1
+    error = tracking_error(plain(), law, {}, (Fraction(0), ONE))
+    assert error.below**2 <= Fraction(1, 2) <= error.above**2
+    assert error.above < Fraction("0.7072")
+
+
+def test_slow_motions_feel_the_damping_and_follow_the_command():
+    """Z tends to Bt as omega tends to 0, and the tracking error to 0."""
+    law = Admittance(Fraction(2), Fraction(8))
+    slow = Fraction(0), Fraction(1, 10**4)
+    felt = displayed_impedance(plain(), law, {}, slow)
+    assert 8 <= felt.above < Fraction("8.0000001")
+    assert tracking_error(plain(), law, {}, slow).above < Fraction("0.000101")
+
+
+def test_a_spring_is_felt_without_bound_at_rest():
+    law = Admittance(ONE, Fraction(8), Fraction(5))
+    felt = displayed_impedance(plain(), law, {}, (Fraction(0), ONE), limit=Fraction(50))
+    assert felt.above is None
+    assert felt.below > 50
+    held = displayed_impedance(plain(), law, {}, (ONE, ONE + ONE))
+    # At 1 rad/s, |s + 8 + 5/s| |s + 1| = |8 - 4j| sqrt 2; at 2 rad/s, |8 - j/2| sqrt 5.
+    assert held.below**2 <= Fraction("64.25") * 5 <= held.above**2
+
+
+def test_an_unstable_loop_is_not_judged():
+    unstable = plain(MotionLoop((ONE,), (ONE, -ONE)))
+    assert displayed_impedance(unstable, Admittance(ONE, ONE), {}, BAND) is None
+    assert tracking_error(unstable, Admittance(ONE, ONE), {}, BAND) is None
+    # Stable at 10 N m/rad and in the air, and not at 1000 N m/rad.
+    law, loop = Admittance(ONE, Fraction(4)), plain(thesis.CLOSED_LOOP)
+    for stiffest, judged in ((10, True), (1000, False)):
+        box = {"k": interval(1, stiffest)}
+        found = tracking_error(loop, law, box, BAND, in_contact=True)
+        assert (found is not None) == judged
+
+
+@pytest.mark.parametrize(("Mt", "Bt"), [(1, 4), (3, 8), (0, 2)])
+def test_against_python_control(Mt, Bt):
+    """The robot of the thesis: no frequency is above the bound, and one is within 1 %."""
+    omega = np.linspace(0.001, 12, 4001)
+    motion = control.tf(
+        *([*map(float, c)] for c in (thesis.CLOSED_LOOP.numerator, thesis.CLOSED_LOOP.denominator))
+    )
+    shown = control.tf([1.0], [float(Mt), float(Bt)]) * motion
+    touched = control.tf([0.5, 43.0356], [1, 0])
+    law = Admittance(Fraction(Mt), Fraction(Bt))
+    loop = plain(thesis.CLOSED_LOOP)
+    box = {"k": interval("43.0356", "43.0356"), "b": interval("0.5", "0.5")}
+    cases = [
+        (1 / np.abs(shown(1j * omega)), displayed_impedance(loop, law, {}, BAND)),
+        (np.abs(1 - motion(1j * omega)), tracking_error(loop, law, {}, BAND)),
+        (
+            np.abs(1 - (motion / (1 + shown * touched))(1j * omega)),
+            tracking_error(loop, law, box, BAND, in_contact=True),
+        ),
+    ]
+    for grid, found in cases:
+        assert grid.max() <= float(found.above) * (1 + 1e-12)
+        assert float(found.above) <= grid.max() * 1.01
+        assert float(found.below) <= grid.max() * (1 + 1e-6)
+
+
+def responses(omega, values, J, pole):
+    """Return Z and ``1 - V/Vcmd`` by the equations of the loop: motor, PD, law, contact."""
+    s = 1j * omega
+    Km, tau, Mt, Bt, Kt = (values[name] for name in ("Km", "tau", "Mt", "Bt", "Kt"))
+    law = s / (Mt * s**2 + Bt * s + Kt) * (pole / (s + pole) if pole else 1)
+    pull = float(PD.Kp) / s + float(PD.Kd)
+    torque = tau / float(J) if J else 0.0
+    closed = tau * s + 1 + Km * pull
+    admittance = (Km * pull * law + torque) / closed
+    free = Km * pull / closed
+    touched = free / (1 + admittance * (values["k"] / s + values["b"]))
+    return 1 / admittance, 1 - free, 1 - touched
+
+
+@pytest.mark.parametrize("J", [None, "0.3"])
+@pytest.mark.parametrize("pole", [None, 150])
+@pytest.mark.parametrize("spring", ["0", "0.8"])
+def test_over_ranges_at_random_parameters(J, pole, spring):
+    """No draw is above the bound, and at the witness the response is what is said."""
+    motor = {"Km": interval("4.7e-4", "5e-4"), "tau": interval("0.033", "0.037")}
+    gains = {"Mt": interval("0.008", "0.02"), "Bt": interval("1.5", "2.6")}
+    contact = {"k": interval(3, 20), "b": interval(0, 1)}
+    low_pass = None if pole is None else LowPass(1, Fraction(pole))
+    joint = Joint(PD, ActuatorRanges(*motor.values(), "rpm"), None if J is None else Fraction(J))
+    axis = ContinuousAxis((PLACE,), realize(thesis.CLOSED_LOOP), joint, low_pass)
+    law = Admittance(Fraction("0.01"), Fraction("2.15"), Fraction(spring))
+    band, box = (Fraction(1, 2), Fraction(12)), motor | gains
+    found = [
+        displayed_impedance(axis, law, box, band),
+        tracking_error(axis, law, box, band),
+        tracking_error(axis, law, {**gains, **contact}, band, in_contact=True),
+    ]
+    fixed = {"Km": 4.8417e-4, "tau": 0.0351, "Mt": 0.01, "Bt": 2.15, "Kt": float(spring)}
+    fixed |= {"k": 0.0, "b": 0.0}
+    draw, omega = np.random.default_rng(1), np.linspace(0.5, 12, 100)
+    boxes = (box, motor, {**gains, **contact})
+    for i, (one, ranges) in enumerate(zip(found, boxes, strict=True)):
+        assert one.above <= one.below * Fraction("1.01")
+        for _ in range(25):
+            drawn = {n: draw.uniform(float(r.low), float(r.high)) for n, r in ranges.items()}
+            response = np.abs(responses(omega, fixed | drawn, J, pole)[i])
+            assert response.max() <= float(one.above) * (1 + 1e-9)
+        at = {name: float(v) for name, v in one.at.items()}
+        there = responses(np.array([sqrt(one.square)]), fixed | at, J, pole)[i]
+        assert abs(there[0]) == pytest.approx(float(one.below), rel=1e-9)

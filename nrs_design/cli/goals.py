@@ -53,7 +53,7 @@ def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
         {
             "goal": found.key,
             "wanted": found.wanted,
-            "limit": upper_float(found.limit),
+            "limit": float(found.limit),
             "at_most": None if found.above is None else upper_float(found.above),
             "at_least": None if found.below is None else lower_float(found.below),
             "unit": found.unit,
@@ -66,13 +66,13 @@ def responses_summary(item: ImpedanceAnalysis) -> list[dict[str, Any]]:
 
 def print_responses(analysis: DesignAnalysis) -> None:
     """Print what is proved of frequency responses; nothing without goals for them."""
-    from nrs_design.design.response_goals import MEANING
+    from nrs_design.design.measures import RESPONSE_MEANING
 
     judged = [(item.name, found) for item in analysis.impedance for found in item.responses]
     for name, found in judged:
         say(f"{name}: {found.key}, {found.wanted}: {found.ends.upper()}: {found.said}")
     if judged:
-        say(MEANING)
+        say(RESPONSE_MEANING)
 
 
 def design_answer(

@@ -19,11 +19,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from math import comb, isqrt
+from math import comb
 from typing import NamedTuple
 
 from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.controllers.sensor import LowPass
+from nrs_design.design.passivity import root_below
 from nrs_design.errors import InternalError
 from nrs_design.models.contact import KelvinVoigt
 from nrs_design.models.interval import Interval
@@ -37,7 +38,7 @@ ZERO, ONE = Fraction(0), Fraction(1)
 # Between low and high frequencies, (rad/s)^2, where all of them are looked at.
 _MIDDLE = Fraction(100)
 # Digits of a root.
-_FINE = 10**20
+_DIGITS = 20
 
 Polynomial = Sequence[Fraction]  # Highest power first
 Band = tuple[Fraction, Fraction]  # In rad/s
@@ -62,7 +63,7 @@ class LargestResponse:
     at: Mapping[str, Fraction]  # The parameters there, exactly
 
 
-def displayed_impedance(
+def largest_impedance(
     axis: ContinuousAxis,
     law: CompliantLaw,
     ranges: Mapping[str, Interval],
@@ -102,7 +103,7 @@ def displayed_impedance(
     return _largest(at, ranges, band, limit)
 
 
-def tracking_error(
+def largest_tracking_error(
     axis: ContinuousAxis,
     law: CompliantLaw,
     ranges: Mapping[str, Interval],
@@ -116,9 +117,9 @@ def tracking_error(
     Parameters
     ----------
     axis, law, band, limit
-        As for `displayed_impedance`.
+        As for `largest_impedance`.
     ranges : mapping of str to Interval
-        As for `displayed_impedance`, and ``k`` and ``b`` of what is touched.
+        As for `largest_impedance`, and ``k`` and ``b`` of what is touched.
     in_contact : bool
         Whether something is touched; in free motion the law has no part in it.
 
@@ -210,7 +211,7 @@ def _largest(
     *places, x = found.at
     return LargestResponse(
         above=None if found.above is None else root_above(found.above),
-        below=root_below(found.below),
+        below=root_below(found.below, _DIGITS),
         square=low + x * (high - low),
         at={
             name: r.low + u * (r.high - r.low)
@@ -318,11 +319,6 @@ def _coefficients(
     return [c for p in powers for c in bernstein(p, low, high)]
 
 
-def root_below(square: Fraction) -> Fraction:
-    """Return a number whose square is not above, near the root."""
-    return Fraction(isqrt(int(square * _FINE**2)), _FINE)
-
-
 def root_above(square: Fraction) -> Fraction:
     """Return a number whose square is not below, near the root."""
-    return Fraction(isqrt(int(square * _FINE**2)) + 1, _FINE)
+    return root_below(square, _DIGITS) + Fraction(1, 10**_DIGITS)

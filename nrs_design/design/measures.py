@@ -35,6 +35,11 @@ PASSIVITY_NOT_COMPUTED = (
     "a filter of the force, ranges of gains or of the motor, or beside other axes; the frequency "
     "of another law is not shown in its place."
 )
+RESPONSE_MEANING = (
+    "Transparency and accuracy: proved or refuted over the whole band and all values in the "
+    "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "
+    "rounding and saturation."
+)
 ONE_AXIS = "Of axes that act on each other, this is one by itself."
 
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.axis import unit
 from nrs_design.controllers.laws import CompliantLaw
 from nrs_design.design.displayed_response import (
     LargestResponse,
-    displayed_impedance,
-    tracking_error,
+    largest_impedance,
+    largest_tracking_error,
 )
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
@@ -24,11 +24,6 @@ from nrs_design.switched.cut_loop import AbstractAxis, ContinuousAxis
 # Keys of the goals.
 TRANSPARENCY, ACCURACY = "transparency", "accuracy"
 _TITLES = {TRANSPARENCY: "the displayed impedance", ACCURACY: "the tracking error"}
-# What they are about.
-MEANING = (
-    "Proved or refuted over the whole band and all values in the ranges, each of them constant, "
-    "of the linear loop with the gains that ship: without friction, rounding and saturation."
-)
 
 
 @dataclass(frozen=True)
@@ -42,6 +37,7 @@ class JudgedResponse:
     unit: str  # Of the limit; empty for a share
     found: LargestResponse | None  # None where it is not judged
     why_not: str = ""  # Why it is not judged
+    units: Mapping[str, str] = field(default_factory=dict)  # Of the parameters
 
     @property
     def above(self) -> Fraction | None:
@@ -87,16 +83,9 @@ class JudgedResponse:
     def where(self) -> str:
         """At which frequency and parameters the largest value was found."""
         assert self.found is not None, "there is a value"
-        units = {
-            "Mt": "kg*m^2",
-            "Bt": "N*m*s/rad",
-            "Kt": "N*m/rad",
-            "k": "N*m/rad",
-            "b": "N*m*s/rad",
-        }
         at = [f"{float(self.found.square) ** 0.5:.6g} rad/s"]
         at += [
-            f"{name} = {float(value):.6g} {unit(units[name]) if name in units else ''}".rstrip()
+            f"{name} = {float(value):.6g} {self.units[name]}"
             for name, value in self.found.at.items()
         ]
         return f"at {', '.join(at)}"
@@ -157,11 +146,11 @@ def _judged(
     found, why_not = None, _why_not(spec, axis, touched)
     if isinstance(axis, ContinuousAxis) and not why_not:
         if key == TRANSPARENCY:
-            found = displayed_impedance(axis, law, ranges, band, goal.limit)
+            found = largest_impedance(axis, law, ranges, band, goal.limit)
         else:
             box = {**ranges, **(touched.parameters if touched else {})}
             contact = touched is not None
-            found = tracking_error(axis, law, box, band, goal.limit, in_contact=contact)
+            found = largest_tracking_error(axis, law, box, band, goal.limit, in_contact=contact)
         if found is None:
             why_not = "the loop is not shown to be stable at every value of the ranges"
     return JudgedResponse(
@@ -172,6 +161,11 @@ def _judged(
         unit=unit("N*m*s/rad") if key == TRANSPARENCY else "",
         found=found,
         why_not=why_not,
+        units={
+            **{"Km": f"{unit('rad/s')}/{spec.command}", "tau": "s", "Mt": unit("kg*m^2")},
+            **dict.fromkeys(("Bt", "b"), unit("N*m*s/rad")),
+            **dict.fromkeys(("Kt", "k"), unit("N*m/rad")),
+        },
     )
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.displayed_response import displayed_impedance, tracking_error
+from nrs_design.design.displayed_response import largest_impedance, largest_tracking_error
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
@@ -35,10 +35,10 @@ def interval(low, high):
 def test_by_hand():
     """G = 1/(s + 1): Z = (Mt s + Bt)(s + 1), and 1 - G = s/(s + 1)."""
     law = Admittance(Fraction(2), Fraction(8))
-    felt = displayed_impedance(plain(), law, {}, (Fraction(0), ONE))
+    felt = largest_impedance(plain(), law, {}, (Fraction(0), ONE))
     assert felt.below**2 <= 2 * 68 <= felt.above**2
     assert felt.square == 1
-    error = tracking_error(plain(), law, {}, (Fraction(0), ONE))
+    error = largest_tracking_error(plain(), law, {}, (Fraction(0), ONE))
     assert error.below**2 <= Fraction(1, 2) <= error.above**2
     assert error.above < Fraction("0.7072")
 
@@ -47,30 +47,30 @@ def test_slow_motions_feel_the_damping_and_follow_the_command():
     """Z tends to Bt as omega tends to 0, and the tracking error to 0."""
     law = Admittance(Fraction(2), Fraction(8))
     slow = Fraction(0), Fraction(1, 10**4)
-    felt = displayed_impedance(plain(), law, {}, slow)
+    felt = largest_impedance(plain(), law, {}, slow)
     assert 8 <= felt.above < Fraction("8.0000001")
-    assert tracking_error(plain(), law, {}, slow).above < Fraction("0.000101")
+    assert largest_tracking_error(plain(), law, {}, slow).above < Fraction("0.000101")
 
 
 def test_a_spring_is_felt_without_bound_at_rest():
     law = Admittance(ONE, Fraction(8), Fraction(5))
-    felt = displayed_impedance(plain(), law, {}, (Fraction(0), ONE), limit=Fraction(50))
+    felt = largest_impedance(plain(), law, {}, (Fraction(0), ONE), limit=Fraction(50))
     assert felt.above is None
     assert felt.below > 50
-    held = displayed_impedance(plain(), law, {}, (ONE, ONE + ONE))
+    held = largest_impedance(plain(), law, {}, (ONE, ONE + ONE))
     # At 1 rad/s, |s + 8 + 5/s| |s + 1| = |8 - 4j| sqrt 2; at 2 rad/s, |8 - j/2| sqrt 5.
     assert held.below**2 <= Fraction("64.25") * 5 <= held.above**2
 
 
 def test_an_unstable_loop_is_not_judged():
     unstable = plain(MotionLoop((ONE,), (ONE, -ONE)))
-    assert displayed_impedance(unstable, Admittance(ONE, ONE), {}, BAND) is None
-    assert tracking_error(unstable, Admittance(ONE, ONE), {}, BAND) is None
+    assert largest_impedance(unstable, Admittance(ONE, ONE), {}, BAND) is None
+    assert largest_tracking_error(unstable, Admittance(ONE, ONE), {}, BAND) is None
     # Stable at 10 N m/rad and in the air, and not at 1000 N m/rad.
     law, loop = Admittance(ONE, Fraction(4)), plain(thesis.CLOSED_LOOP)
     for stiffest, judged in ((10, True), (1000, False)):
         box = {"k": interval(1, stiffest)}
-        found = tracking_error(loop, law, box, BAND, in_contact=True)
+        found = largest_tracking_error(loop, law, box, BAND, in_contact=True)
         assert (found is not None) == judged
 
 
@@ -87,11 +87,11 @@ def test_against_python_control(Mt, Bt):
     loop = plain(thesis.CLOSED_LOOP)
     box = {"k": interval("43.0356", "43.0356"), "b": interval("0.5", "0.5")}
     cases = [
-        (1 / np.abs(shown(1j * omega)), displayed_impedance(loop, law, {}, BAND)),
-        (np.abs(1 - motion(1j * omega)), tracking_error(loop, law, {}, BAND)),
+        (1 / np.abs(shown(1j * omega)), largest_impedance(loop, law, {}, BAND)),
+        (np.abs(1 - motion(1j * omega)), largest_tracking_error(loop, law, {}, BAND)),
         (
             np.abs(1 - (motion / (1 + shown * touched))(1j * omega)),
-            tracking_error(loop, law, box, BAND, in_contact=True),
+            largest_tracking_error(loop, law, box, BAND, in_contact=True),
         ),
     ]
     for grid, found in cases:
@@ -128,9 +128,9 @@ def test_over_ranges_at_random_parameters(J, pole, spring):
     law = Admittance(Fraction("0.01"), Fraction("2.15"), Fraction(spring))
     band, box = (Fraction(1, 2), Fraction(12)), motor | gains
     found = [
-        displayed_impedance(axis, law, box, band),
-        tracking_error(axis, law, box, band),
-        tracking_error(axis, law, {**gains, **contact}, band, in_contact=True),
+        largest_impedance(axis, law, box, band),
+        largest_tracking_error(axis, law, box, band),
+        largest_tracking_error(axis, law, {**gains, **contact}, band, in_contact=True),
     ]
     fixed = {"Km": 4.8417e-4, "tau": 0.0351, "Mt": 0.01, "Bt": 2.15, "Kt": float(spring)}
     fixed |= {"k": 0.0, "b": 0.0}

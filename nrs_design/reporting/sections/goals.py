@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from nrs_design.certificates.goals import certified_goals
 from nrs_design.design.goals import Achieved
-from nrs_design.design.measures import MEANING
-from nrs_design.design.response_goals import MEANING as RESPONSES_MEANING
+from nrs_design.design.measures import MEANING, RESPONSE_MEANING
 from nrs_design.reporting.document import (
     Block,
     Bullets,
@@ -150,7 +149,7 @@ def _responses(result: Result, analysis: DesignAnalysis | None) -> Iterator[Bloc
         for found in item.responses
     )
     if rows:
-        yield Paragraph(RESPONSES_MEANING)
+        yield Paragraph(RESPONSE_MEANING)
         yield Table("Transparency and accuracy", _RESPONSES, rows)
 
 

@@ -18,6 +18,7 @@ from nrs_design.design.impedance import (
     stabilizes,
 )
 from nrs_design.design.pattern_search import Objective, Points, local_minima, refine, snap
+from nrs_design.design.response_cost import ResponseCost
 from nrs_design.design.transfer import BoolArray, FloatArray, frequency_response
 from nrs_design.errors import DesignError
 
@@ -56,6 +57,7 @@ class ImpedanceProblem:
     # negative and not both zero.
     weight_displayed: float = 0.5
     weight_sensitivity: float = 0.5
+    responses: tuple[ResponseCost, ...] = ()  # What else is in the cost
     # Tells for which Mt and Bt nominal contact is stable, of the loop that is proved; by default
     # that of the `loop` is asked for.
     stable: Callable[[FloatArray, FloatArray], BoolArray] | None = None
@@ -68,8 +70,9 @@ class ImpedanceProblem:
         _check_bounds("Mt", self.mass_bounds, zero_allowed=True)
         _check_bounds("Bt", self.damping_bounds, zero_allowed=False)
         weights = (self.weight_displayed, self.weight_sensitivity)
+        weights += tuple(part.weight for part in self.responses)
         if not all(math.isfinite(w) and w >= 0 for w in weights) or not any(weights):
-            raise DesignError(f"weights must be at least 0 and not both 0: {weights}")
+            raise DesignError(f"weights must be at least 0 and not all 0: {weights}")
 
 
 def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> FloatArray:
@@ -77,7 +80,8 @@ def impedance_cost(problem: ImpedanceProblem, Mt: ArrayLike, Bt: ArrayLike) -> F
 
     ``C = wD mean|log10 Zdes - log10|Zdisp|| + wR mean|L|`` over ``(0, bandwidth]``: the integral
     divided by the bandwidth, by the midpoint rule with `NODES` equidistant frequencies. The
-    thesis prints a sum, whose value would depend on the number of frequencies.
+    thesis prints a sum, whose value would depend on the number of frequencies. Parts for
+    transparency and accuracy over a band are added.
 
     Parameters
     ----------
@@ -148,6 +152,7 @@ class _Samples:
     target: FloatArray
     drawn: FloatArray
     weights: tuple[float, float]
+    responses: tuple[ResponseCost, ...]
 
     def cost(self, Mt: FloatArray, Bt: FloatArray) -> FloatArray:
         """Evaluate in blocks that stay in the processor's cache."""
@@ -161,7 +166,10 @@ class _Samples:
         squared = (reactance**2 + Bt**2) / below  # |L|^2, and |Zdisp| = |G Ze| |L|
         displayed = np.abs(self.target - 0.5 * np.log10(squared)).mean(axis=1)
         robust = np.sqrt(squared).mean(axis=1)
-        return np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
+        cost = np.asarray(self.weights[0] * displayed + self.weights[1] * robust)
+        for part in self.responses:
+            cost = cost + part.of(Mt, Bt)
+        return cost
 
 
 def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
@@ -177,6 +185,7 @@ def _sample(problem: ImpedanceProblem, nodes: int) -> _Samples:
         target=np.log10(problem.desired / np.abs(forward)),
         drawn=problem.loop.Kt / omega,
         weights=(problem.weight_displayed, problem.weight_sensitivity),
+        responses=problem.responses,
     )
 
 

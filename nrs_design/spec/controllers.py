@@ -92,7 +92,7 @@ _TOUCHED = (
 
 
 class CostWeights(SpecModel):
-    """Weights of the two parts of the impedance cost (thesis 6.7)."""
+    """Weights of the parts of the impedance cost: the two of thesis 6.7, and two for a band."""
 
     displayed: Weight = Field(
         default=Fraction(1, 2), description="weight of the displayed-impedance error, >= 0, no unit"
@@ -100,12 +100,22 @@ class CostWeights(SpecModel):
     sensitivity: Weight = Field(
         default=Fraction(1, 2), description="weight of the mean sensitivity, >= 0, no unit"
     )
+    transparency: Weight = Field(
+        default=Fraction(0),
+        description="weight of the largest displayed impedance over the limit of the goal "
+        "transparency, in its band, >= 0, no unit",
+    )
+    accuracy: Weight = Field(
+        default=Fraction(0),
+        description="weight of the largest tracking error over the limit of the goal accuracy, in "
+        "its band and contact, >= 0, no unit",
+    )
 
     checks = (
         Row(
             "",
-            lambda s: s.displayed == 0 and s.sensitivity == 0,
-            "both weights are zero",
+            lambda s: not any((s.displayed, s.sensitivity, s.transparency, s.accuracy)),
+            "all weights are zero",
             "give at least one a positive weight",
         ),
     )

@@ -210,6 +210,28 @@ def _accurate_in(spec: Spec) -> Iterator[tuple[Location, Reference]]:
             )
 
 
+@dataclass(frozen=True, slots=True)
+class _Weighed:
+    """A goal that is in the cost of a controller, if it is given, and its key."""
+
+    key: str
+    goal: ResponseGoal | None
+
+    def in_the_air(self) -> bool:
+        """Return whether it is about a motion in which the gains have no part."""
+        return isinstance(self.goal, AccuracySpec) and self.goal.environment is None
+
+
+def _weighed(spec: Spec) -> Iterator[tuple[Location, _Weighed]]:
+    for name, c in spec.controllers.items():
+        weights = getattr(c, "weights", None)
+        for key in ("transparency", "accuracy"):
+            if weights is not None and getattr(weights, key):
+                given = (goals for goals in (c.goals, spec.goals) if goals is not None)
+                found = (goal for goals in given if (goal := getattr(goals, key)) is not None)
+                yield ("controllers", name, "weights", key), _Weighed(key, next(found, None))
+
+
 def _common_goals(spec: Spec) -> Iterator[tuple[Location, _Goals]]:
     laws = {c.type for c in spec.controllers.values() if "goals" in type(c).model_fields}
     if spec.goals is not None:
@@ -418,6 +440,21 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
     # Goals.
     *each(_common_goals, *_GOALS),
     *each(_own_goals, *_GOALS),
+    *each(
+        _weighed,
+        Row[_Weighed](
+            "",
+            lambda w: w.goal is None,
+            "{s.key} is in the cost, and no goal says in which band and below which limit",
+            "add the goal {s.key}, or remove the weight",
+        ),
+        Row[_Weighed](
+            "",
+            _Weighed.in_the_air,
+            "accuracy is in the cost, but gains have no part in it where nothing is touched",
+            "add `environment` to the goal accuracy, or remove the weight",
+        ),
+    ),
     *each(
         _sampled_bands,
         Row[_SampledBand](

@@ -183,7 +183,7 @@ IMPEDANCE_FAULTS = [
         "Mt: 0.01",
         "weights: {displayed: 0, sensitivity: 0}\n    Mt: 0.01",
         "{displayed",
-        "both weights are zero",
+        "all weights are zero",
     ),
     ("Mt: 0.01", "weights: {displayed: -1}\n    Mt: 0.01", "-1}", "zero or positive"),
     ("switching: arbitrary\n", "", "kind", "`switching` is missing"),

@@ -38,6 +38,7 @@ from nrs_design.design.measures import (
 )
 from nrs_design.design.passivity import PassiveBand, passive_band
 from nrs_design.design.relief import doubt_stiffness
+from nrs_design.design.response_cost import ResponseCost, response_cost
 from nrs_design.design.response_goals import JudgedResponse, judged_responses, response_goals
 from nrs_design.design.sampled_passivity import SampledBand, sampled_bands
 from nrs_design.errors import DesignError
@@ -350,8 +351,25 @@ def impedance_problem(
         damping_bounds=(given.Bt.min.si, given.Bt.max.si),
         weight_displayed=float(given.weights.displayed),
         weight_sensitivity=float(given.weights.sensitivity),
+        responses=tuple(_response_costs(task, given)),
         stable=None if requirement.axis is None else requirement.stable,
     )
+
+
+def _response_costs(task: Task, given: ImpedanceControllerSpec) -> Iterator[ResponseCost]:
+    """Yield what goals for frequency responses add to the cost."""
+    for key, goal in response_goals(task.spec.goals, given.goals).items():
+        if weight := float(getattr(given.weights, key)):
+            name = goal.environment or given.environment
+            loop = ImpedanceLoop(
+                task.motion,
+                task.plant.environment(name).nominal,
+                float(_spring(given)),
+                _lags(task),
+            )
+            band = goal.band[0].si, goal.band[1].si
+            touches = goal.environment is not None
+            yield response_cost(loop, weight, float(goal.limit), band, touches=touches)
 
 
 def desired_impedance(spec: InteractionDesignSpec, controller: ImpedanceControllerSpec) -> float:

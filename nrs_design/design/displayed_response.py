@@ -59,8 +59,9 @@ class LargestResponse:
     # No parameters in their ranges and no frequency in the band give more; None if not shown.
     above: Fraction | None
     below: Fraction  # At one point there is at least this
-    square: Fraction  # Of the frequency there in rad/s, exactly
+    square: Fraction  # Of the frequency there in rad/s; sampled, of tan(omega T/2); exactly
     at: Mapping[str, Fraction]  # The parameters there, exactly
+    omega: float  # The frequency in rad/s, for people
 
 
 def largest_impedance(
@@ -100,7 +101,7 @@ def largest_impedance(
         felt = [b - a for a, b in zip(free, damped, strict=True)]
         return Quotient(free, felt, free)
 
-    return _largest(at, ranges, band, limit)
+    return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
 
 def largest_tracking_error(
@@ -144,7 +145,7 @@ def largest_tracking_error(
         below = multiply(closed, [ONE, ZERO]) if held.gains.get("Kt") else closed
         return Quotient(_subtracted(below, driven), below, closed)
 
-    return _largest(at, ranges, band, limit)
+    return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
 
 def _at(
@@ -174,27 +175,28 @@ def _subtracted(P: Polynomial, Q: Polynomial) -> list[Fraction]:
     return [a - b for a, b in zip(first, second, strict=True)]
 
 
-def _largest(
+def largest_over(
     at: Callable[[Mapping[str, Fraction]], Quotient],
     ranges: Mapping[str, Interval],
     band: Band,
     limit: Fraction | None,
-) -> LargestResponse | None:
-    """Bound a response over a band and a box of parameters."""
-    corners = [
-        at(dict(zip(ranges, ends, strict=True)))
-        for ends in product(*((r.low, r.high) for r in ranges.values()))
-    ]
-    _check_affine(at, ranges, corners)
-    above, below, poles = (
-        [_lowest_first(corner[i]) for corner in corners] for i in range(len(Quotient._fields))
-    )
+) -> LargestResponse:
+    """Bound a response over a band and a box of parameters.
+
+    Parameters
+    ----------
+    at : callable
+        Gives the response at parameters; its polynomials are affine in each of them.
+    ranges : mapping of str to Interval
+        The box.
+    band, limit
+        As for `largest_impedance`.
+    """
+    corners = _corners(at, ranges)
+    above = [_lowest_first(corner.above) for corner in corners]
+    below = [_lowest_first(corner.below) for corner in corners]
     shared = min(map(_zeros, (*above, *below)))
     above, below = ([p[shared:] for p in each] for each in (above, below))
-    # What no force and no command sees: the deflection of nothing.
-    poles = [p[_zeros(poles[0]) if _unseen(poles) else 0 :] for p in poles]
-    if not _is_stable(poles):
-        return None
     tensors = [_squared(each) for each in (above, below)]
     size = max(len(grid[0]) for grid in tensors)
     low, high = (omega**2 for omega in band)
@@ -209,28 +211,50 @@ def _largest(
         limit=None if limit is None else limit**2,
     )
     *places, x = found.at
+    square = low + x * (high - low)
     return LargestResponse(
         above=None if found.above is None else root_above(found.above),
         below=root_below(found.below, _DIGITS),
-        square=low + x * (high - low),
+        square=square,
         at={
             name: r.low + u * (r.high - r.low)
             for (name, r), u in zip(ranges.items(), places, strict=True)
         },
+        omega=float(square) ** 0.5,
     )
 
 
-def _check_affine(
-    at: Callable[[Mapping[str, Fraction]], Quotient],
-    ranges: Mapping[str, Interval],
-    corners: Sequence[Quotient],
-) -> None:
-    """Hold the middle of the box against the mean of its corners."""
+def is_stable_over(
+    at: Callable[[Mapping[str, Fraction]], Quotient], ranges: Mapping[str, Interval]
+) -> bool:
+    """Tell whether the poles of a response are shown to be on the left in a whole box.
+
+    Parameters
+    ----------
+    at, ranges
+        As for `largest_over`.
+    """
+    poles = [_lowest_first(corner.poles) for corner in _corners(at, ranges)]
+    # What no force and no command sees: the deflection of nothing.
+    if all(_zeros(p) == 1 for p in poles):
+        poles = [p[1:] for p in poles]
+    return _is_stable(poles)
+
+
+def _corners(
+    at: Callable[[Mapping[str, Fraction]], Quotient], ranges: Mapping[str, Interval]
+) -> list[Quotient]:
+    """Return a response at the corners of a box, in the middle of which it is their mean."""
+    corners = [
+        at(dict(zip(ranges, ends, strict=True)))
+        for ends in product(*((r.low, r.high) for r in ranges.values()))
+    ]
     middle = at({name: r.middle for name, r in ranges.items()})
     for i, found in enumerate(middle):
         for k, c in enumerate(found):
             if c != sum(corner[i][k] for corner in corners) / len(corners):
                 raise InternalError("a response is not affine in the parameters of its loop")
+    return corners
 
 
 def _is_stable(poles: Sequence[list[Fraction]]) -> bool:
@@ -270,10 +294,6 @@ def _lowest_first(P: Polynomial) -> list[Fraction]:
 def _zeros(P: Sequence[Fraction]) -> int:
     """Return by which power of s a polynomial, lowest power first, can be divided."""
     return next((i for i, c in enumerate(P) if c), len(P))
-
-
-def _unseen(poles: Sequence[Sequence[Fraction]]) -> bool:
-    return all(_zeros(p) == 1 for p in poles)
 
 
 def _squared(corners: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:

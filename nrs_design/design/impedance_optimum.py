@@ -69,8 +69,8 @@ class ImpedanceProblem:
                 raise DesignError(f"the {name} must be positive, not {value}")
         _check_bounds("Mt", self.mass_bounds, zero_allowed=True)
         _check_bounds("Bt", self.damping_bounds, zero_allowed=False)
-        weights = (self.weight_displayed, self.weight_sensitivity)
-        weights += tuple(part.weight for part in self.responses)
+        beside = (part.weight for part in self.responses)
+        weights = (self.weight_displayed, self.weight_sensitivity, *beside)
         if not all(math.isfinite(w) and w >= 0 for w in weights) or not any(weights):
             raise DesignError(f"weights must be at least 0 and not all 0: {weights}")
 

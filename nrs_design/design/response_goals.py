@@ -7,19 +7,21 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from nrs_design.axis import unit
-from nrs_design.controllers.laws import CompliantLaw
+from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.design.displayed_response import (
     LargestResponse,
     largest_impedance,
     largest_tracking_error,
 )
+from nrs_design.design.sampled_response import SampledAdmittance, largest_sampled_impedance
+from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
 from nrs_design.spec import InteractionDesignSpec
 from nrs_design.spec.goals import GoalsSpec, ResponseGoal
-from nrs_design.switched.cut_loop import AbstractAxis, ContinuousAxis
+from nrs_design.switched.cut_loop import AbstractAxis, ContinuousAxis, ProcessorAxis
 
 # Keys of the goals.
 TRANSPARENCY, ACCURACY = "transparency", "accuracy"
@@ -83,7 +85,7 @@ class JudgedResponse:
     def where(self) -> str:
         """At which frequency and parameters the largest value was found."""
         assert self.found is not None, "there is a value"
-        at = [f"{float(self.found.square) ** 0.5:.6g} rad/s"]
+        at = [f"{self.found.omega:.6g} rad/s"]
         at += [
             f"{name} = {float(value):.6g} {self.units[name]}"
             for name, value in self.found.at.items()
@@ -140,17 +142,11 @@ def _judged(
     ranges: Mapping[str, Interval],
     environments: Mapping[str, Environment],
 ) -> JudgedResponse:
-    band = goal.band[0].not_above, goal.band[1].not_below
     touched = None if goal.environment is None else environments[goal.environment]
     where = f"in contact with {goal.environment}" if touched else "in free motion"
-    found, why_not = None, _why_not(spec, axis, touched)
-    if isinstance(axis, ContinuousAxis) and not why_not:
-        if key == TRANSPARENCY:
-            found = largest_impedance(axis, law, ranges, band, goal.limit)
-        else:
-            box = {**ranges, **(touched.parameters if touched else {})}
-            contact = touched is not None
-            found = largest_tracking_error(axis, law, box, band, goal.limit, in_contact=contact)
+    why_not, found = _why_not(spec, key, axis, law, touched), None
+    if not why_not:
+        found = _found(key, goal, axis, law, ranges, touched)
         if found is None:
             why_not = "the loop is not shown to be stable at every value of the ranges"
     return JudgedResponse(
@@ -169,16 +165,68 @@ def _judged(
     )
 
 
+def _found(
+    key: str,
+    goal: ResponseGoal,
+    axis: AbstractAxis | None,
+    law: CompliantLaw,
+    ranges: Mapping[str, Interval],
+    touched: Environment | None,
+) -> LargestResponse | None:
+    band = goal.band[0].not_above, goal.band[1].not_below
+    if isinstance(axis, ProcessorAxis):
+        return largest_sampled_impedance(_sampled(axis, law, ranges), band, goal.limit)
+    assert isinstance(axis, ContinuousAxis), "others are not judged"
+    if key == TRANSPARENCY:
+        return largest_impedance(axis, law, ranges, band, goal.limit)
+    box = {**ranges, **(touched.parameters if touched else {})}
+    contact = touched is not None
+    return largest_tracking_error(axis, law, box, band, goal.limit, in_contact=contact)
+
+
+def _sampled(
+    axis: ProcessorAxis, law: CompliantLaw, ranges: Mapping[str, Interval]
+) -> SampledAdmittance:
+    """Return a law as a processor runs it, with the ranges of motor and gains."""
+    motor = axis.places[0].motor
+    known = {"Km": motor.gain, "tau": motor.time_constant, **law.gains}
+    box = {name: Interval.point(value) for name, value in known.items()} | dict(ranges)
+    return SampledAdmittance(
+        motion=axis.motion,
+        motor=ActuatorRanges(box["Km"], box["tau"], motor.command),
+        law=Admittance.of(law.gains),
+        gains={name: box[name] for name in law.gains},
+        method=axis.sampling.admittance,
+        period=axis.period,
+        low_pass=axis.low_pass,
+    )
+
+
 def _why_not(
-    spec: InteractionDesignSpec, axis: AbstractAxis | None, touched: Environment | None
+    spec: InteractionDesignSpec,
+    key: str,
+    axis: AbstractAxis | None,
+    law: CompliantLaw,
+    touched: Environment | None,
 ) -> str:
     """Say why a response is not computed; nothing where it is."""
     if spec.coupling is not None:
         return "this axis moves beside others that act on it"
-    if spec.late_at is not None and spec.sampling is None:
+    if spec.late_at is not None:
         return "commands are late"
-    if not isinstance(axis, ContinuousAxis):
-        return "the law is sampled"
+    if spec.sampling is not None and key == ACCURACY:
+        return "the law is sampled, and when a commanded velocity takes effect is not modelled"
+    if isinstance(axis, ProcessorAxis):
+        loaded = spec.actuator is not None and spec.actuator.load_inertia is not None
+        cases = {
+            "the law is sampled, with two periods": spec.sampling and spec.sampling.round > 1,
+            "the law is sampled, with a spring Kt": "Kt" in law.gains,
+            "the law is sampled, with a load of the motor": loaded,
+            "the robot closes its own motion loop": axis.takes is not None or axis.drive,
+        }
+        return next((why for why, found in cases.items() if found), "")
+    if axis is None:
+        return "the force is sampled more often than the motion loop"
     if touched is not None and (
         touched.law not in (Elastic, KelvinVoigt) or touched.preloaded or touched.each_losable
     ):

@@ -58,7 +58,7 @@ def exponential(A: RationalMatrix, begin: Fraction, end: Fraction) -> Any:
     exact = _fmpq_matrix(A)
     E = arb_mat(exact * fmpq(middle.numerator, middle.denominator)).exp()
     if half > 0:
-        ball = _ball(half)
+        ball = ball_around(half)
         E = (arb_mat(exact) * (-ball).union(ball)).exp() * E
     return E
 
@@ -75,7 +75,7 @@ def overlap(enclosed: Any, M: RationalMatrix, error: Fraction) -> bool:
     error : Fraction
         The radius.
     """
-    radius, ours = _ball(error), balls(M)
+    radius, ours = ball_around(error), balls(M)
     around, (rows, columns) = (-radius).union(radius), M.shape
     return all(
         (ours[i, j] + around).overlaps(enclosed[i, j]) for i in range(rows) for j in range(columns)
@@ -101,7 +101,7 @@ def characteristic_sign(M: Any, number: Fraction) -> int:
     number : Fraction
         Real.
     """
-    value = M.charpoly()(_ball(number))
+    value = M.charpoly()(ball_around(number))
     return 1 if value > 0 else -1 if value < 0 else 0
 
 
@@ -123,7 +123,7 @@ def eigenvector(M: Any, low: Fraction, high: Fraction) -> Any:
 
     if characteristic_sign(M, low) * characteristic_sign(M, high) >= 0:
         return None
-    z, n, coefficients = _ball(low).union(_ball(high)), M.nrows(), M.charpoly().coeffs()
+    z, n, coefficients = ball_around(low).union(ball_around(high)), M.nrows(), M.charpoly().coeffs()
     v = w = u = arb_mat(n, 1, [1] * n)
     # Horner's scheme, with w_(n-1) = u and w_(j-1) = M w_j + c_j u.
     for c in coefficients[n - 1 : 0 : -1]:
@@ -177,10 +177,16 @@ def _fraction(ball: Any) -> Fraction:
     mantissa, exponent = ball.man_exp()
     if int(mantissa).bit_length() + int(exponent) < -RANGE_LOG2:
         return Fraction(0)
+    return fraction_of(ball)
+
+
+def fraction_of(ball: Any) -> Fraction:
+    """Return an exact ball (of radius zero), such as an end of another one, as a fraction."""
+    mantissa, exponent = ball.man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
-def _ball(number: Fraction) -> Any:
+def ball_around(number: Fraction) -> Any:
     """Return a ball around a number, at the current precision."""
     from flint import arb, fmpq
 

@@ -19,10 +19,10 @@ from itertools import count, pairwise, product
 from math import comb, prod
 from typing import Any
 
-from nrs_design.proof.enclosure import precision
+from nrs_design.proof.enclosure import ball_around, fraction_of, precision
 
 # Between the two bounds, as a share of the lower one.
-NEARLY = Fraction(1, 200)
+NEARLY = Fraction(1, 400)
 # Coefficients that are looked at before the search ends.
 MOST = 400_000
 ZERO, ONE = Fraction(0), Fraction(1)
@@ -203,20 +203,12 @@ def _starts(shape: tuple[int, ...], axis: int) -> Iterator[int]:
 
 
 def _balls(values: Tensor) -> list[Any]:
-    from flint import arb, fmpq
-
-    return [arb(fmpq(v.numerator, v.denominator)) if isinstance(v, Fraction) else v for v in values]
+    return [ball_around(v) if isinstance(v, Fraction) else v for v in values]
 
 
 def _upper(ball: Any) -> Fraction:
-    return _fraction(ball.upper())
+    return fraction_of(ball.upper())
 
 
 def _lower(ball: Any) -> Fraction:
-    return _fraction(ball.lower())
-
-
-def _fraction(ball: Any) -> Fraction:
-    """Return a ball without radius as a fraction."""
-    mantissa, exponent = ball.man_exp()
-    return int(mantissa) * Fraction(2) ** int(exponent)
+    return fraction_of(ball.lower())

@@ -308,7 +308,7 @@ class ProcessorAxis(AbstractAxis):
         opened, closed = map(characteristic, self._modes(law, contact, place))
         while opened[-1] == closed[-1] == 0:  # A force sample that leaves its last place.
             opened, closed = opened[:-1], closed[:-1]
-        opened, closed = (_on_the_axis(p, self.period) for p in (opened, closed))
+        opened, closed = (on_the_axis(p, self.period) for p in (opened, closed))
         return CutLoop(opened, closed, opened)
 
     def _modes(
@@ -428,8 +428,16 @@ def _times(factor: Fraction, loop: CutLoop) -> CutLoop:
     return CutLoop(opened, closed, free)
 
 
-def _on_the_axis(polynomial: Polynomial, period: Fraction) -> Polynomial:
-    """Put ``z = (1 + w T/2)/(1 - w T/2)`` in, times ``(1 - w T/2)^n``."""
+def on_the_axis(polynomial: Sequence[Fraction], period: Fraction) -> Polynomial:
+    """Put ``z = (1 + w T/2)/(1 - w T/2)`` in, times ``(1 - w T/2)^n``.
+
+    Parameters
+    ----------
+    polynomial : sequence of Fraction
+        In z, of degree n, highest power first.
+    period : Fraction
+        The T.
+    """
     half = period / 2
     total, power = [polynomial[0]], [ONE]
     for c in polynomial[1:]:

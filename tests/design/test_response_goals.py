@@ -86,7 +86,7 @@ def test_a_bound_that_is_not_shown_proves_and_refutes_nothing():
         (None, half, "undecided"),
         (None, half + Fraction(1, 10**30), "refuted"),
     ):
-        assert judged(LargestResponse(above, below, Fraction(1), {})).ends == ends
+        assert judged(LargestResponse(above, below, Fraction(1), {}, 1.0)).ends == ends
     assert judged(None, "no reason").ends == "not judged"
     assert judged(None, "no reason").said == "not judged: no reason"
     assert not judged(None).proved

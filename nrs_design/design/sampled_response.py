@@ -1,0 +1,225 @@
+"""What the surgeon feels of a law that a processor runs, bounded over a band and all ranges.
+
+Of a force with the frequency omega, below half the sampling rate, the velocity of the tool has a
+part of the same frequency, as in `nrs_design.design.sampled_passivity`:
+
+    V = Km/(tau j omega + 1)  (1 - 1/z)/(j omega T)  U(z),    z = exp(j omega T).
+
+With ``w = j t``, ``t = tan(omega T/2)``, ``z = (1 + w)/(1 - w)`` and ``c = atan(t)/t``, omega is
+``2 c t/T`` and the second factor ``1/(c (1 + w))``; how old a force sample is does not change a
+magnitude, as long as it is always the same. ``F/V`` is a quotient of polynomials in w that are
+affine in each of Km, tau, ``E = exp(-T/tau)``, ``s = tau (1 - E)``, and a and b/(1 - a) of the law
+``v+ = a v + b F``. These are taken for themselves, which covers more than there is; and c, on a
+short piece of the band, at its largest, where ``|c (1 + 2 c tau w/T)|`` is largest, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from itertools import product
+from math import atan
+from typing import Any
+
+from nrs_design.controllers.laws import Admittance, ProportionalDerivative
+from nrs_design.controllers.sensor import LowPass
+from nrs_design.design.displayed_response import (
+    Band,
+    LargestResponse,
+    Polynomial,
+    Quotient,
+    is_stable_over,
+    largest_over,
+)
+from nrs_design.design.passivity import root_below
+from nrs_design.models.actuator import ActuatorRanges
+from nrs_design.models.interval import Interval
+from nrs_design.proof.enclosure import ball_around, fraction_of, precision
+from nrs_design.proof.taylor import exponential_between
+from nrs_design.switched.cut_loop import multiply, on_the_axis
+
+ZERO, ONE = Fraction(0), Fraction(1)
+# By what share c may fall along a piece of the band, and how many pieces there are at most.
+_FALL, _MOST = 1 / 300, 200
+
+
+@dataclass(frozen=True)
+class SampledAdmittance:
+    """An admittance that a processor runs over a motor, and what it runs beside."""
+
+    motion: ProportionalDerivative  # The PD gains that ship
+    motor: ActuatorRanges  # Where the motor is
+    law: Admittance  # Without a spring
+    gains: Mapping[str, Interval]  # Where Mt and Bt are
+    method: str  # By which the law is discretized
+    period: Fraction  # In s
+    low_pass: LowPass | None = None  # Of the force
+
+    @property
+    def box(self) -> dict[str, Interval]:
+        """What the polynomials are affine in, and where it is."""
+        tau = self.motor.time_constant
+        ends = [exponential_between(-self.period / end) for end in (tau.low, tau.high)]
+        E = ends[0][0], ends[1][1]
+        s = tau.low * (1 - ends[0][1]), tau.high * (1 - ends[1][0])
+        found = self.law.enclose(self.gains, self.period, self.method)
+        found |= {"Km": self.motor.gain, "tau": tau}
+        moving = {name: r for name, r in found.items() if r.low != r.high}
+        return moving | {"E": Interval(E[0], *E), "s": Interval(min(s), min(s), max(s))}
+
+    def quotient(self, values: Mapping[str, Fraction], c: Fraction) -> Quotient:
+        """Return F/V at values of what is in the box, as polynomials in w.
+
+        Parameters
+        ----------
+        values : mapping of str to Fraction
+            By name.
+        c : Fraction
+            The ``atan(t)/t``.
+        """
+        T, numbers = self.period, self._numbers
+        Km = values.get("Km", self.motor.gain.nominal)
+        tau = values.get("tau", self.motor.time_constant.nominal)
+        E, s = values["E"], values["s"]
+        numbers = {**numbers, **self.law.numbers_at(numbers, values)}
+        D = self.motion.over(T)
+        C, lag = [self.motion.Kp + D, -D], [ONE, -E]
+        turned = multiply([ONE, -ONE, ZERO], lag)
+        driven = multiply(C, [Km * (T - s), Km * (s - T * E)])
+        closed = [a + b for a, b in zip(turned, [ZERO, *driven], strict=True)]
+        above, below = multiply(closed, self._pole(numbers)), multiply(C, lag)
+        scale = Km * numbers["T"] * numbers["b"]
+        if self.low_pass is not None:
+            held = self.low_pass.discretize(T)
+            for _ in range(held.order):
+                above, scale = multiply(above, [ONE, -held.p]), scale * held.q
+        below = [scale * k for k in below]
+        poles = on_the_axis(above, Fraction(2))
+        late = multiply([2 * c * tau / T * c, c], [ONE, ONE])
+        below = [ZERO] * (len(above) - len(below)) + below
+        return Quotient(multiply(poles, late), on_the_axis(below, Fraction(2)), poles)
+
+    @property
+    def _numbers(self) -> Mapping[str, Fraction]:
+        held = self.law.discretize(self.period, self.method)
+        assert held is not None, "an admittance has a program"
+        return held.numbers
+
+    @staticmethod
+    def _pole(numbers: Mapping[str, Fraction]) -> Polynomial:
+        return [ONE, -numbers["a"]] if "a" in numbers else [ONE]
+
+    def corners(self) -> Iterator[tuple[dict[str, Fraction], SampledAdmittance]]:
+        """Yield this at each corner of the ranges of motor and gains, and the values there."""
+        ranges = {"Km": self.motor.gain, "tau": self.motor.time_constant, **self.gains}
+        names = [name for name, r in ranges.items() if r.low != r.high]
+        for ends in product(*((ranges[name].low, ranges[name].high) for name in names)):
+            at = dict(zip(names, ends, strict=True))
+            nominal = self.motor.nominal
+            point = replace(
+                nominal,
+                gain=at.get("Km", nominal.gain),
+                time_constant=at.get("tau", nominal.time_constant),
+            )
+            law = replace(self.law, **{name: at[name] for name in ("Mt", "Bt") if name in at})
+            yield at, replace(self, motor=ActuatorRanges.point(point), law=law, gains={})
+
+    def squared(self, t: Fraction) -> Any:
+        """Enclose ``|F/V|^2`` in a ball, where nothing has a range.
+
+        Parameters
+        ----------
+        t : Fraction
+            The ``tan(omega T/2)``.
+        """
+        from flint import acb
+
+        w, c, T = acb(0, 1) * ball_around(t), _over_tangent(t), ball_around(self.period)
+        z, numbers = (1 + w) / (1 - w), self._numbers
+        Km, tau = (ball_around(r.nominal) for r in (self.motor.gain, self.motor.time_constant))
+        E = (-T / tau).exp()
+        s = tau * (1 - E)
+        D = ball_around(self.motion.over(self.period))
+        C, N = ((ball_around(self.motion.Kp) + D) * z - D) / z, s * (1 - z) + T * (z - E)
+        law = ball_around(numbers["b"]) / (z - ball_around(numbers["a"]) if "a" in numbers else 1)
+        if self.low_pass is not None:
+            held = self.low_pass.discretize(self.period)
+            law *= (ball_around(held.q) / (z - ball_around(held.p))) ** held.order
+        # The z - 1 of the reference is that of the loop.
+        U = ball_around(numbers["T"]) * law * C * (z - E) / ((z - 1) * (z - E) + C * Km * N)
+        V = Km / (1 + 2 * c * tau * w / T) / (c * (1 + w)) * U
+        return 1 / (V.real**2 + V.imag**2)
+
+
+def largest_sampled_impedance(
+    shown: SampledAdmittance, band: Band, limit: Fraction | None = None
+) -> LargestResponse | None:
+    """Bound the largest displayed impedance of a sampled law, in N m s/rad.
+
+    Parameters
+    ----------
+    shown : SampledAdmittance
+        The law, and what is below it.
+    band : tuple of Fraction
+        Lowest and highest frequency, rad/s, below half the sampling rate.
+    limit : Fraction, optional
+        What it should stay below.
+
+    Returns
+    -------
+    LargestResponse or None
+        None where the robot that nobody holds is not shown to be stable.
+    """
+    if not is_stable_over(lambda values: shown.quotient(values, ONE), shown.box):
+        return None
+    pieces = []
+    for first, last in _pieces(*_tangents(band, shown.period)):
+        with precision():
+            c = Fraction(1) if not first else fraction_of(_over_tangent(first).upper())
+        pieces.append(largest_over(partial(shown.quotient, c=c), shown.box, (first, last), limit))
+    highest = max(pieces, key=lambda piece: (piece.above is None, piece.above or ZERO))
+    # What is covered is more than there is, so the loop itself is looked at there.
+    t = root_below(highest.square, 12)
+    with precision():
+        found = [(fraction_of(one.squared(t).lower()), at) for at, one in shown.corners()]
+    square, at = max(found, key=lambda pair: pair[0])
+    return LargestResponse(
+        above=highest.above,
+        below=root_below(max(square, ZERO), 20),
+        square=t**2,
+        at=at,
+        omega=2 * atan(t) / float(shown.period),
+    )
+
+
+def _tangents(band: Band, period: Fraction) -> Band:
+    """Return ``tan(omega T/2)`` of the ends of a band, rounded outwards."""
+    with precision():
+        low, high = ((ball_around(omega * period / 2)).tan() for omega in band)
+        return max(ZERO, fraction_of(low.lower())), fraction_of(high.upper())
+
+
+def _pieces(low: Fraction, high: Fraction) -> Iterator[Band]:
+    """Yield pieces of a band, in tan(omega T/2), along which ``atan(t)/t`` falls by little."""
+    first = low
+    for _ in range(_MOST):
+        last = high
+        while _share(first) / _share(last) > 1 + _FALL:
+            last = first + (last - first) / 2
+        yield first, last
+        if last == high:
+            return
+        first = last
+    yield first, high
+
+
+def _share(t: Fraction) -> float:
+    return atan(t) / float(t) if t else 1.0
+
+
+def _over_tangent(t: Fraction) -> Any:
+    """Enclose ``atan(t)/t`` in a ball."""
+    ball = ball_around(t)
+    return ball.atan() / ball if t else ball + 1

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from math import comb
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from nrs_design.controllers.laws import Admittance, CompliantLaw
 from nrs_design.controllers.sensor import LowPass
@@ -201,8 +201,7 @@ def largest_over(
     size = max(len(grid[0]) for grid in tensors)
     low, high = (omega**2 for omega in band)
     numerator, denominator = (
-        _coefficients([[*p, *[ZERO] * (size - len(p))] for p in grid], low, high)
-        for grid in tensors
+        _coefficients([[*p, *[0] * (size - len(p))] for p in grid], low, high) for grid in tensors
     )
     found = largest_ratio(
         numerator,
@@ -296,7 +295,7 @@ def _zeros(P: Sequence[Fraction]) -> int:
     return next((i for i, c in enumerate(P) if c), len(P))
 
 
-def _squared(corners: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
+def _squared(corners: Sequence[Sequence[Fraction]]) -> list[list[Any]]:
     """Return ``|P(j omega)|^2`` in omega^2, in Bernstein form in every parameter.
 
     Parameters
@@ -304,9 +303,15 @@ def _squared(corners: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
     corners : sequence of sequence of Fraction
         P at the corners of the box, the last parameter turning fastest; lowest power first. It is
         affine in each parameter.
+
+    Returns
+    -------
+    list of list of fmpq
+        Flint's rational numbers, which take a tenth of the time of Python's.
     """
     count = len(corners).bit_length() - 1
-    grid = dict(zip(product((0, 2), repeat=count), corners, strict=True))
+    exact = ([_fmpq(c) for c in p] for p in corners)
+    grid = dict(zip(product((0, 2), repeat=count), exact, strict=True))
     for axis in range(count):
         for at in [at for at in grid if at[axis] == 0]:
             ends = grid[at], grid[(*at[:axis], 2, *at[axis + 1 :])]
@@ -321,22 +326,27 @@ def _squared(corners: Sequence[Sequence[Fraction]]) -> list[list[Fraction]]:
     return list(squares.values())
 
 
-def _magnitude(P: Sequence[Fraction]) -> list[Fraction]:
+def _magnitude(P: Sequence[Any]) -> list[Any]:
     """Return ``|P(j omega)|^2`` in omega^2, lowest powers first."""
-    real = [(-1) ** k * c for k, c in enumerate(P[::2])]
-    imaginary = [(-1) ** k * c for k, c in enumerate(P[1::2])]
-    square = [ZERO] * len(P)
-    for part, shift in ((real, 0), (imaginary, 1)):
-        for k, c in enumerate(multiply(part, part) if part else []):
-            square[k + shift] += c
+    square = [_fmpq(ZERO)] * len(P)
+    for i, a in enumerate(P):
+        for k, b in enumerate(P):
+            # Odd powers of j cancel: of i + k odd there is nothing.
+            if (i + k) % 2 == 0:
+                square[(i + k) // 2] += (-1) ** (abs(i - k) // 2) * a * b
     return square
 
 
-def _coefficients(
-    powers: Sequence[Sequence[Fraction]], low: Fraction, high: Fraction
-) -> list[Fraction]:
+def _coefficients(powers: Sequence[Sequence[Any]], low: Fraction, high: Fraction) -> list[Any]:
     """Return Bernstein coefficients in omega^2 too, between two values of it."""
-    return [c for p in powers for c in bernstein(p, low, high)]
+    ends = _fmpq(low), _fmpq(high)
+    return [c for p in powers for c in bernstein(p, *ends)]
+
+
+def _fmpq(number: Fraction) -> Any:
+    from flint import fmpq
+
+    return fmpq(number.numerator, number.denominator)
 
 
 def root_above(square: Fraction) -> Fraction:

@@ -39,7 +39,7 @@ PASSIVITY_NOT_COMPUTED = (
 RESPONSE_MEANING = (
     "Transparency and accuracy: proved or refuted over the whole band and all values in the "
     "ranges, each of them constant, of the linear loop with the gains that ship: without friction, "
-    "rounding and saturation."
+    "rounding and saturation; sampled, with force samples that are all of the same age."
 )
 ONE_AXIS = "Of axes that act on each other, this is one by itself."
 

@@ -8,9 +8,10 @@ part of the same frequency, as in `nrs_design.design.sampled_passivity`:
 With ``w = j t``, ``t = tan(omega T/2)``, ``z = (1 + w)/(1 - w)`` and ``c = atan(t)/t``, omega is
 ``2 c t/T`` and the second factor ``1/(c (1 + w))``; how old a force sample is does not change a
 magnitude, as long as it is always the same. ``F/V`` is a quotient of polynomials in w that are
-affine in each of Km, tau, ``E = exp(-T/tau)``, ``s = tau (1 - E)``, and a and b/(1 - a) of the law
-``v+ = a v + b F``. These are taken for themselves, which covers more than there is; and c, on a
-short piece of the band, at its largest, where ``|c (1 + 2 c tau w/T)|`` is largest, too.
+affine in each of Km, ``E = exp(-T/tau)``, ``s = tau (1 - E)``, and a and b/(1 - a) of the law
+``v+ = a v + b F``. These are taken for themselves, and tau and c, where they stand beside, at their
+largest, where ``|c (1 + 2 c tau w/T)|`` is largest, too. That covers more than there is, and little
+more on a short piece of the band and of the range of tau.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
+from functools import cached_property, partial
 from itertools import product
 from math import atan
 from typing import Any
@@ -43,6 +44,8 @@ from nrs_design.switched.cut_loop import multiply, on_the_axis
 ZERO, ONE = Fraction(0), Fraction(1)
 # By what share c may fall along a piece of the band, and how many pieces there are at most.
 _FALL, _MOST = 1 / 300, 200
+# How near the bounds shall come, and the shortest range of a time constant, as a share, to halve.
+_NEARLY, _SHORT = 1 + Fraction(9, 1000), Fraction(1, 10_000)
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ class SampledAdmittance:
         E = ends[0][0], ends[1][1]
         s = tau.low * (1 - ends[0][1]), tau.high * (1 - ends[1][0])
         found = self.law.enclose(self.gains, self.period, self.method)
-        found |= {"Km": self.motor.gain, "tau": tau}
+        found |= {"Km": self.motor.gain}
         moving = {name: r for name, r in found.items() if r.low != r.high}
         return moving | {"E": Interval(E[0], *E), "s": Interval(min(s), min(s), max(s))}
 
@@ -81,7 +84,7 @@ class SampledAdmittance:
         """
         T, numbers = self.period, self._numbers
         Km = values.get("Km", self.motor.gain.nominal)
-        tau = values.get("tau", self.motor.time_constant.nominal)
+        tau = self.motor.time_constant.high
         E, s = values["E"], values["s"]
         numbers = {**numbers, **self.law.numbers_at(numbers, values)}
         D = self.motion.over(T)
@@ -110,6 +113,15 @@ class SampledAdmittance:
     @staticmethod
     def _pole(numbers: Mapping[str, Fraction]) -> Polynomial:
         return [ONE, -numbers["a"]] if "a" in numbers else [ONE]
+
+    def halves(self) -> tuple[SampledAdmittance, ...]:
+        """Halve the range of the time constant; nothing if it is short."""
+        gain, tau, command = self.motor.gain, self.motor.time_constant, self.motor.command
+        if tau.high - tau.low < tau.high * _SHORT:
+            return ()
+        parts = ((tau.low, tau.middle), (tau.middle, tau.high))
+        motors = (ActuatorRanges(gain, Interval(low, low, high), command) for low, high in parts)
+        return tuple(replace(self, motor=motor) for motor in motors)
 
     def corners(self) -> Iterator[tuple[dict[str, Fraction], SampledAdmittance]]:
         """Yield this at each corner of the ranges of motor and gains, and the values there."""
@@ -174,24 +186,50 @@ def largest_sampled_impedance(
     """
     if not is_stable_over(lambda values: shown.quotient(values, ONE), shown.box):
         return None
-    pieces = []
-    for first, last in _pieces(*_tangents(band, shown.period)):
+    open_ = [_Piece(shown, band, limit) for band in _pieces(*_tangents(band, shown.period))]
+    for _ in range(_MOST):
+        highest = max(open_, key=lambda piece: piece.height)
+        lowest = max(open_, key=lambda piece: piece.seen.below).seen
+        met = highest.found.above is not None and highest.found.above <= lowest.below * _NEARLY
+        halves = () if met or (limit and lowest.below > limit) else highest.shown.halves()
+        if not halves:
+            break
+        open_.remove(highest)
+        open_ += (_Piece(half, highest.band, limit) for half in halves)
+    return replace(lowest, above=highest.found.above)
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """A piece of the band, in tan(omega T/2), and of the range of the time constant."""
+
+    shown: SampledAdmittance
+    band: Band
+    limit: Fraction | None
+
+    @cached_property
+    def found(self) -> LargestResponse:
+        """Bounds over what is covered, which is more than there is."""
+        first = self.band[0]
         with precision():
-            c = Fraction(1) if not first else fraction_of(_over_tangent(first).upper())
-        pieces.append(largest_over(partial(shown.quotient, c=c), shown.box, (first, last), limit))
-    highest = max(pieces, key=lambda piece: (piece.above is None, piece.above or ZERO))
-    # What is covered is more than there is, so the loop itself is looked at there.
-    t = root_below(highest.square, 12)
-    with precision():
-        found = [(fraction_of(one.squared(t).lower()), at) for at, one in shown.corners()]
-    square, at = max(found, key=lambda pair: pair[0])
-    return LargestResponse(
-        above=highest.above,
-        below=root_below(max(square, ZERO), 20),
-        square=t**2,
-        at=at,
-        omega=2 * atan(t) / float(shown.period),
-    )
+            c = fraction_of(_over_tangent(first).upper()) if first else ONE
+        quotient = partial(self.shown.quotient, c=c)
+        return largest_over(quotient, self.shown.box, self.band, self.limit)
+
+    @property
+    def height(self) -> tuple[bool, Fraction]:
+        """Orders pieces: those without a bound are above all others."""
+        return self.found.above is None, self.found.above or ZERO
+
+    @cached_property
+    def seen(self) -> LargestResponse:
+        """The loop itself, where what is covered is highest, at a corner of its ranges."""
+        t = min(max(root_below(self.found.square, 12), self.band[0]), self.band[1])
+        with precision():
+            values = [(fraction_of(one.squared(t).lower()), at) for at, one in self.shown.corners()]
+        square, at = max(values, key=lambda pair: pair[0])
+        omega = 2 * atan(t) / float(self.shown.period)
+        return LargestResponse(None, root_below(max(square, ZERO), 20), t**2, at, omega)
 
 
 def _tangents(band: Band, period: Fraction) -> Band:

@@ -6,7 +6,7 @@ one: what is shown for every matrix in it is shown for that.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
@@ -191,6 +191,13 @@ def ball_around(number: Fraction) -> Any:
     from flint import arb, fmpq
 
     return arb(fmpq(number.numerator, number.denominator))
+
+
+def as_balls(values: Iterable[Any]) -> list[Any]:
+    """Return balls around rational numbers, of Python or of flint, at the current precision."""
+    from flint import arb
+
+    return [ball_around(v) if isinstance(v, Fraction) else arb(v) for v in values]
 
 
 def _fmpq_matrix(A: RationalMatrix) -> Any:

@@ -19,7 +19,7 @@ from itertools import count, pairwise, product
 from math import comb, prod
 from typing import Any
 
-from nrs_design.proof.enclosure import ball_around, fraction_of, precision
+from nrs_design.proof.enclosure import as_balls, fraction_of, precision
 
 # Between the two bounds, as a share of the lower one.
 NEARLY = Fraction(1, 400)
@@ -27,7 +27,7 @@ NEARLY = Fraction(1, 400)
 MOST = 400_000
 ZERO, ONE = Fraction(0), Fraction(1)
 
-Tensor = Sequence[Any]  # Fractions or balls, the last index turning fastest
+Tensor = Sequence[Any]  # Rational numbers or balls, the last index turning fastest
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def largest_ratio(
 
     Parameters
     ----------
-    numerator, denominator : sequence of Fraction or arb
+    numerator, denominator : sequence of Fraction, fmpq or arb
         Bernstein coefficients, in the order of indices; neither polynomial is negative in the box.
     shape : sequence of int
         How many there are in each direction.
@@ -64,29 +64,28 @@ def largest_ratio(
         How many coefficients are looked at; what is not shown by then is not shown.
     """
     with precision():
-        return _search(_balls(numerator), _balls(denominator), tuple(shape), limit, nearly, most)
+        return _search(
+            as_balls(numerator), as_balls(denominator), tuple(shape), limit, nearly, most
+        )
 
 
-def bernstein(powers: Sequence[Fraction], low: Fraction, high: Fraction) -> list[Fraction]:
+def bernstein(powers: Tensor, low: Any, high: Any) -> list[Any]:
     """Return the Bernstein coefficients of a polynomial between two numbers.
 
     Parameters
     ----------
-    powers : sequence of Fraction
+    powers : sequence of Fraction or fmpq
         Coefficients of 1, x, x^2, ...
-    low, high : Fraction
+    low, high : Fraction or fmpq
         The ends.
     """
     n, span = len(powers) - 1, high - low
     # In u, where x = low + span u.
     moved = [
-        span**j * sum((powers[k] * comb(k, j) * low ** (k - j) for k in range(j, n + 1)), ZERO)
+        span**j * sum(powers[k] * comb(k, j) * low ** (k - j) for k in range(j, n + 1))
         for j in range(n + 1)
     ]
-    return [
-        sum((moved[k] * Fraction(comb(i, k), comb(n, k)) for k in range(i + 1)), ZERO)
-        for i in range(n + 1)
-    ]
+    return [sum(moved[k] * comb(i, k) / comb(n, k) for k in range(i + 1)) for i in range(n + 1)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +99,9 @@ class _Box:
         """Return what the quotient is not above in the box; None if that is not shown."""
         if not all(a > 0 for a in self.below):
             return None
-        pairs = zip(self.above, self.below, strict=True)
-        return max(ZERO, *(_upper(b / a) for b, a in pairs))
+        ratios = ((a / b).upper() for a, b in zip(self.above, self.below, strict=True))
+        # Ends of balls have no radius, so that one of two is surely the larger.
+        return max(ZERO, fraction_of(max(ratios)))
 
     def vertices(self) -> Iterator[tuple[Fraction, tuple[Fraction, ...]]]:
         """Yield what the quotient is not below at a vertex, and the vertex."""
@@ -200,14 +200,6 @@ def _starts(shape: tuple[int, ...], axis: int) -> Iterator[int]:
     n, step = shape[axis], prod(shape[axis + 1 :])
     for before in range(prod(shape[:axis])):
         yield from range(before * n * step, before * n * step + step)
-
-
-def _balls(values: Tensor) -> list[Any]:
-    return [ball_around(v) if isinstance(v, Fraction) else v for v in values]
-
-
-def _upper(ball: Any) -> Fraction:
-    return fraction_of(ball.upper())
 
 
 def _lower(ball: Any) -> Fraction:

@@ -64,6 +64,40 @@ def test_optimize_shows_them_and_their_exit_code(tmp_path, change):
     assert off["at_least"] <= 0.5301439 < off["at_most"] * 1.005
 
 
+def test_of_a_sampled_law_accuracy_is_not_judged(tmp_path):
+    """At rest it feels the damping too; single precision is in what is covered."""
+    path = written(tmp_path, ("switching:", "sampling: {period: 2 ms, delay: [0, 1]}\nswitching:"))
+    result = run("optimize", path, "--json", cwd=tmp_path, code=1)
+    (item,) = json.loads(result.stdout)["controllers"]
+    felt, off = item["responses"]
+    assert felt["status"] == "proved"
+    assert 2.1 <= felt["at_least"] <= felt["at_most"] <= felt["at_least"] * 1.01
+    assert (off["status"], off["at_most"], off["at_least"]) == ("not judged", None, None)
+    assert "when a commanded velocity takes effect is not modelled" in off["shown"]
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (("    Mt: 0.01", "    Kt: 1 N*m/rad\n    Mt: 0.01"), "with a spring Kt"),
+        (("period: 2 ms", "period: 2 ms, latency: 0.3 ms"), "commands are late"),
+        (("period: 2 ms", "period: 2 ms, outer_period: 4 ms"), "with two periods"),
+    ],
+)
+def test_what_a_sampled_law_is_not_judged_with(tmp_path, change, why):
+    sampled = ("switching:", "sampling: {period: 2 ms, delay: 0}\nswitching:")
+    result = run("optimize", written(tmp_path, sampled, change), "--json", cwd=tmp_path, code=1)
+    (item,) = json.loads(result.stdout)["controllers"]
+    assert why in item["responses"][0]["shown"]
+
+
+def test_the_report_has_them(tmp_path):
+    text = run("report", written(tmp_path), cwd=tmp_path).stdout
+    page = next(tmp_path.rglob("*.html")).read_text("utf-8")
+    assert "Transparency and accuracy" in page, text
+    assert "2.10001" in page
+
+
 def test_on_an_axis_that_slides_the_unit_is_its_own(tmp_path):
     text = (ROOT / "docs/examples/insertion-axis.nrs.yaml").read_text("utf-8")
     path = tmp_path / "sliding.nrs.yaml"

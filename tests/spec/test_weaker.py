@@ -33,7 +33,8 @@ controllers:
   insertion: {contacts: [soft, hard], Bt: 2 N*m*s/rad, goals: {min_phase_margin: 30 deg}}
   withdrawal: {contacts: [soft]}
   own: {environment: soft}
-goals: {max_sensitivity_peak: 2, min_gain_margin: 1.5, peak_torque: 0.5 N*m, delay: 2 ms}
+goals: {max_sensitivity_peak: 2, min_gain_margin: 1.5, transparency: {max_impedance: 3 N*m*s/rad,
+  band: [0.5 Hz, 2 Hz]}, peak_torque: 0.5 N*m, delay: 2 ms}
 disturbances: {command: 8 deg/s}
 sampling: {period: 2 ms, delay: [0, 1], latency: [0.3 ms, 1 ms], jitter: 0.1 ms}
 scenarios:
@@ -71,6 +72,9 @@ WEAKER = {
     "least goal": ("min_gain_margin: 1.5", "min_gain_margin: 1.4"),
     "goal in another unit": ("delay: 2 ms", "delay: 0.001 s"),
     "own goal": ("min_phase_margin: 30 deg", "min_phase_margin: 29 deg"),
+    "largest impedance that is felt": ("max_impedance: 3 N", "max_impedance: 3.1 N"),
+    "band": ("[0.5 Hz, 2 Hz]", "[0.5 Hz, 1.9 Hz]"),
+    "band in another unit": ("[0.5 Hz, 2 Hz]", "[4 rad/s, 13 rad/s]"),
     "a goal": (", min_gain_margin: 1.5", ""),
     "bound on the torque": ("peak_torque: 0.5 N*m", "peak_torque: 600 N*mm"),
     "disturbance": ("{command: 8 deg/s}", "{command: 7 deg/s}"),
@@ -126,6 +130,7 @@ OTHER = {
     "wider": ("[720 N/m, 768 N/m]", "[700 N/m, 768 N/m]"),
     "nominal": ("nominal: 747 N/m", "nominal: 748 N/m"),
     "a range more": ("stiffness: 900 N/m", "stiffness: {nominal: 900 N/m, range: [1 N/m, 1 N/mm]}"),
+    "wider band": ("[0.5 Hz, 2 Hz]", "[0 Hz, 13 rad/s]"),
     "stricter": ("max_sensitivity_peak: 2", "max_sensitivity_peak: 1.9"),
     "another gain": ("Bt: 2 N*m*s/rad", "Bt: 3 N*m*s/rad"),
     "search": ("budget: 10 s", "budget: 1 s"),

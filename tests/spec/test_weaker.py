@@ -74,7 +74,7 @@ WEAKER = {
     "own goal": ("min_phase_margin: 30 deg", "min_phase_margin: 29 deg"),
     "largest impedance that is felt": ("max_impedance: 3 N", "max_impedance: 3.1 N"),
     "band": ("[0.5 Hz, 2 Hz]", "[0.5 Hz, 1.9 Hz]"),
-    "band in another unit": ("[0.5 Hz, 2 Hz]", "[4 rad/s, 13 rad/s]"),
+    "band in another unit": ("[0.5 Hz, 2 Hz]", "[4 rad/s, 12 rad/s]"),
     "a goal": (", min_gain_margin: 1.5", ""),
     "bound on the torque": ("peak_torque: 0.5 N*m", "peak_torque: 600 N*mm"),
     "disturbance": ("{command: 8 deg/s}", "{command: 7 deg/s}"),

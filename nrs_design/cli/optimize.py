@@ -75,7 +75,13 @@ def motion_summary(analysis: DesignAnalysis) -> dict[str, Any]:
 
 def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
     """Yield what the values of the table are about."""
-    from nrs_design.design.measures import COST_MEANING, LIMIT_MEANING, MEANING, ONE_AXIS
+    from nrs_design.design.measures import (
+        COST_MEANING,
+        LIMIT_MEANING,
+        MEANING,
+        ONE_AXIS,
+        WEIGHED_MEANING,
+    )
 
     yield MEANING[0]
     yield LIMIT_MEANING
@@ -83,6 +89,9 @@ def meanings(spec: InteractionDesignSpec) -> Iterator[str]:
         yield ONE_AXIS
     yield MEANING[-1]
     yield COST_MEANING
+    weights = (getattr(controller, "weights", None) for controller in spec.controllers.values())
+    if any(given is not None and (given.transparency or given.accuracy) for given in weights):
+        yield WEIGHED_MEANING
 
 
 def _summary(spec: InteractionDesignSpec, item: ImpedanceAnalysis) -> dict[str, Any]:

@@ -47,6 +47,9 @@ def chosen(tmp_path, weights):
     path.write_text(text.replace(fixed, free), encoding="utf-8")
     result = run("optimize", path, "--json", cwd=tmp_path)
     (item,) = json.loads(result.stdout)["controllers"]
+    assert any("add the largest response" in said for said in item["over"]) == (
+        "transparency" in weights or "accuracy" in weights
+    )
     return item["Bt"]
 
 

@@ -99,7 +99,7 @@ def largest_impedance(
             for b in (ZERO, ONE)
         )
         felt = [b - a for a, b in zip(free, damped, strict=True)]
-        return Quotient(free, felt, free)
+        return Quotient(free, felt, _poles_in_the_air(held, free))
 
     return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
@@ -143,7 +143,8 @@ def largest_tracking_error(
         driven = multiply([factor * c for c in passed], _over_admittance(held, axis.low_pass))
         # The spring of the law is one over s.
         below = multiply(closed, [ONE, ZERO]) if held.gains.get("Kt") else closed
-        return Quotient(_subtracted(below, driven), below, closed)
+        poles = closed if in_contact else _poles_in_the_air(held, closed)
+        return Quotient(_subtracted(below, driven), below, poles)
 
     return largest_over(at, ranges, band, limit) if is_stable_over(at, ranges) else None
 
@@ -157,6 +158,16 @@ def _at(
     place = Place(replace(nominal, gain=gain, time_constant=tau))
     gains = {name: values.get(name, given) for name, given in law.gains.items()}
     return law.of(gains), place, tau * (gains["Mt"] or gains["Bt"])
+
+
+def _poles_in_the_air(law: CompliantLaw, free: Polynomial) -> Polynomial:
+    """Leave out the pole at zero that a deflection is where nothing, no spring either, draws it."""
+    *poles, last = free
+    if law.gains.get("Kt"):
+        return free
+    if last:
+        raise InternalError("the deflection in free motion has no pole at zero")
+    return poles
 
 
 def _over_admittance(law: CompliantLaw, low_pass: LowPass | None) -> Polynomial:
@@ -234,9 +245,6 @@ def is_stable_over(
         As for `largest_over`.
     """
     poles = [_lowest_first(corner.poles) for corner in _corners(at, ranges)]
-    # What no force and no command sees: the deflection of nothing.
-    if all(_zeros(p) == 1 for p in poles):
-        poles = [p[1:] for p in poles]
     return _is_stable(poles)
 
 

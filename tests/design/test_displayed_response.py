@@ -74,6 +74,14 @@ def test_an_unstable_loop_is_not_judged():
         assert (found is not None) == judged
 
 
+def test_what_does_not_come_to_rest_in_contact_is_not_judged():
+    """G = s/(s + 1)^2 lets go of a spring at rest: a pole at zero, which is none of the air's."""
+    loop = plain(MotionLoop((ONE, Fraction(0)), (ONE, ONE + ONE, ONE)))
+    law, box = Admittance(ONE, ONE), {"k": interval(1, 2)}
+    assert largest_tracking_error(loop, law, box, (ONE, ONE + ONE), in_contact=True) is None
+    assert largest_tracking_error(loop, law, {}, (ONE, ONE + ONE)) is not None
+
+
 @pytest.mark.parametrize(("Mt", "Bt"), [(1, 4), (3, 8), (0, 2)])
 def test_against_python_control(Mt, Bt):
     """The robot of the thesis: no frequency is above the bound, and one is within 1 %."""

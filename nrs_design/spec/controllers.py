@@ -100,15 +100,13 @@ class CostWeights(SpecModel):
     sensitivity: Weight = Field(
         default=Fraction(1, 2), description="weight of the mean sensitivity, >= 0, no unit"
     )
-    transparency: Weight = Field(
-        default=Fraction(0),
-        description="weight of the largest displayed impedance over the limit of the goal "
-        "transparency, in its band, >= 0, no unit",
+    transparency: Weight | None = optional(
+        "weight of the largest displayed impedance over the limit of the goal transparency, in its "
+        "band, >= 0, no unit"
     )
-    accuracy: Weight = Field(
-        default=Fraction(0),
-        description="weight of the largest tracking error over the limit of the goal accuracy, in "
-        "its band and contact, >= 0, no unit",
+    accuracy: Weight | None = optional(
+        "weight of the largest tracking error over the limit of the goal accuracy, in its band and "
+        "contact, >= 0, no unit"
     )
 
     checks = (

@@ -359,7 +359,7 @@ def impedance_problem(
 def _response_costs(task: Task, given: ImpedanceControllerSpec) -> Iterator[ResponseCost]:
     """Yield what goals for frequency responses add to the cost."""
     for key, goal in response_goals(task.spec.goals, given.goals).items():
-        if weight := float(getattr(given.weights, key)):
+        if weight := float(getattr(given.weights, key) or 0):
             name = goal.environment or given.environment
             loop = ImpedanceLoop(
                 task.motion,

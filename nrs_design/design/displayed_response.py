@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
-from math import comb
+from math import comb, prod
 from typing import Any, NamedTuple
 
 from nrs_design.controllers.laws import Admittance, CompliantLaw
@@ -251,15 +251,21 @@ def is_stable_over(
 def _corners(
     at: Callable[[Mapping[str, Fraction]], Quotient], ranges: Mapping[str, Interval]
 ) -> list[Quotient]:
-    """Return a response at the corners of a box, in the middle of which it is their mean."""
+    """Return a response at the corners of a box, of which it is a mean at a point inside."""
+    ends = [*product((0, 1), repeat=len(ranges))]
     corners = [
-        at(dict(zip(ranges, ends, strict=True)))
-        for ends in product(*((r.low, r.high) for r in ranges.values()))
+        at({name: (r.low, r.high)[k] for k, (name, r) in zip(end, ranges.items(), strict=True)})
+        for end in ends
     ]
-    middle = at({name: r.middle for name, r in ranges.items()})
-    for i, found in enumerate(middle):
+    # Not the middle, where what is odd about it would not be seen.
+    shares = [Fraction(1, i + 3) for i in range(len(ranges))]
+    inside = at(
+        {n: r.low + u * (r.high - r.low) for u, (n, r) in zip(shares, ranges.items(), strict=True)}
+    )
+    weights = [prod(u if k else 1 - u for k, u in zip(end, shares, strict=True)) for end in ends]
+    for i, found in enumerate(inside):
         for k, c in enumerate(found):
-            if c != sum(corner[i][k] for corner in corners) / len(corners):
+            if c != sum(w * corner[i][k] for w, corner in zip(weights, corners, strict=True)):
                 raise InternalError("a response is not affine in the parameters of its loop")
     return corners
 

@@ -9,7 +9,13 @@ import pytest
 
 from nrs_design.controllers.laws import Admittance, ProportionalDerivative
 from nrs_design.controllers.sensor import LowPass
-from nrs_design.design.displayed_response import largest_impedance, largest_tracking_error
+from nrs_design.design.displayed_response import (
+    Quotient,
+    largest_impedance,
+    largest_over,
+    largest_tracking_error,
+)
+from nrs_design.errors import InternalError
 from nrs_design.models.actuator import ActuatorRanges
 from nrs_design.models.interval import Interval
 from nrs_design.models.motion_loop import MotionLoop, realize
@@ -72,6 +78,16 @@ def test_an_unstable_loop_is_not_judged():
         box = {"k": interval(1, stiffest)}
         found = largest_tracking_error(loop, law, box, BAND, in_contact=True)
         assert (found is not None) == judged
+
+
+def test_a_response_that_is_not_affine_is_a_defect():
+    """A cube is odd about the middle of its range: there it is the mean of its ends."""
+
+    def cubed(values):
+        return Quotient([values["k"] ** 3], [ONE], [ONE, ONE])
+
+    with pytest.raises(InternalError, match="not affine"):
+        largest_over(cubed, {"k": interval(-1, 1)}, BAND, None)
 
 
 def test_what_does_not_come_to_rest_in_contact_is_not_judged():

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from nrs_design.errors import CertificateError, OutputError
 from nrs_design.output import PAGE
+from nrs_design.spec.task_space import file_of
 
 # As exported models of robots write it.
 MARK = "spec file: "
@@ -128,5 +129,5 @@ def check_certificate(spec: Path, file: Path) -> None:
 def _refuse_other(spec: Path, origin: str, file: Path) -> None:
     """Refuse if another spec owns a file; one that no longer exists owns nothing."""
     owner = file.parent / origin
-    if os.path.isfile(owner) and os.path.realpath(owner) != os.path.realpath(spec):
+    if file_of(owner).is_file() and os.path.realpath(owner) != os.path.realpath(spec):
         raise OutputError(f"belongs to {os.path.relpath(owner)}", path=file, remedy=REMEDY)

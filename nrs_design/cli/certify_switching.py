@@ -45,7 +45,7 @@ ShortestDwell = Annotated[
 ]
 
 
-@command("certify-switching")
+@command("certify-switching", each_axis=True)
 def certify_switching(
     spec: SpecFile,
     out: Annotated[

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
+from nrs_design.cli.exit_codes import worst
 from nrs_design.cli.printing import output, print_json, wants_json, wants_text
+from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
@@ -48,7 +50,7 @@ class Answer:
 
 
 def command(
-    name: str, *, has_json: bool = True
+    name: str, *, has_json: bool = True, each_axis: bool = False
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json and --quiet, and an end that prints its answer.
 
@@ -58,6 +60,8 @@ def command(
         As the JSON document names it.
     has_json : bool
         Whether there is such a document.
+    each_axis : bool
+        Whether it is run for each axis of a `spec` that holds several.
     """
     options = {"as_json": Json, "quiet": Quiet} if has_json else {"quiet": Quiet}
 
@@ -67,7 +71,8 @@ def command(
             from nrs_design.axis import AxisType, about
 
             with output(as_json=as_json, quiet=quiet), about(AxisType.ROTARY):
-                function(**arguments).deliver(name)
+                run_for = _for_each_axis if each_axis else _once
+                run_for(function, arguments).deliver(name)
 
         signature = inspect.signature(function, eval_str=True)
         keyword = inspect.Parameter.KEYWORD_ONLY
@@ -80,6 +85,37 @@ def command(
         return run
 
     return decorate
+
+
+def _once(function: Callable[..., Answer], arguments: dict[str, Any]) -> Answer:
+    return function(**arguments)
+
+
+def _for_each_axis(function: Callable[..., Answer], arguments: dict[str, Any]) -> Answer:
+    """Answer for each axis of a spec in turn, and end with the worst of the codes."""
+    from nrs_design.spec.load import axes_at
+
+    spec = arguments["spec"]
+    axes = axes_at(spec)
+    if axes == (spec,):
+        return function(**arguments)
+    if arguments.get("out") is not None:
+        raise NrsDesignError(
+            "one file is not enough for several axes",
+            path=spec,
+            remedy=f"leave --out out, or name one axis, such as {axes[0]}",
+        )
+    answers: dict[str, dict[str, Any]] = {}
+    codes = set()
+    for axis in axes:
+        answer = function(**arguments | {"spec": axis})
+        codes.add(answer.code)
+        if wants_json():
+            answers[str(axis)] = answer.facts()
+        else:
+            with output(as_json=False, quiet=not (wants_text() or answer.loud)):
+                answer.show()
+    return Answer(lambda: {"axes": answers}, code=worst(codes))
 
 
 def spec_facts(loaded: LoadedSpec) -> dict[str, Any]:

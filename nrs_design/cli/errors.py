@@ -89,7 +89,10 @@ def _width() -> int:
 
 def _source(path: Path, line: int) -> str | None:
     """Return a line of a file, if it still can be read; a sheet of Excel has rows, no lines."""
+    from nrs_design.spec.task_space import file_of
+
     try:
+        path = file_of(path)
         if not path.is_file() or path.stat().st_size > LARGEST_FILE:
             return None
         with path.open("rb") as raw:

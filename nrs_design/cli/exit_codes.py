@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 PROVED = 0
 REFUTED = 1
 USAGE = 2
@@ -18,3 +20,8 @@ OF_SEVERITY = (PROVED, INCONCLUSIVE, REFUTED, USAGE, INTERNAL)
 def unless(missed: object) -> int:
     """Return 1 if something is missed or refuted, else 0."""
     return REFUTED if missed else PROVED
+
+
+def worst(codes: Collection[int]) -> int:
+    """Return the code of the worst of several answers."""
+    return max(codes, key=OF_SEVERITY.index)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from nrs_design.spec import InteractionDesignSpec
 
 
-@command("optimize")
+@command("optimize", each_axis=True)
 def optimize(spec: SpecFile) -> Answer:
     """Optimize virtual mass Mt and damping Bt for displayed impedance and sensitivity.
 

@@ -37,7 +37,7 @@ class ReportFormat(StrEnum):
     PNG = "png"
 
 
-@command("report")
+@command("report", each_axis=True)
 def report(
     spec: SpecFile,
     file_format: Annotated[

@@ -60,7 +60,7 @@ _NO_OFFSET = (
 OFFSETS = {"reference": "reference of the motion loop", "measured": "measured position"}
 
 
-@command("tune")
+@command("tune", each_axis=True)
 def tune(spec: SpecFile) -> Answer:
     """Tune the motion PD by root locus and the force gain, and print the poles that result.
 

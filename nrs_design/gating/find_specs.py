@@ -10,7 +10,7 @@ from pathlib import Path
 
 from nrs_design.errors import NrsDesignError, SpecError
 from nrs_design.spec.document import MAX_BYTES, Mapping, Scalar, parse_document
-from nrs_design.spec.load import SPEC_KINDS
+from nrs_design.spec.load import SPEC_KINDS, axes_at
 
 SUFFIXES = (".nrs.yaml", ".nrs.yml")
 YAML = (".yaml", ".yml")
@@ -39,7 +39,7 @@ def find_specs(paths: Iterable[Path]) -> tuple[Path, ...]:
     for path in paths:
         for spec in _specs_of(path):
             found.setdefault(os.path.realpath(spec), spec)
-    return tuple(sorted(found.values()))
+    return tuple(axis for spec in sorted(found.values()) for axis in _axes_at(spec))
 
 
 def find_passed_over(paths: Iterable[Path]) -> tuple[Path, ...]:
@@ -68,6 +68,14 @@ def find_misnamed(paths: Iterable[Path]) -> tuple[Path, ...]:
             and _reads_like_a_spec(file)
         )
     )
+
+
+def _axes_at(spec: Path) -> tuple[Path, ...]:
+    """Return the axes of a spec with several; that a file is wrong shows where it is read."""
+    try:
+        return axes_at(spec)
+    except SpecError:
+        return (spec,)
 
 
 def _reads_like_a_spec(file: Path) -> bool:

@@ -28,6 +28,7 @@ from nrs_design.gating.rules import (
 )
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import InteractionDesignSpec, LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec.load import is_there
 
 RENEW = "run nrs-design gate without --locked"
 PRUNE = "run nrs-design gate with --prune"
@@ -72,7 +73,7 @@ def run_locked(
     unnamed = []
     for name in sorted(entries):
         path = file.parent / name
-        if not os.path.isfile(path):
+        if not is_there(path):
             outcomes.append(_absent(path, f"is in {file.name}, but no longer exists ({PRUNE})"))
         elif below.has(path):
             message = f"is in {file.name}, but was not examined: it lies behind a link to a folder "

@@ -23,6 +23,7 @@ from nrs_design.gating.lock import (
 from nrs_design.gating.obligations import GateOutcome, SpecOutcome, Status
 from nrs_design.gating.rules import ROBOT_BOUNDS
 from nrs_design.output import LOCK, alone_in, write_output
+from nrs_design.spec.load import is_there
 
 
 def make_lock(specs: Iterable[SpecOutcome], file: Path) -> Lock:
@@ -69,11 +70,11 @@ def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome
         _check_kept(spec)
     fresh = make_lock(outcome.specs, file).specs
     # A spec that is gone keeps its entry.
-    present = (spec for spec in outcome.specs if os.path.isfile(spec.path))
+    present = (spec for spec in outcome.specs if is_there(spec.path))
     examined = {relative_to_lock(spec.path, file): spec for spec in present}
     locked = read_lock_if_any(file).specs
     old = [e for e in locked if e.path not in examined or _still_holds(e, examined[e.path])]
-    gone = {entry.path for entry in old if not os.path.isfile(file.parent / entry.path)}
+    gone = {entry.path for entry in old if not is_there(file.parent / entry.path)}
     written = {entry.certificate.file for entry in fresh if entry.certificate is not None}
     # A spec that was renamed: its certificate is now found under the new name of the file.
     dropped = {e.path for e in old if e.certificate is not None and e.certificate.file in written}
@@ -87,7 +88,7 @@ def _write_lock(outcome: GateOutcome, file: Path, *, prune: bool) -> GateOutcome
     pending = [s.path for s in outcome.specs if s.certifiable and s.verdict is None]
     names = {entry.path for entry in kept}
     missing = [str(path) for path in pending if relative_to_lock(path, file) not in names]
-    unchanged = {str(path) for path in pending if os.path.isfile(path)}.difference(missing)
+    unchanged = {str(path) for path in pending if is_there(path)}.difference(missing)
     for text, paths in (
         (f"not in {file}, for want of a verdict", missing),
         (f"without a verdict now, but unchanged, so still in {file}", unchanged),

@@ -38,6 +38,7 @@ from nrs_design.pipeline.blocked import Blocked, blocked_lines, find_blocked
 from nrs_design.pipeline.subsets import Subset, find_subsets
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, RobotSpec, read_spec
+from nrs_design.spec.task_space import file_of
 from nrs_design.wings import load_wing
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ class Files:
         check_owner(spec, name, self.folder)
         file = self.certificate(name)
         owner = self.locked.get(Path(os.path.realpath(file)))
-        if owner is not None and owner.is_file() and owner != Path(os.path.realpath(spec)):
+        if owner is not None and file_of(owner).is_file() and owner != Path(os.path.realpath(spec)):
             raise OutputError(f"is locked for {os.path.relpath(owner)}", path=file, remedy=REMEDY)
 
 

@@ -29,6 +29,14 @@ from nrs_design.spec.faults import MAX_LISTED, did_you_mean
 from nrs_design.spec.meaning import hash_meaning
 from nrs_design.spec.model import SpecModel
 from nrs_design.spec.places import faults_between, file_faults, place_of
+from nrs_design.spec.task_space import (
+    KIND,
+    address,
+    axis_document,
+    axis_names,
+    file_of,
+    is_task_space,
+)
 
 if TYPE_CHECKING:
     from nrs_design.spec.interaction import InteractionDesignSpec
@@ -37,7 +45,7 @@ if TYPE_CHECKING:
 
     Spec: TypeAlias = InteractionDesignSpec | SwitchedSystemSpec | RobotSpec
 
-SPEC_KINDS = ("interaction-design", "switched-system", "robot")
+SPEC_KINDS = ("interaction-design", "switched-system", "robot", KIND)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +85,8 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     Parameters
     ----------
     path : path-like
-        A YAML file; the name ``*.nrs.yaml`` is a convention, not a condition.
+        A YAML file; the name ``*.nrs.yaml`` is a convention, not a condition. Of a file with
+        several axes, one of them: ``FILE#AXIS``.
 
     Returns
     -------
@@ -89,9 +98,41 @@ def read_spec(path: str | os.PathLike[str]) -> LoadedSpec:
     SpecError
         With path, line, column, message and remedy, if anything about the file is wrong.
     """
-    file = Path(path)
+    named = Path(path)
+    file = file_of(named)
     _, text = read_source(file)
-    return _loaded(file, text, *parse_with_faults(text, file))
+    root, syntax = parse_with_faults(text, file)
+    if is_task_space(root):
+        _validated(model_of(KIND), root, syntax, file)
+        return _loaded(named, text, axis_document(root, named), ())
+    if file != named:
+        raise SpecError("this file holds no axes", path=file, remedy=f"name the file alone: {file}")
+    return _loaded(file, text, root, syntax)
+
+
+def read_axes(path: Path) -> tuple[LoadedSpec, ...]:
+    """Read a spec file, and every axis of one that holds several; see :func:`read_spec`."""
+    return tuple(map(read_spec, axes_at(path)))
+
+
+def axes_at(path: Path) -> tuple[Path, ...]:
+    """Return the addresses of all axes of a file that holds several; else the path itself.
+
+    Raises
+    ------
+    SpecError
+        If such a file is not valid.
+    """
+    if file_of(path) != path:
+        return (path,)
+    _, text = read_source(path)
+    if KIND not in text:
+        return (path,)
+    root, syntax = parse_with_faults(text, path)
+    if not is_task_space(root):
+        return (path,)
+    _validated(model_of(KIND), root, syntax, path)
+    return tuple(address(path, axis) for axis in axis_names(root))
 
 
 def respecified(loaded: LoadedSpec, root: Node) -> LoadedSpec:
@@ -128,6 +169,17 @@ def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> Loa
     return LoadedSpec(file, sha256, text, spec, root, used)
 
 
+def is_there(path: Path) -> bool:
+    """Tell whether a spec, or an axis of one, exists; an axis of a file that is not valid does."""
+    file = file_of(path)
+    if not file.is_file():
+        return False
+    try:
+        return file == path or path in axes_at(file)
+    except SpecError:
+        return True
+
+
 def load_spec(path: str | os.PathLike[str]) -> Spec:
     """Read and validate a spec file, and return what it says; see :func:`read_spec`."""
     return read_spec(path).spec
@@ -156,19 +208,29 @@ _MODELS = {
     "interaction-design": ("interaction", "InteractionDesignSpec"),
     "robot": ("robot", "RobotSpec"),
     "switched-system": ("switched_system", "SwitchedSystemSpec"),
+    KIND: ("task_space", "TaskSpaceSpec"),
 }
 
 
-def model_of(kind: str) -> type[Spec]:
+def model_of(kind: str) -> type[Any]:
     """Return the model of a kind of spec; a command pays only for the kind that it reads."""
     module, name = _MODELS[kind]
-    found: type[Spec] = getattr(import_module(f"nrs_design.spec.{module}"), name)
+    found: type[Any] = getattr(import_module(f"nrs_design.spec.{module}"), name)
     return found
 
 
 def _validate(root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Spec:
+    if is_task_space(root):
+        raise SpecError(
+            "this text holds several axes", path=path, remedy="read the file with #AXIS behind it"
+        )
+    spec: Spec = _validated(model_of(_kind_of(root, path, syntax)), root, syntax, path)
+    return spec
+
+
+def _validated(model: type[Any], root: Node, syntax: tuple[Fault, ...], path: Path | None) -> Any:
     found: tuple[Fault, ...] = ()
-    model, said = model_of(_kind_of(root, path, syntax)), to_data(root)
+    said = to_data(root)
     with about(said.get("axis") if isinstance(said, dict) else None):
         try:
             spec = model.model_validate(said)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from nrs_design.gating.obligations import Caution, GateOutcome, Obligation
 from nrs_design.gating.paths import from_here
 from nrs_design.printable import printable
+from nrs_design.spec.task_space import file_of
 
 # GitHub shows no more than ten annotations of each type per step, whichever come first.
 MAX_ANNOTATIONS = 10
@@ -32,7 +33,7 @@ def _first(annotations: list[str], what: str) -> list[str]:
 
 
 def _annotation(kind: str, item: Obligation | Caution, title: str, text: str) -> str:
-    place = {"file": from_here(item.path), "line": item.line or 1, "col": item.column or 1}
+    place = {"file": from_here(file_of(item.path)), "line": item.line or 1, "col": item.column or 1}
     properties = {**place, "title": title}
     listed = ",".join(f"{key}={_property(str(value))}" for key, value in properties.items())
     return f"::{kind} {listed}::{_data(text)}"

@@ -10,6 +10,7 @@ from nrs_design.gating.obligations import GateOutcome, Obligation
 from nrs_design.gating.paths import relative_uri
 from nrs_design.gating.rules import RULES, Rule
 from nrs_design.printable import json_text
+from nrs_design.spec.task_space import file_of
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 FINGERPRINT = "nrsDesignObligation/v1"
@@ -60,7 +61,7 @@ def _result(item: Obligation) -> dict[str, Any]:
             {
                 "physicalLocation": {
                     "artifactLocation": {
-                        "uri": relative_uri(item.path),
+                        "uri": relative_uri(file_of(item.path)),
                         "uriBaseId": "%SRCROOT%",
                     },
                     "region": region,

@@ -51,7 +51,8 @@ class Coupling:
 
     Of any number of axes each is in a mode of its own, and ``sum |w_i|^2 <= sum |q_i z_i|^2`` over
     all of them, with the B_i and q_i of their modes, where z_i is x_i and, after it, what disturbs
-    the axis and what its arithmetic rounds. In discrete time, that is said of every step.
+    the axis and what its arithmetic rounds. In discrete time, that is said of every step. Couplings
+    of one name are bounded together: the sums go over them, too.
     """
 
     name: str  # What acts, such as ``inertia of the links``

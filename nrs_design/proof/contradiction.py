@@ -199,7 +199,8 @@ def _find_odd_errors(
             return f"{said}{item.name} has not one column and row for every mode"
         if any(row.numerators[0][n - 1] for row in item.rows[len(system.modes) :]):
             return f"{said}{item.name} depends on the deflection in free motion"
-    names = [item.name for item in items]
+    # Couplings of one name are bounded together.
+    names = [item.name for item in items if not isinstance(item, Coupling)]
     return f"{said}{names[0]} is said twice" if len(set(names)) < len(names) else None
 
 

@@ -293,7 +293,7 @@ def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int
     items: list[tuple[str, Rounding | Coupling]]
     items = [(f"{ROUNDING} {i}", item) for i, item in enumerate(system.roundings[:rounded], 1)]
     coupled = system.couplings if acting.coupling else ()
-    items += [(f"{COUPLING} {i}", item) for i, item in enumerate(coupled, 1)]
+    items += zip(coupling_facts(coupled), coupled, strict=True)
     parts = [mode.A, *(system.channels[i].columns[k] for i in acting.channels)]
     parts += [item.columns[k] for _, item in items]
     columns = [(column, M.denominator) for M in parts for column in transpose(M.numerators)]
@@ -339,6 +339,12 @@ def _step(system: SwitchedSystem, k: int, mode: Mode, acting: Acting, grain: int
         weights=acting.weights,
         is_flow=flows,
     )
+
+
+def coupling_facts(couplings: Sequence[Coupling]) -> list[str]:
+    """Return what the bound of each is called: couplings of one name have one together."""
+    names = list(dict.fromkeys(item.name for item in couplings))
+    return [f"{COUPLING} {names.index(item.name) + 1}" for item in couplings]
 
 
 def _undeflected(step: Step, k: int) -> Step:

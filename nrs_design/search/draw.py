@@ -8,7 +8,13 @@ from fractions import Fraction
 from nrs_design.proof.evidence.fields import Matrix
 from nrs_design.proof.evidence.graph import FormsOnGraph, Multiplier, Node
 from nrs_design.proof.lift import monomials
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, multiplier_names
+from nrs_design.proof.steps import (
+    CONTACT,
+    FREE,
+    ROUNDING,
+    coupling_facts,
+    multiplier_names,
+)
 from nrs_design.proof.system import SwitchedSystem
 
 Integers = Sequence[int]
@@ -79,5 +85,5 @@ def _multipliers(
     return [
         *zip(names, crossings, strict=True),
         *((f"{ROUNDING} {k}", value) for k, value in enumerate(roundings, 1)),
-        *((f"{COUPLING} {k}", value) for k, value in enumerate(couplings, 1)),
+        *zip(dict.fromkeys(coupling_facts(system.couplings)), couplings, strict=False),
     ]

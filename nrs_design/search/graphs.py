@@ -16,7 +16,7 @@ from nrs_design.proof.evidence.graph import Arc, Multiplier, Node
 from nrs_design.proof.lift import monomials
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.spectrum import is_stable
-from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays
+from nrs_design.proof.steps import CONTACT, COUPLING, FREE, ROUNDING, Stays, coupling_facts
 from nrs_design.proof.switching import Clock, Stay
 from nrs_design.proof.system import SwitchedSystem
 from nrs_design.search.balance import balance, own_norm, scale_states
@@ -457,7 +457,7 @@ def draw_together(
     facts = list[str]()
     if degree == 1:  # A form of monomials has no multipliers
         facts += [f"{ROUNDING} {k}" for k, _ in enumerate(system.roundings, 1)]
-        facts += [f"{COUPLING} {k}" for k, _ in enumerate(system.couplings, 1)]
+        facts += dict.fromkeys(coupling_facts(system.couplings))
     graph = FormsOnGraph(
         tuple(Node(place, ()) for place in places),
         0,

@@ -6,8 +6,9 @@ from typing import Literal
 
 from pydantic import PrivateAttr
 
+from nrs_design.proof.text import exact_text
 from nrs_design.spec.check import Row
-from nrs_design.spec.fields import AxisCount, Title
+from nrs_design.spec.fields import AxisCount, Positive, Title
 from nrs_design.spec.model import SpecModel, optional
 from nrs_design.spec.quantity import is_less
 from nrs_design.spec.quantity_fields import (
@@ -47,6 +48,11 @@ class CouplingSpec(SpecModel):
         "contact; default: gravity is compensated, or the same, in all poses"
     )
 
+    mobility: tuple[Positive, Positive] | None = optional(
+        "[lowest, highest] eigenvalue of J^(1/2) Lambda^-1 J^(1/2), no unit: J the inertias that "
+        "the axes are given, Lambda the inertia of the arm in the task space, over all poses that "
+        "are used; for a torque_interface, in the place of everything else here"
+    )
     axes: AxisCount | None = optional(
         "how many axes there are, for bounds under disturbances; a robot has three"
     )
@@ -63,6 +69,23 @@ class CouplingSpec(SpecModel):
         copy = self.model_copy()
         copy._bounds = bounds
         return copy
+
+    @property
+    def source(self) -> str:
+        """Where the numbers come from."""
+        return "declared, not computed from a robot"
+
+    def _beside_mobility(self) -> str | None:
+        """Return what is said besides the mobility."""
+        said = self.model_fields_set - {"mobility", "arm"}
+        return next(iter(sorted(said)), None) if self.mobility is not None else None
+
+    def _turned(self) -> tuple[str, str] | None:
+        """Return the ends of the mobility, if the highest is below the lowest."""
+        if self.mobility is None or self.mobility[0] <= self.mobility[1]:
+            return None
+        low, high = map(exact_text, self.mobility)
+        return high, low
 
     def _doubly(self) -> str | None:
         """Return what is declared although it is computed from the robot."""
@@ -96,9 +119,27 @@ class CouplingSpec(SpecModel):
         ),
         Row(
             "",
-            lambda s: s.robot is None and s.inertia is None and s.gravity_compensated is None,
+            lambda s: (
+                s.robot is None
+                and s.inertia is None
+                and s.gravity_compensated is None
+                and s.mobility is None
+            ),
             "neither robot nor inertia is given",
-            "write `robot: arm.nrs.yaml`, or `inertia: [0.003 kg*m^2, 0.3 kg*m^2]`",
+            "write `robot: arm.nrs.yaml`, or `inertia: [0.003 kg*m^2, 0.3 kg*m^2]`; of an arm that "
+            "takes torques, `mobility: [0.8, 1.2]`",
+        ),
+        Row(
+            "{0}",
+            _beside_mobility,
+            "{0} is for axes with a motor, and mobility for an arm that takes torques",
+            "remove {0} or mobility",
+        ),
+        Row(
+            "mobility",
+            _turned,
+            "the range of mobility ends at {0!r}, below its start {1!r}",
+            "write [lowest, highest]",
         ),
         Row(
             "inertia",

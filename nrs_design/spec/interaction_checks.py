@@ -20,7 +20,9 @@ from nrs_design.spec.features import (
     HAND,
     IDLE,
     LOADED,
+    MOBILE,
     SATURATED,
+    TORQUES,
     Touched,
     touched,
 )
@@ -596,6 +598,24 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         lambda s: COUPLED.find(s) and not LOADED.find(s),
         "axes act on each other against the inertia of the drives, which is not given",
         "add `load_inertia: 1.213 kg*m^2` to actuator, or remove coupling",
+    ),
+    Row(
+        "coupling.mobility",
+        lambda s: MOBILE.find(s) and not TORQUES.find(s),
+        "a mobility is of an arm that takes torques",
+        "describe the axis by torque_interface, or remove mobility",
+    ),
+    Row(
+        "coupling.mobility",
+        lambda s: MOBILE.find(s) and s.contact != "kept",
+        "what the axes of an arm do to each other is derived for contact that is kept",
+        "add `contact: kept`, or remove coupling",
+    ),
+    Row(
+        "torque_interface.inertia",
+        lambda s: MOBILE.find(s) and s.torque_interface and not s.torque_interface.inertia.fixed,
+        "how the inertia changes is said twice: by its range, and by the mobility",
+        "give one value, or remove coupling",
     ),
     # Switching and runs.
     *LOGIC_CHECKS,

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from nrs_design.spec.operating import OperatingConditions
     from nrs_design.switched.coupled import AxesCoupling
     from nrs_design.switched.gain_box import GainBox
+    from nrs_design.switched.mobility import Mobility
     from nrs_design.switched.shared_state import SharedState
 
 __all__ = ["GIVEN_MATRICES", "assemble", "assemble_from_text", "assemble_matrices"]
@@ -218,7 +219,10 @@ def _on_axis(system: SwitchedSystem, axis: AxisType) -> SwitchedSystem:
 
 
 def _assemble_continuous(
-    conditions: OperatingConditions, plant: Plant, state: SharedState, coupling: AxesCoupling | None
+    conditions: OperatingConditions,
+    plant: Plant,
+    state: SharedState,
+    coupling: AxesCoupling | Mobility | None,
 ) -> SwitchedSystem:
     from nrs_design.switched.close_loop import close_loop
 
@@ -234,8 +238,10 @@ def _assemble_continuous(
         check_memory(state.environments)
         system = with_command(system, state, conditions.disturbances, conditions.torque)
     if coupling is not None:
-        from nrs_design.switched.coupled import couple_axes
+        from nrs_design.switched.coupled import AxesCoupling, couple_axes
 
+        # A spec with a mobility is sampled.
+        assert isinstance(coupling, AxesCoupling)
         system = couple_axes(system, coupling)
     if conditions.constant_force:
         from nrs_design.switched.constant_force import with_constant_force
@@ -287,8 +293,12 @@ def state_of(
 
 def _coupling_of(
     coupling: CouplingSpec | None, plant: Plant, scale: Fraction
-) -> AxesCoupling | None:
+) -> AxesCoupling | Mobility | None:
     """Return what the links do to each axis, with its ranges scaled; None if that is not said."""
+    if coupling is not None and coupling.mobility is not None:
+        from nrs_design.switched.mobility import Mobility
+
+        return Mobility(*coupling.mobility, coupling.source).scaled(scale)
     if coupling is None or plant.load_inertia is None:
         return None
     from nrs_design.switched.coupled import AxesCoupling

@@ -178,7 +178,8 @@ class Frame:
 
         The first rows lead from the states, the `INPUTS` and the `roundings` to the next states;
         a rounding error is at most the size that its row below gives. The last row is the slip: the
-        difference between the speed and its steady state under the command.
+        difference between the speed and its steady state under the command, or the acceleration of
+        a joint that takes torques.
 
         Parameters
         ----------
@@ -214,7 +215,7 @@ class Frame:
             *ages[: self.longest_delay],
             delta,
             *made.sizes,
-            _slip(made, self.motor, values.get("Km", ZERO)),
+            _slip(made, self.motor, values),
         ]
 
     def command(self) -> tuple[LinearForm, Sequence[LinearForm]]:
@@ -330,8 +331,14 @@ def _place(
     return _around(made.after)[0], delta
 
 
+def _slip(made: _Sample, motor: HeldMotor, values: Mapping[str, Fraction]) -> LinearForm:
+    if motor.drive is not None:
+        return motor.slip(made.given, values)
+    return _slip_of_a_motor(made, motor, values.get("Km", ZERO))
+
+
 @lru_cache(maxsize=64)
-def _slip(made: _Sample, motor: HeldMotor, Km: Fraction) -> LinearForm:
+def _slip_of_a_motor(made: _Sample, motor: HeldMotor, Km: Fraction) -> LinearForm:
     return motor.slip(made.given, {"Km": Km})
 
 

@@ -40,6 +40,7 @@ from nrs_design.switched.free_motion import (
 from nrs_design.switched.gain_box import GainBox, RangedLaw
 from nrs_design.switched.held_drive import HeldDrive
 from nrs_design.switched.held_motor import HeldMotor, hold
+from nrs_design.switched.mobility import Mobility
 from nrs_design.switched.motor_command import motor_command
 from nrs_design.switched.parameter_box import Box
 from nrs_design.switched.sampled_assumptions import Loss, assume_sampled
@@ -60,7 +61,7 @@ def close_sampled_loop(
     plant: Plant,
     design: ControllerDesign,
     boxes: Mapping[str, GainBox],
-    coupling: AxesCoupling | None = None,
+    coupling: AxesCoupling | Mobility | None = None,
 ) -> SwitchedSystem:
     """Assemble every mode of the sampled loop.
 
@@ -82,7 +83,7 @@ def close_sampled_loop(
         Gains that ship.
     boxes : mapping
         Where the gains of controllers may be, by name.
-    coupling : AxesCoupling, optional
+    coupling : AxesCoupling or Mobility, optional
         What the links do to each axis.
 
     Raises
@@ -94,12 +95,14 @@ def close_sampled_loop(
     _check_periods(sampling)
     laws = {c.name: _sampled(c, sampling, boxes[c.name]) for c in design.controllers}
     ranges = plant.actuator_ranges
-    slowed = ranges if coupling is None else slowed_motor(ranges, coupling)
+    links = coupling if isinstance(coupling, AxesCoupling) else None
+    arm = coupling if isinstance(coupling, Mobility) else None
+    slowed = ranges if links is None else slowed_motor(ranges, links)
     timing = timing_of(sampling, conditions.late)
     each = [item.law for item in laws.values()]
     motor = hold(slowed, timing)
     if plant.drive is not None:
-        motor = HeldDrive.of(plant.drive, timing)
+        motor = HeldDrive.of(plant.drive if arm is None else arm.mean(plant.drive), timing)
     frame = _frame(conditions.idle, sampling, design, each, motor, timing)
     environments = plant.among(design.contacts)
     loss = _loss_of_contact(conditions.contact, environments, design)
@@ -135,11 +138,15 @@ def close_sampled_loop(
         *(() if driven is None else (driven.text,)),
     )
     couplings: tuple[Coupling, ...] = ()
-    if coupling is not None:
-        texts = among_axes(texts, coupling, sampled=True, disturbed=bool(channels))
+    if links is not None:
+        texts = among_axes(texts, links, sampled=True, disturbed=bool(channels))
         couplings = tuple(
-            couplings_of(frame, coupling, ranges, channels, every, losable=losable is not None)
+            couplings_of(frame, links, ranges, channels, every, losable=losable is not None)
         )
+    elif arm is not None:
+        assert plant.drive is not None
+        texts = arm.among(texts)
+        couplings = tuple(arm.couplings(frame, plant.drive, environments, every))
     resets: Iterable[tuple[str, str, RationalMatrix]] = ()
     if conditions.idle is not None and conditions.idle.reset:
         map_ = zeroing(frame.states, ("reference [rad]", "vm [rad/s]"))
@@ -158,7 +165,7 @@ def close_sampled_loop(
         tuple(roundings_of(frame, channels, every)),
         couplings,
         clock=Clock(sampling.round, begins) if sampling.round > 1 else None,
-        axes=None if coupling is None or not channels else coupling.count,
+        axes=None if links is None or not channels else links.count,
         flights=flights,
     )
 

@@ -20,6 +20,7 @@ from nrs_design.proof.steps import (
     FREE,
     ROUNDING,
     Acting,
+    coupling_facts,
     grain_of,
     multiplier_names,
     steps_of,
@@ -109,7 +110,12 @@ class InvariantEllipsoid(AbstractEvidence):
         for numbers, count, each, one in (
             (self.multipliers, crossings, "condition that needs it", "a multiplier"),
             (self.roundings, rounded, "rounding", "the multiplier of a rounding"),
-            (self.taus, len(system.couplings), "coupling", "the multiplier of a coupling"),
+            (
+                self.taus,
+                len(set(coupling_facts(system.couplings))),
+                "coupling",
+                "the multiplier of a coupling",
+            ),
         ):
             if len(numbers) != count:
                 return f"there is not one multiplier for each {each}"
@@ -177,7 +183,7 @@ class InvariantEllipsoid(AbstractEvidence):
         steps = " at a step" if system.time is Time.DISCRETE else ""
         among = ""
         if system.couplings:
-            names = ", ".join(item.name for item in system.couplings)
+            names = ", ".join(dict.fromkeys(item.name for item in system.couplings))
             among = (
                 f", on each of at most {system.axes} axes that act on each other within the stated "
                 f"bounds ({names}), every axis disturbed and switched by itself"

@@ -59,7 +59,7 @@ def free_sentence(
     modes = f"the {len(system.modes)} modes" if len(system.modes) > 1 else "its one mode"
     parts = []
     if system.couplings:
-        names = ", ".join(item.name for item in system.couplings)
+        names = ", ".join(dict.fromkeys(item.name for item in system.couplings))
         parts.append(
             f"for any number of axes that act on each other within the stated bounds ({names}), "
             "which are taken on trust, each by itself in any of its modes,"

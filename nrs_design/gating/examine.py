@@ -321,22 +321,25 @@ class Examiner:
         """Return NRS111 for bounds that were neither shown nor refuted."""
         return self._of_bounds(Status.INCONCLUSIVE, error.message)
 
-    def known_bounds(self, robot: Path, locked: LockedGoal | None) -> Findings:
+    def known_bounds(self, locked: LockedGoal | None) -> Findings:
         """Return NRS111 as it is locked, unless a pose exceeds a bound; and that it is on trust.
 
         Parameters
         ----------
-        robot : Path
-            Its spec.
         locked : LockedGoal, optional
             What the lock file says of its bounds.
         """
-        file, faults = load_wing("robot", "pipeline").contradict_robot_bounds(robot)
+        pipeline, robot = load_wing("robot", "pipeline"), self.loaded.robot
+        if robot is None:
+            file, faults = pipeline.contradict_mobility(self.loaded.path)
+            again = "nrs-design robot mobility"
+        else:
+            file, faults = pipeline.contradict_robot_bounds(robot)
+            again = "nrs-design robot bounds --check"
         caution = self.caution(
             f"taken on trust: the bounds of {file.as_posix()}; the lock file says that a gate "
-            "computed them again (nrs-design robot bounds --check does)",
-            "coupling",
-            "robot",
+            f"computed them again ({again} does)",
+            *self._named_in,
         )
         status, message = Status.MISSED, "; ".join(faults)
         if not faults and locked is not None:
@@ -347,7 +350,11 @@ class Examiner:
         return (self._of_bounds(status, message),), (caution,)
 
     def _of_bounds(self, status: Status, message: str) -> Obligation:
-        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, ("coupling", "robot"))
+        return self.obligation(ROBOT_BOUNDS, "bounds", status, message, self._named_in)
+
+    @property
+    def _named_in(self) -> tuple[str, str]:
+        return "coupling", "robot" if self.loaded.arm is None else "arm"
 
     def identified(self) -> Iterator[Obligation]:
         """Yield NRS107 for everything whose identification is in doubt."""

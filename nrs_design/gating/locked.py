@@ -157,8 +157,9 @@ def _others(
     examiner: Examiner, certificate: Certificate | None, entry: LockedSpec, file: Path
 ) -> Findings:
     """Return the obligations beside stability, and that bounds of a robot are on trust."""
-    robot, locked = examiner.loaded.robot, entry.goal_of(ROBOT_BOUNDS)
-    bounds, on_trust = ((), ()) if robot is None else examiner.known_bounds(robot, locked)
+    loaded, locked = examiner.loaded, entry.goal_of(ROBOT_BOUNDS)
+    named = loaded.robot is not None or loaded.arm is not None
+    bounds, on_trust = examiner.known_bounds(locked) if named else ((), ())
     agrees = examiner.obligation(LOCKED, "lock", Status.MET, f"as in {file.name}", ("name",))
     goals = (*examiner.certified_goals(certificate), *_goals(examiner, entry))
     return (*goals, *bounds, *examiner.identified(), agrees), on_trust

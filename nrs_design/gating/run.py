@@ -92,24 +92,26 @@ class Robots:
     # the real path of the robot.
     checked: dict[Path, tuple[Path, tuple[str, ...]] | DesignError] = field(default_factory=dict)
 
-    def bounds(self, robot: Path, examiner: Examiner, progress: Progress) -> Obligation:
+    def bounds(self, loaded: LoadedSpec, examiner: Examiner, progress: Progress) -> Obligation:
         """Return NRS111 of bounds that are not locked: recompute them.
 
         Parameters
         ----------
-        robot : Path
-            Its spec.
+        loaded : LoadedSpec
+            The spec that names a robot, or the arm of its axes.
         examiner : Examiner
-            Of the spec that names it.
+            Of that spec.
         progress : callable
             Told the name of each step.
         """
-        key = Path(os.path.realpath(robot))
+        pipeline = load_wing("robot", "pipeline")
+        about, check = loaded.robot, pipeline.check_robot_bounds
+        if about is None:
+            about, check = file_of(loaded.path), pipeline.check_mobility
+        key = Path(os.path.realpath(about))
         if key not in self.checked:
             try:
-                self.checked[key] = load_wing("robot", "pipeline").check_robot_bounds(
-                    robot, BUDGET, progress
-                )
+                self.checked[key] = check(about, BUDGET, progress)
             except DesignError as error:
                 self.checked[key] = error
         found = self.checked[key]
@@ -251,11 +253,12 @@ def _bounds(
     loaded: LoadedSpec, files: Files, examiner: Examiner, progress: Progress, robots: Robots
 ) -> Findings:
     """Return NRS111 of a spec that names a robot, and whether its bounds are on trust."""
-    if loaded.robot is None:
+    if loaded.robot is None and loaded.arm is None:
         return (), ()
-    if loaded.sha256 not in files.bounds:
-        return (robots.bounds(loaded.robot, examiner, progress),), ()
-    return examiner.known_bounds(loaded.robot, files.bounds[loaded.sha256])
+    # The file of an arm is no part of the spec's hash.
+    if loaded.arm is not None or loaded.sha256 not in files.bounds:
+        return (robots.bounds(loaded, examiner, progress),), ()
+    return examiner.known_bounds(files.bounds[loaded.sha256])
 
 
 def _goals_and_report(

@@ -139,6 +139,23 @@ def contradict_robot_bounds(
     return _checked(path, lambda robot, document: contradict_bounds(robot, document, progress))
 
 
+def check_mobility(
+    path: Path, budget: float, progress: Progress = silent
+) -> tuple[Path, tuple[str, ...]]:
+    """Compute the mobility of the arm that a spec names; as `check_robot_bounds`."""
+    from nrs_design.robot.mobility import check_mobility
+
+    return check_mobility(path, budget, progress)
+
+
+def contradict_mobility(path: Path) -> tuple[Path, tuple[str, ...]]:
+    """Look for poses beyond the mobility that a spec declares; as `contradict_robot_bounds`."""
+    from nrs_design.robot.mobility import faults_of, read_arm_in_use
+
+    use = read_arm_in_use(path)
+    return use.urdf, faults_of(use)
+
+
 def _checked(
     path: Path, faults: Callable[[Robot, Mapping[str, Any]], Iterator[str]]
 ) -> tuple[Path, tuple[str, ...]]:

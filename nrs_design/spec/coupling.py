@@ -7,6 +7,7 @@ from typing import Literal
 from pydantic import PrivateAttr
 
 from nrs_design.proof.text import exact_text
+from nrs_design.spec.arm import ArmSpec
 from nrs_design.spec.check import Row
 from nrs_design.spec.fields import AxisCount, Positive, Title
 from nrs_design.spec.model import SpecModel, optional
@@ -53,6 +54,9 @@ class CouplingSpec(SpecModel):
         "the axes are given, Lambda the inertia of the arm in the task space, over all poses that "
         "are used; for a torque_interface, in the place of everything else here"
     )
+    arm: ArmSpec | None = optional(
+        "the arm that the mobility is of: `nrs-design robot mobility` and the gate compute it"
+    )
     axes: AxisCount | None = optional(
         "how many axes there are, for bounds under disturbances; a robot has three"
     )
@@ -72,8 +76,18 @@ class CouplingSpec(SpecModel):
 
     @property
     def source(self) -> str:
-        """Where the numbers come from."""
-        return "declared, not computed from a robot"
+        """Where the mobility comes from."""
+        if self.arm is None:
+            return "declared, not computed from a robot"
+        poses = ", ".join(
+            f"{name} {low.text}" + ("" if high == low else f" .. {high.text}")
+            for name, (low, high) in self.arm.joints.items()
+        )
+        return (
+            f"on trust as that of the link {self.arm.tip} of {self.arm.urdf}, its inertias those "
+            f"of the file, with the joints at {poses}; `nrs-design robot mobility` and "
+            "`nrs-design gate` compute it"
+        )
 
     def _beside_mobility(self) -> str | None:
         """Return what is said besides the mobility."""
@@ -134,6 +148,12 @@ class CouplingSpec(SpecModel):
             _beside_mobility,
             "{0} is for axes with a motor, and mobility for an arm that takes torques",
             "remove {0} or mobility",
+        ),
+        Row(
+            "arm",
+            lambda s: s.arm is not None and s.mobility is None,
+            "an arm is given, and no mobility",
+            "run `nrs-design robot mobility` for it, and write `mobility: [lowest, highest]`",
         ),
         Row(
             "mobility",

@@ -39,6 +39,7 @@ from nrs_design.spec.task_space import (
 )
 
 if TYPE_CHECKING:
+    from nrs_design.spec.arm import ArmSpec
     from nrs_design.spec.interaction import InteractionDesignSpec
     from nrs_design.spec.robot import RobotSpec
     from nrs_design.spec.switched_system import SwitchedSystemSpec
@@ -73,6 +74,12 @@ class LoadedSpec:
         coupling = self.spec.coupling if self.spec.kind == "interaction-design" else None
         named = None if coupling is None else coupling.robot
         return None if named is None else self.path.parent / named
+
+    @property
+    def arm(self) -> ArmSpec | None:
+        """The arm whose mobility it relies on; None if it names none."""
+        coupling = self.spec.coupling if self.spec.kind == "interaction-design" else None
+        return None if coupling is None else coupling.arm
 
     def place(self, *at: str | int) -> Position:
         """Line and column of a key or an item, or of what holds it if it is not written out."""

@@ -12,6 +12,7 @@ from nrs_design.robot.cli.correction import correction
 from nrs_design.robot.cli.dynamics import dynamics
 from nrs_design.robot.cli.export import export
 from nrs_design.robot.cli.kinematics import kinematics
+from nrs_design.robot.cli.mobility import mobility
 from nrs_design.robot.cli.track import track
 
 robot = typer.Typer(
@@ -22,7 +23,7 @@ robot = typer.Typer(
     epilog="The page of a robot: nrs-design report SPEC.",
 )
 # A new capability of the robot adds its command here.
-COMMANDS = (check, kinematics, dynamics, correction, balance, bounds, track, export)
+COMMANDS = (check, kinematics, dynamics, correction, balance, bounds, mobility, track, export)
 for one in COMMANDS:
     robot.command(one.__name__)(one)
 

@@ -1,0 +1,259 @@
+"""From a file with several axes, and the URDF that it names, to the mobility of the arm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import numpy as np
+
+from nrs_design.errors import DesignError
+from nrs_design.pipeline.design import placed
+from nrs_design.progress import Progress, silent
+from nrs_design.proof.text import quoted
+from nrs_design.robot.models.arm import Arm, Floats, mobility
+from nrs_design.robot.models.enclosure.arm import cover_mobility
+from nrs_design.robot.models.urdf import read_arm
+from nrs_design.spec.load import LoadedSpec, read_axes
+from nrs_design.spec.task_space import file_of
+from nrs_design.work import Allowance, Fuse
+
+if TYPE_CHECKING:
+    from nrs_design.spec import InteractionDesignSpec
+    from nrs_design.spec.arm import ArmSpec
+
+AXES = ("x", "y", "z", "rx", "ry", "rz")
+SLIDING = AXES[:3]
+# Poses that are tried, half of them with joints at the ends of their ranges; and how many of the
+# worst go on, a few steps.
+TRIED, KEPT, STEPS = 4096, 16, 12
+# Numbers of a spec become doubles.
+OUTWARD = 2.0**-40
+# How far beyond what is found a range is offered.
+ROOM = 0.05
+BUDGET = 300.0
+
+
+@dataclass(frozen=True, slots=True)
+class ArmInUse:
+    """An arm, the inertias that its axes are given, and the box of its joint positions."""
+
+    file: Path  # Of the axes
+    urdf: Path
+    arm: Arm
+    names: tuple[str, ...]  # Of the axes
+    inertias: Floats  # Shape (k,), in kg or kg m^2
+    low: Floats  # Shape (n,), in rad or m
+    high: Floats
+    declared: tuple[float, float]  # Lowest and highest, rounded inwards
+
+    @property
+    def rows(self) -> list[int]:
+        """Which rows of the Jacobian the axes are."""
+        return [AXES.index(name) for name in self.names]
+
+
+@dataclass(frozen=True, slots=True)
+class FoundMobility:
+    """The extremes that poses have, in floating point."""
+
+    lowest: float
+    highest: float
+    # The joint positions.
+    at_lowest: Floats
+    at_highest: Floats
+
+
+def read_arm_in_use(path: Path) -> ArmInUse:
+    """Read all axes of a file, and the arm that their coupling names.
+
+    Raises
+    ------
+    SpecError
+        If the file or the URDF is wrong, or they do not fit.
+    """
+    loaded = read_axes(file_of(path))
+    first, arm = loaded[0], loaded[0].arm
+    if arm is None:
+        raise DesignError(
+            "no arm is named",
+            path=first.path,
+            remedy="add `arm: {urdf: arm.urdf, tip: tool0, joints: {...}}` to coupling",
+        )
+    names = tuple(str(item.path).rpartition("#")[2] for item in loaded)
+    with placed(first):
+        designs = [_design(item) for item in loaded]
+        coupling = designs[0].coupling
+        for design, name in zip(designs, names, strict=True):
+            if design.coupling != coupling:
+                _wrong(f"the coupling of {name} is not that of {names[0]}", "say it in common")
+            _check_name(design, name)
+        urdf = first.path.parent / arm.urdf
+        held = {name: low.si for name, (low, high) in arm.joints.items() if low == high}
+        model = read_arm(urdf, arm.tip, held)
+        low, high = _box(arm, model)
+        assert coupling is not None
+        assert coupling.mobility is not None
+        declared = coupling.mobility
+    drives = [design.torque_interface for design in designs]
+    inertias = [drive.inertia.nominal.exact for drive in drives if drive is not None]
+    return ArmInUse(
+        file_of(path),
+        urdf,
+        model,
+        names,
+        np.array([float(J) for J in inertias]),
+        low,
+        high,
+        (float(declared[0]) * (1 + OUTWARD), float(declared[1]) * (1 - OUTWARD)),
+    )
+
+
+def find_mobility(use: ArmInUse) -> FoundMobility:
+    """Search poses for the extremes, in floating point; the seed is fixed."""
+    rng, n = np.random.default_rng(1), use.arm.order
+    box = use.low, use.high
+    inside = rng.uniform(*box, (TRIED // 2, n))
+    ends = np.where(rng.random((TRIED // 2, n)) < 0.5, *box)
+    q = np.concatenate([inside, ends, [(use.low + use.high) / 2]])
+    found = []
+    for side, sign in ((0, 1.0), (-1, -1.0)):
+        best = q[np.argsort(sign * _extreme(use, q, side))[:KEPT]]
+        for step in range(STEPS):
+            width = (use.high - use.low) * 0.5 ** (1 + step / 2)
+            tried = best[:, None, :] + rng.uniform(-1, 1, (KEPT, 32, n)) * width
+            pool = np.concatenate([best, np.clip(tried, *box).reshape(-1, n)])
+            best = pool[np.argsort(sign * _extreme(use, pool, side))[:KEPT]]
+        found.append((float(_extreme(use, best[:1], side)[0]), best[0]))
+    (lowest, at_lowest), (highest, at_highest) = found
+    return FoundMobility(lowest, highest, at_lowest, at_highest)
+
+
+def show_mobility(
+    use: ArmInUse,
+    goal: tuple[float, float],
+    budget: float = BUDGET,
+    progress: Progress = silent,
+) -> bool:
+    """Tell whether the mobility is shown to be in a range over the whole box, rigorously.
+
+    Parameters
+    ----------
+    use : ArmInUse
+        The arm.
+    goal : tuple of float
+        The range.
+    budget : float
+        Work, in units.
+    progress : callable
+        Told how many boxes are done and left.
+    """
+
+    def told(done: int, left: int) -> None:
+        progress(f"mobility: {done} boxes shown, {left} left")
+
+    allowance = Allowance(budget, fuse=Fuse.of(budget))
+    box = use.low, use.high
+    return cover_mobility(use.arm, use.inertias, use.rows, goal, box, allowance, told)
+
+
+def faults_of(use: ArmInUse) -> tuple[str, ...]:
+    """Say where a pose is beyond the declared mobility; that there is none shows nothing."""
+    found, (low, high) = find_mobility(use), use.declared
+    said = []
+    for name, beyond, value, end, at in (
+        ("lowest", found.lowest < low, found.lowest, low, found.at_lowest),
+        ("highest", found.highest > high, found.highest, high, found.at_highest),
+    ):
+        if beyond:
+            said.append(
+                f"the {name} mobility is said to be {end:.6g}, and {value:.6g} {pose(use, at)}"
+            )
+    return tuple(said)
+
+
+def pose(use: ArmInUse, q: Floats) -> str:
+    """Say in words where the joints are."""
+    each = zip(use.arm.joints, q, strict=True)
+    return "at " + ", ".join(
+        f"{j.name} {value:.4g} m" if j.slides else f"{j.name} {np.degrees(value):.4g} deg"
+        for j, value in each
+    )
+
+
+def check_mobility(
+    path: Path, budget: float, progress: Progress = silent
+) -> tuple[Path, tuple[str, ...]]:
+    """Compute the mobility that a file declares; see `nrs_design.robot.pipeline`.
+
+    Raises
+    ------
+    SpecError
+        If the file or the URDF is wrong.
+    DesignError
+        If the work did not suffice to decide.
+    """
+    use = read_arm_in_use(path)
+    progress("mobility: looking for the extremes")
+    if faults := faults_of(use):
+        return use.urdf, faults
+    if not show_mobility(use, use.declared, budget, progress):
+        raise DesignError(
+            f"the mobility of {use.urdf.as_posix()} was not shown to stay in the declared range",
+            path=path,
+            remedy="declare a wider range, use smaller ranges of joints, or give "
+            "`nrs-design robot mobility` more --budget",
+        )
+    return use.urdf, ()
+
+
+def _extreme(use: ArmInUse, q: Floats, side: int) -> Floats:
+    return np.asarray(np.linalg.eigvalsh(mobility(use.arm, q, use.inertias, use.rows))[:, side])
+
+
+def _design(loaded: LoadedSpec) -> InteractionDesignSpec:
+    assert loaded.spec.kind == "interaction-design"
+    return loaded.spec
+
+
+def _check_name(design: InteractionDesignSpec, name: str) -> None:
+    if name not in AXES:
+        _wrong(
+            f"axis {quoted(name)} is none of the tip",
+            f"call it {', '.join(AXES)}, or leave arm out",
+        )
+    if (design.axis == "prismatic") != (name in SLIDING):
+        kind = "prismatic" if name in SLIDING else "rotary"
+        _wrong(f"axis {name} is {kind}", f"write `axis: {kind}`, or call it otherwise")
+
+
+def _box(arm: ArmSpec, model: Arm) -> tuple[Floats, Floats]:
+    """Return the joint positions that are used, rounded outwards."""
+    ends = []
+    for joint in model.joints:
+        if joint.name not in arm.joints:
+            _wrong(
+                f"nothing is said of joint {quoted(joint.name)}",
+                f"add `{joint.name}: [lowest, highest]` to joints, or one value if it is held",
+            )
+        low, high = arm.joints[joint.name]
+        if (low.unit.endswith("m")) != joint.slides:
+            _wrong(
+                f"joint {quoted(joint.name)} {'slides' if joint.slides else 'turns'}",
+                f"write it in {'m or mm' if joint.slides else 'deg or rad'}",
+            )
+        if joint.limits is not None and not joint.limits[0] <= low.si <= high.si <= joint.limits[1]:
+            _wrong(
+                f"joint {quoted(joint.name)} is used beyond its limits in the URDF, "
+                f"{joint.limits[0]:.6g} to {joint.limits[1]:.6g} {'m' if joint.slides else 'rad'}",
+                "use a range within the limits",
+            )
+        out = OUTWARD * max(abs(low.si), abs(high.si))
+        ends.append((low.si - out, high.si + out))
+    low, high = np.array(ends).T
+    return low, high
+
+
+def _wrong(message: str, remedy: str) -> NoReturn:
+    raise DesignError(message, remedy=remedy, at=("coupling", "arm"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from nrs_design.cli import exit_codes
-from nrs_design.cli.command import Answer, command
+from nrs_design.cli.command import Answer, Together, command
 from nrs_design.cli.facts import blocked_facts, certification_facts, margins_facts
 from nrs_design.cli.gradient_options import (
     GradientCoordinates,
@@ -23,6 +24,7 @@ from nrs_design.cli.gradient_options import (
 from nrs_design.cli.options import Budget, LoopCoordinates, MaxDegree, Memory, SpecFile, Verbose
 from nrs_design.cli.printing import note, progress, say, wants_json, wants_text
 from nrs_design.cli.reading import take_spec
+from nrs_design.proof.text import exact_text
 from nrs_design.search.gradient_settings import Coordinates, Gradient, Order
 from nrs_design.search.method import Method
 
@@ -45,7 +47,28 @@ ShortestDwell = Annotated[
 ]
 
 
-@command("certify-switching", each_axis=True)
+def _together(axes: Sequence[Mapping[str, Any]]) -> Together:
+    """Say what the certificates of the axes of an arm show of all at once; each is read again."""
+    from nrs_design.certificates.together import rate_together
+    from nrs_design.certificates.verify import verify
+    from nrs_design.proof.bounds import at_least, at_most
+
+    files = [axis["certificate"] for axis in axes]
+    checked = [verify(Path(file)) for file in files if file is not None]
+    held = [item.certificate for item in checked if item and item.certificate is not None]
+    rate = rate_together(held) if len(held) == len(axes) else None
+    if rate is None:
+        return None, {"together": None}
+    period = held[0].system.sample_time
+    assert period is not None
+    line = (
+        f"together: PROVED: all {len(axes)} axes, which act on each other through the arm, "
+        f"decrease with rho {at_most(rate)} per step, alpha {at_least((1 - rate) / period, '1/s')}"
+    )
+    return line, {"together": {"verdict": "proved", "rate": exact_text(rate)}}
+
+
+@command("certify-switching", each_axis=True, together=_together)
 def certify_switching(
     spec: SpecFile,
     out: Annotated[

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
 from nrs_design.cli import exit_codes
 from nrs_design.cli.exit_codes import worst
-from nrs_design.cli.printing import output, print_json, wants_json, wants_text
+from nrs_design.cli.printing import output, print_json, say, wants_json, wants_text
 from nrs_design.errors import NrsDesignError
 
 if TYPE_CHECKING:
     from nrs_design.spec import LoadedSpec
+
+# A line, if there is one, and facts.
+Together: TypeAlias = tuple[str | None, dict[str, Any]]
 
 QUIET = "Print nothing but errors, and what --json, --format or --out ask for; see the exit code."
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout.")]
@@ -50,7 +53,11 @@ class Answer:
 
 
 def command(
-    name: str, *, has_json: bool = True, each_axis: bool = False
+    name: str,
+    *,
+    has_json: bool = True,
+    each_axis: bool = False,
+    together: Callable[[Sequence[Mapping[str, Any]]], Together] | None = None,
 ) -> Callable[[Callable[..., Answer]], Callable[..., None]]:
     """Make a command of a function: with --json and --quiet, and an end that prints its answer.
 
@@ -62,6 +69,8 @@ def command(
         Whether there is such a document.
     each_axis : bool
         Whether it is run for each axis of a `spec` that holds several.
+    together : callable, optional
+        What is then said of all axes, given the facts of each: a line, and more facts.
     """
     options = {"as_json": Json, "quiet": Quiet} if has_json else {"quiet": Quiet}
 
@@ -71,8 +80,11 @@ def command(
             from nrs_design.axis import AxisType, about
 
             with output(as_json=as_json, quiet=quiet), about(AxisType.ROTARY):
-                run_for = _for_each_axis if each_axis else _once
-                run_for(function, arguments).deliver(name)
+                if each_axis:
+                    answer = _for_each_axis(function, arguments, together)
+                else:
+                    answer = function(**arguments)
+                answer.deliver(name)
 
         signature = inspect.signature(function, eval_str=True)
         keyword = inspect.Parameter.KEYWORD_ONLY
@@ -87,11 +99,11 @@ def command(
     return decorate
 
 
-def _once(function: Callable[..., Answer], arguments: dict[str, Any]) -> Answer:
-    return function(**arguments)
-
-
-def _for_each_axis(function: Callable[..., Answer], arguments: dict[str, Any]) -> Answer:
+def _for_each_axis(
+    function: Callable[..., Answer],
+    arguments: dict[str, Any],
+    together: Callable[[Sequence[Mapping[str, Any]]], Together] | None,
+) -> Answer:
     """Answer for each axis of a spec in turn, and end with the worst of the codes."""
     from nrs_design.spec.load import axes_at
 
@@ -110,12 +122,17 @@ def _for_each_axis(function: Callable[..., Answer], arguments: dict[str, Any]) -
     for axis in axes:
         answer = function(**arguments | {"spec": axis})
         codes.add(answer.code)
-        if wants_json():
+        if wants_json() or together is not None:
             answers[str(axis)] = answer.facts()
-        else:
+        if not wants_json():
             with output(as_json=False, quiet=not (wants_text() or answer.loud)):
                 answer.show()
-    return Answer(lambda: {"axes": answers}, code=worst(codes))
+    line, facts = together(tuple(answers.values())) if together else (None, {})
+    return Answer(
+        lambda: {"axes": answers, **facts},
+        lambda: None if line is None else say(line),
+        worst(codes),
+    )
 
 
 def spec_facts(loaded: LoadedSpec) -> dict[str, Any]:

@@ -31,6 +31,9 @@ from nrs_design.search.certify import certify
 from nrs_design.spec.sampling import SamplingSpec
 
 BEGINNING = b"# nrs-design ros2 of "
+# Gains are single-precision numbers; what is proved is the law as it is written.
+ALIKE = Fraction(1, 2**22)
+SEVERITY = ("proved", "inconclusive", "refuted")
 # What the controller needs besides, which no design knows.
 BESIDE = (
     "joints, command_interfaces, state_interfaces, chainable_command_interfaces, kinematics, "
@@ -43,24 +46,33 @@ class RosExport:
     """One controller as a parameter file, or why there is none."""
 
     controller: str  # Its name in the spec
-    verdict: str  # Of the law that ROS 2 computes with these parameters
+    verdict: str  # The worst of its axes, under the law that ROS 2 computes with these parameters
     text: str  # The file; empty without a proof
-    certificate: Certificate | None  # Its modes, and what is shown of them
+    # By axis: its modes, and what is shown of them.
+    certificates: Mapping[str, Certificate]
     # Gains of which the spec declares a range: only their designed values are written and proved.
     ranged: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class _Chosen:
+    """A controller for an axis, and what it touches."""
+
+    designed: Designed
+    controller: Controller
+    met: Range
+
+
 def export_controllers(
-    designed: Designed, axis: str, lag: Range, limits: Limits
+    designs: Mapping[str, Designed], lag: Range, limits: Limits
 ) -> Iterator[RosExport]:
-    """Yield every controller of a design with its proof.
+    """Yield every controller of a design, or of the axes of an arm, with its proof.
 
     Parameters
     ----------
-    designed : Designed
-        Of a spec with impedance controllers in a sampled loop.
-    axis : {"rx", "ry", "rz"}
-        The axis of the control frame that the axis of the spec is.
+    designs : mapping of str to Designed
+        By the axis of the control frame, ``x`` to ``rz``; of specs with impedance controllers in a
+        sampled loop.
     lag : tuple of Fraction
         Smallest and largest time constant in s with which the robot follows its command.
     limits : Limits
@@ -71,36 +83,88 @@ def export_controllers(
     DesignError
         If `admittance_controller` cannot run one of them.
     """
-    sampling = _sampling(designed)
-    for controller in designed.design.controllers:
-        body = _body(controller, axis, _filter_share(designed, sampling), _rate(sampling))
-        law = _law_in(body, controller.name)
-        met = _met(designed, controller)
-        around = Surroundings(sampling.period.exact, sampling.delay, None, met, lag)
-        chosen = law.axes[AXES.index(axis)]
-        system = _with_contact(designed, close_axis(law, chosen, around))
-        found = certify(system, limits=limits)
-        certificate = None
-        if found.statements:
-            certificate = Certificate(
-                spec_name=designed.spec.name,
-                spec_sha256=designed.loaded.sha256,
-                coordinates=None,
-                gains={},
-                system=system,
-                statements=found.statements,
-                version=__version__,
+    samplings = {axis: _sampling(designed) for axis, designed in designs.items()}
+    (axis, sampling), *others = samplings.items()
+    share = _filter_share(designs[axis], sampling)
+    for other, own in others:
+        alike = (own.period.exact, own.delay) == (sampling.period.exact, sampling.delay)
+        if not alike or _filter_share(designs[other], own) != share:
+            raise DesignError(
+                f"{axis} and {other} do not have one period, delay and filter",
+                remedy="say sampling and sensor in common",
+                at=("sampling",),
             )
+    for name, controllers in _controllers(designs):
+        chosen = {
+            axis: _Chosen(designs[axis], controller, _met(designs[axis], controller))
+            for axis, controller in controllers.items()
+        }
+        body = _body(controllers, share, _rate(sampling))
+        law = _law_in(body, name)
+        verdicts, certificates = list[str](), dict[str, Certificate]()
+        for axis, item in chosen.items():
+            around = Surroundings(sampling.period.exact, sampling.delay, item.met, item.met, lag)
+            closed = close_axis(law, law.axes[AXES.index(axis)], around)
+            system = _with_contact(item.designed, closed)
+            found = certify(system, limits=limits)
+            verdicts.append(str(found.verdict))
+            if found.statements:
+                certificates[axis] = Certificate(
+                    spec_name=item.designed.spec.name,
+                    spec_sha256=item.designed.loaded.sha256,
+                    coordinates=None,
+                    gains={},
+                    system=system,
+                    statements=found.statements,
+                    version=__version__,
+                )
+        worst = max(verdicts, key=SEVERITY.index)
         text = ""
-        if str(found.verdict) == "proved" and certificate is not None:
-            text = _header(designed, controller, sampling, met, certificate) + body
-        ranged = _ranged(designed, controller)
-        yield RosExport(controller.name, str(found.verdict), text, certificate, ranged)
+        if worst == "proved" and len(certificates) == len(chosen):
+            text = _header(name, chosen, sampling, certificates) + body
+        ranged = tuple(dict.fromkeys(gain for item in chosen.values() for gain in _ranged(item)))
+        yield RosExport(name, worst, text, certificates, ranged)
 
 
-def _ranged(designed: Designed, controller: Controller) -> tuple[str, ...]:
+def _controllers(designs: Mapping[str, Designed]) -> Iterator[tuple[str, dict[str, Controller]]]:
+    """Yield what is written together: a controller of every axis, the only one where there is one.
+
+    Raises
+    ------
+    DesignError
+        If axes with several do not have the same ones.
+    """
+    each = {
+        axis: {c.name: c for c in designed.design.controllers} for axis, designed in designs.items()
+    }
+    several = {axis: known for axis, known in each.items() if len(known) > 1}
+    names = next(iter(several.values()), next(iter(each.values())))
+    for axis, known in several.items():
+        if known.keys() != names.keys():
+            raise DesignError(
+                f"the controllers of {axis} are {', '.join(known)}, and not {', '.join(names)}: "
+                "admittance_controller switches all axes at once",
+                remedy="give every axis one controller, or the same names",
+                at=("controllers",),
+            )
+    for name in names:
+        own = {axis: known.get(name, next(iter(known.values()))) for axis, known in each.items()}
+        rates = {axis: c.law.gains["Bt"] / c.law.gains["Mt"] for axis, c in own.items()}
+        (first, rate), *others = rates.items()
+        odd = next((axis for axis, other in others if abs(other - rate) > ALIKE * rate), None)
+        if odd is not None:
+            raise DesignError(
+                f"Bt/Mt is {float(rate):.6g} 1/s in {first} and {float(rates[odd]):.6g} 1/s in "
+                f"{odd}: admittance_controller has one joint_damping for all axes",
+                remedy="choose Mt of each axis so that Bt/Mt is the same",
+                at=("controllers", own[odd].name),
+            )
+        yield name, own
+
+
+def _ranged(item: _Chosen) -> tuple[str, ...]:
     """Return the gains that the spec lets be retuned while the robot runs."""
-    gains = designed.spec.controllers[controller.name].gains()
+    gains = item.designed.spec.controllers[item.controller.name].gains()
     return tuple(name for name, given in gains.items() if given.ranged)
 
 
@@ -189,7 +253,7 @@ def _filter_share(designed: Designed, sampling: SamplingSpec) -> Fraction:
 
 
 def _met(designed: Designed, controller: Controller) -> Range:
-    """Return the stiffness that a controller may touch, in N m/rad."""
+    """Return the stiffness that a controller may touch, in N m/rad or N/m."""
     touched = designed.plant.among(controller.contacts)
     soft = next((item for item in touched if item.parameters.keys() != {"k"}), None)
     if soft is not None:
@@ -201,11 +265,14 @@ def _met(designed: Designed, controller: Controller) -> Range:
     return min(i.stiffness.low for i in touched), max(i.stiffness.high for i in touched)
 
 
-def _body(controller: Controller, axis: str, share: Fraction, rate: int) -> str:
-    Mt, Bt = controller.law.gains["Mt"], controller.law.gains["Bt"]
+def _body(controllers: Mapping[str, Controller], share: Fraction, rate: int) -> str:
+    masses = {axis: controller.law.gains["Mt"] for axis, controller in controllers.items()}
+    # The mass of an axis that is not selected has no effect.
+    first = next(iter(controllers.values())).law.gains
+    Mt, Bt = first["Mt"], first["Bt"]
     values: Mapping[str, str] = {
-        "selected_axes": _list("true" if name == axis else "false" for name in AXES),
-        "mass": _list(_double(Mt) for _ in AXES),
+        "selected_axes": _list("true" if name in controllers else "false" for name in AXES),
+        "mass": _list(_double(masses.get(name, Mt)) for name in AXES),
         # Without stiffness it has no effect; anything else would look as if it had.
         "damping_ratio": _list("0.0" for _ in AXES),
         "stiffness": _list("0.0" for _ in AXES),
@@ -239,38 +306,43 @@ def _law_in(body: str, controller: str) -> AdmittanceLaw:
 
 
 def _header(
-    designed: Designed,
-    controller: Controller,
+    name: str,
+    chosen: Mapping[str, _Chosen],
     sampling: SamplingSpec,
-    met: Range,
-    certificate: Certificate,
+    certificates: Mapping[str, Certificate],
 ) -> str:
-    system, evidence = certificate.system, certificate.evidence
-    assert evidence is not None, "proved by something"
     least, most = sampling.delay
+    ranged = tuple(dict.fromkeys(gain for item in chosen.values() for gain in _ranged(item)))
+    first = next(iter(chosen.values())).designed
     lines = [
-        f"nrs-design ros2 of {designed.spec.name}, controller {controller.name}, "
-        f"nrs-design {__version__}",
-        f"spec: {designed.spec.name}, sha256 {designed.loaded.sha256}",
-        f"certificate: {certificate.id}",
+        f"nrs-design ros2 of {first.spec.name}, controller {name}, nrs-design {__version__}",
         "verdict: PROVED, of the law as admittance_controller computes it with these numbers",
-        f"claim: {evidence.claim(system)}",
         f"sample time: {exact_text(sampling.period.exact)} s, measurements {least} to {most} "
         "samples old",
-        f"touched: {float(met[0])!r} to {float(met[1])!r} N*m/rad",
-        "units: kg*m^2, N*m/rad, joint_damping in 1/s",
-        *(f"taken for granted: {text}" for text in (*certificate.granted, *_kept(certificate))),
+        *(line for axis, item in chosen.items() for line in _about(axis, item, certificates[axis])),
         *(f"outside the proof: {text}" for text in OUTSIDE),
-        *(
-            (f"outside the proof: {not_for_ranges(ranged)}",)
-            if (ranged := _ranged(designed, controller))
-            else ()
-        ),
+        *((f"outside the proof: {not_for_ranges(ranged)}",) if ranged else ()),
         "outside the proof: switching to another controller; the same joint_damping acts on all "
         "axes, and no force on those that are not selected",
+        *(("outside the proof: what the axes do to each other",) if len(chosen) > 1 else ()),
         f"to be given beside this file: {BESIDE}",
     ]
     return "".join(f"# {line}\n" for line in lines)
+
+
+def _about(axis: str, item: _Chosen, certificate: Certificate) -> Iterator[str]:
+    """Yield what is proved of one axis."""
+    evidence, spec = certificate.evidence, item.designed.spec
+    assert evidence is not None, "proved by something"
+    unit = spec.axis.unit
+    yield f"axis {axis}: spec: {spec.name}, sha256 {item.designed.loaded.sha256}"
+    yield f"axis {axis}: certificate: {certificate.id}"
+    yield f"axis {axis}: claim: {evidence.claim(certificate.system)}"
+    low, high = map(float, item.met)
+    yield f"axis {axis}: touched: {low!r} to {high!r} {unit('N*m/rad')}"
+    yield f"axis {axis}: units: {unit('kg*m^2')}, {unit('N*m/rad')}, joint_damping in 1/s"
+    for text in (*certificate.granted, *_kept(certificate)):
+        yield f"axis {axis}: taken for granted: {text}"
 
 
 def _kept(certificate: Certificate) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from dataclasses import dataclass, field
 from functools import cache
@@ -13,6 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from nrs_design.axis import about
 from nrs_design.errors import Fault, SpecError
+from nrs_design.files import open_regular
 from nrs_design.proof.text import quoted
 from nrs_design.spec.document import (
     Data,
@@ -55,13 +57,14 @@ class LoadedSpec:
 
     path: Path  # The file, as it was named
     # Hash of what the file says, in hexadecimal; see `hash_meaning`. Where it names a robot, the
-    # bounds of that are counted in.
+    # bounds of that are counted in, or its URDF.
     sha256: str
     text: str  # The file's text
     spec: Spec  # What it says
     # The text as a tree, for positions; parsed once more where it is not given.
     parsed: Node | None = field(default=None, repr=False, compare=False)
-    bounds: str = ""  # Id of the bounds of the robot that it names; empty if it names none
+    # Id of the bounds of the robot, or hash of the URDF, that it names; empty if it names none.
+    bounds: str = ""
 
     @property
     def root(self) -> Node:
@@ -173,7 +176,27 @@ def _loaded(file: Path, text: str, root: Node, syntax: tuple[Fault, ...]) -> Loa
         # What is said of the robot is a part of what the spec says.
         used = bounds.id
         sha256 = hash_meaning({"spec": sha256, "bounds": used})
+    if spec.kind == "interaction-design" and spec.coupling is not None and spec.coupling.arm:
+        used = _hash_of_arm(file, spec.coupling.arm.urdf, root)
+        sha256 = hash_meaning({"spec": sha256, "urdf": used})
     return LoadedSpec(file, sha256, text, spec, root, used)
+
+
+def _hash_of_arm(spec: Path, urdf: str, root: Node) -> str:
+    """Return the SHA-256 of the file of an arm, which is a part of what a spec says."""
+    file = spec.parent / urdf
+    try:
+        with open_regular(file) as opened:
+            return hashlib.sha256(opened.read()).hexdigest()
+    except OSError:
+        at = place_of(root, ("coupling", "arm", "urdf"), at_key=True)
+        raise SpecError(
+            f"there is no URDF {quoted(urdf)} relative to this file",
+            path=spec,
+            line=at.line,
+            column=at.column,
+            remedy="name the file of the arm, such as arm.urdf",
+        ) from None
 
 
 def is_there(path: Path) -> bool:

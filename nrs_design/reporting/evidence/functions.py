@@ -88,7 +88,7 @@ class FunctionsPage(AbstractPage):
         else:
             blocks += matrix_blocks(self._touching, system.states)
         if numbers:
-            names = (item.name for item in system.couplings)
+            names = dict.fromkeys(item.name for item in system.couplings)
             rows = tuple((name, number(float(n))) for name, n in zip(names, numbers, strict=True))
             blocks.append(Table("Multipliers", ("How axes act on each other", "tau"), rows))
         if len(self.offer.forms) == 1 and not system.couplings:

@@ -15,12 +15,19 @@ from nrs_design.cli.printing import note, progress, say
 from nrs_design.ros2.cli.options import Lag, read_lag
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from nrs_design.pipeline import Designed
     from nrs_design.ros2.export import RosExport
+    from nrs_design.spec import LoadedSpec
 
 
 class RosAxis(StrEnum):
-    """Rotations of the control frame."""
+    """Directions and rotations of the control frame."""
 
+    X = "x"
+    Y = "y"
+    Z = "z"
     RX = "rx"
     RY = "ry"
     RZ = "rz"
@@ -29,10 +36,14 @@ class RosAxis(StrEnum):
 @command("ros2-export")
 def export(
     spec: SpecFile,
-    axis: Annotated[
-        RosAxis, typer.Option(help="Axis of the control frame about which the spec's axis turns.")
-    ],
     lag: Lag,
+    axis: Annotated[
+        RosAxis | None,
+        typer.Option(
+            help="Axis of the control frame that the spec's axis is; a file with several axes "
+            "names them x, y, z, rx, ry, rz itself."
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder for a file for each controller.")] = Path(
         "reports"
     ),
@@ -46,22 +57,25 @@ def export(
     Example: nrs-design ros2 export mine.nrs.yaml --axis ry --lag '5..20 ms'
     """
     from nrs_design.pipeline import placed, run_interaction, search_limits
-    from nrs_design.ros2.export import export_controllers, not_for_ranges
-    from nrs_design.spec import read_spec
+    from nrs_design.ros2.export import SEVERITY, export_controllers, not_for_ranges
 
-    loaded = read_spec(spec)
-    designed = run_interaction(loaded, "has no controllers to export")
-    name = loaded.spec.name
-    files = {c.name: out / f"{name}.{c.name}.ros2.yaml" for c in designed.design.controllers}
-    _check(spec, files)
+    axes = _axes_of(spec, axis)
+    designs = {
+        name: run_interaction(loaded, "has no controllers to export")
+        for name, loaded in axes.items()
+    }
+    loaded = next(iter(axes.values()))
+    name = loaded.spec.name if axis is not None else spec.name.partition(".")[0]
+    _check_folder(spec, out, name, designs)
     with progress(f"exporting {name}"), placed(loaded):
-        found = list(export_controllers(designed, axis, read_lag(lag), search_limits(loaded.spec)))
-    worst = max((item.verdict for item in found), key=_SEVERITY.index)
+        found = list(export_controllers(designs, read_lag(lag), search_limits(loaded.spec)))
+    worst = max((item.verdict for item in found), key=SEVERITY.index)
     written = []
     if worst == "proved":
         for item in found:
-            written.append(str(files[item.controller]))
-            _write(spec, files[item.controller], item)
+            file = out / f"{name}.{item.controller}.ros2.yaml"
+            written.append(str(file))
+            _write(axes, file, item)
 
     def show() -> None:
         if not written:
@@ -82,34 +96,61 @@ def export(
     )
 
 
-_SEVERITY = ("proved", "inconclusive", "refuted")
+def _axes_of(spec: Path, axis: RosAxis | None) -> dict[str, LoadedSpec]:
+    """Return the specs of all axes by the axis of the control frame that each is."""
+    from nrs_design.errors import DesignError
+    from nrs_design.ros2.law import AXES
+    from nrs_design.spec.load import read_axes
+
+    loaded = read_axes(spec)
+    if axis is None and len(loaded) == 1 and loaded[0].path == spec:
+        raise typer.BadParameter("name the axis that the spec is of", param_hint="--axis")
+    if axis is not None and loaded[0].path != spec:
+        raise typer.BadParameter("the file names its axes itself", param_hint="--axis")
+    names = [str(axis)] if axis else [str(item.path).rpartition("#")[2] for item in loaded]
+    for name, item in zip(names, loaded, strict=True):
+        kind = "prismatic" if name in AXES[:3] else "rotary"
+        if name not in AXES or getattr(item.spec, "axis", kind) != kind:
+            raise DesignError(
+                f"axis {name} is no {kind} axis of the control frame",
+                path=item.path,
+                remedy=f"the prismatic ones are {', '.join(AXES[:3])}, the rotary ones "
+                f"{', '.join(AXES[3:])}",
+            )
+    return dict(zip(names, loaded, strict=True))
 
 
-def _proof(file: Path) -> Path:
-    return file.with_suffix(".cert.json")
+def _proof(file: Path, axis: str, count: int) -> Path:
+    """Return the certificate beside a parameter file: one for each axis, if there are several."""
+    stem = str(file).removesuffix(".ros2.yaml")
+    return Path(f"{stem}.{axis}.ros2.cert.json" if count > 1 else f"{stem}.ros2.cert.json")
 
 
-def _check(spec: Path, files: dict[str, Path]) -> None:
+def _check_folder(spec: Path, out: Path, name: str, designs: Mapping[str, Designed]) -> None:
     """Refuse what must not be overwritten, before the work."""
     from nrs_design.output import check_place
     from nrs_design.ownership import check_certificate
     from nrs_design.ros2.export import BEGINNING
 
-    for file in files.values():
-        check_place(file, BEGINNING)
-        check_certificate(spec, _proof(file))
+    for designed in designs.values():
+        for controller in designed.design.controllers:
+            file = out / f"{name}.{controller.name}.ros2.yaml"
+            check_place(file, BEGINNING)
+            for axis in designs:
+                check_certificate(spec, _proof(file, axis, len(designs)))
 
 
-def _write(spec: Path, file: Path, item: RosExport) -> None:
-    """Write the certificate first: there is never an export without its proof."""
+def _write(axes: Mapping[str, LoadedSpec], file: Path, item: RosExport) -> None:
+    """Write the certificates first: there is never an export without its proofs."""
     from nrs_design.certificates.certificate import dump
     from nrs_design.output import CERTIFICATE, write_output
     from nrs_design.ownership import origin_of
     from nrs_design.ros2.export import BEGINNING
 
-    assert item.certificate is not None, "proved"
-    proof = _proof(file)
-    write_output(proof, dump(item.certificate, origin_of(spec, proof)), replaces=CERTIFICATE)
+    for axis, certificate in item.certificates.items():
+        proof = _proof(file, axis, len(axes))
+        origin = origin_of(axes[axis].path, proof)
+        write_output(proof, dump(certificate, origin), replaces=CERTIFICATE)
     write_output(file, item.text, replaces=BEGINNING)
 
 

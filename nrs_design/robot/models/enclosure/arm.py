@@ -135,7 +135,7 @@ def shown_between(
     low: float,
     high: float,
     boxes: tuple[Floats, Floats],
-) -> tuple[Floats, Floats]:
+) -> tuple[Bools, Places]:
     """Tell in which boxes the mobility is shown to be in a range, and where to halve the others.
 
     Parameters

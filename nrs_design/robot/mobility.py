@@ -167,9 +167,8 @@ def faults_of(use: ArmInUse) -> tuple[str, ...]:
         ("highest", found.highest > high, found.highest, high, found.at_highest),
     ):
         if beyond:
-            said.append(
-                f"the {name} mobility is said to be {end:.6g}, and {value:.6g} {pose(use, at)}"
-            )
+            where = f"{value:.6g} {pose(use, at)}"
+            said.append(f"the {name} mobility is said to be {end:.6g}, and is {where}")
     return tuple(said)
 
 

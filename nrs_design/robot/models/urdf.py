@@ -145,9 +145,7 @@ class _Tree:
             return None
         mass, tensor = element.find("mass"), element.find("inertia")
         if mass is None or tensor is None:
-            raise _wrong(
-                self.path, f"the inertial of link {quoted(name)} has no mass or no inertia"
-            )
+            raise _wrong(self.path, f"link {quoted(name)} has an inertial without mass or inertia")
         m = _number(self.path, mass, "value")
         xx, yy, zz, xy, xz, yz = (
             _number(self.path, tensor, key) for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")

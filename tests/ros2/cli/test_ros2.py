@@ -6,6 +6,8 @@ import shlex
 
 import pytest
 
+from nrs_design.ros2.law import read_law
+from nrs_design.ros2.parameters import parse_nodes
 from tests.ros2.support import EXAMPLE, changed
 from tests.support import ROOT, document_of, run, typed
 
@@ -141,3 +143,45 @@ def test_export_asks_for_the_axis_and_the_lag(spec, tmp_path):
     matrices = ROOT / "specs/examples/ando-shih.nrs.yaml"
     done = run("ros2", "export", matrices, "--axis", "ry", "--lag", "0 ms", cwd=tmp_path, code=2)
     assert "no controllers to export" in done.stderr
+
+
+def test_all_axes_of_a_file_are_one_parameter_file(tmp_path):
+    """The controllers of z, and beside each the only one of the other axes."""
+    axes = ROOT / "docs/examples/six-axes.nrs.yaml"
+    done = run("ros2", "export", axes, "--lag", "27..33 ms", cwd=tmp_path, code=0)
+    assert "PROVED, exported to reports/six-axes.insertion.ros2.yaml" in done.stdout
+    written = (tmp_path / "reports/six-axes.insertion.ros2.yaml").read_text(encoding="utf-8")
+    nodes = parse_nodes(written, tmp_path)
+    law = read_law(next(node for node in nodes if node.name == "admittance_controller"))
+    assert [axis.selected for axis in law.axes] == [True] * 6
+    assert [float(axis.mass) for axis in law.axes] == pytest.approx([0.2, 0.2, 0.16] + [0.008] * 3)
+    assert float(law.joint_damping) == pytest.approx(450)
+    proofs = sorted((tmp_path / "reports").glob("*.insertion.*.ros2.cert.json"))
+    assert len(proofs) == 6
+    for proof in proofs:
+        assert "PROVED" in run("verify", proof, cwd=tmp_path, code=0).stdout
+    # What the file says is decided again, of every axis.
+    checked = ("--stiffness", "700..1500 N/m", "--rotational-stiffness", "30..50 N*m/rad")
+    again = ("ros2", "check", "reports/six-axes.insertion.ros2.yaml", *checked)
+    done = run(*again, "--age", "1", "--lag", "27..33 ms", cwd=tmp_path, code=0)
+    assert done.stdout.count("stable") == 6
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("Mt: 0.16 kg, Bt: 72", "Mt: 0.16 kg, Bt: 73", "one joint_damping for all axes"),
+        ("  rz:\n", "  yaw:\n", "axis yaw is no rotary axis"),
+        ("  rx:\n    axis: rotary", "  q:\n    axis: rotary", "axis q is no rotary axis"),
+    ],
+)
+def test_axes_that_one_controller_cannot_run(tmp_path, old, new, said):
+    text = (ROOT / "docs/examples/six-axes.nrs.yaml").read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "six-axes.nrs.yaml"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    done = run("ros2", "export", path, "--lag", "27..33 ms", cwd=tmp_path, code=2)
+    assert said in done.stderr.replace("\n", " ")
+    assert not (tmp_path / "reports").exists()
+    named = run("ros2", "export", path, "--axis", "x", "--lag", "0 ms", cwd=tmp_path, code=2)
+    assert "the file names its axes itself" in named.stderr

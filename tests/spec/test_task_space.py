@@ -1,0 +1,148 @@
+"""Several axes in one file: each is an interaction design, with its places in the file."""
+
+import pytest
+
+from nrs_design.errors import SpecError
+from nrs_design.spec import read_spec
+from nrs_design.spec.load import axes_at, is_there, read_axes
+from nrs_design.spec.task_space import file_of
+
+TEXT = """\
+kind: task-space
+name: two
+title: Two axes
+common:
+  velocity_interface: {time_constant: 30 ms}
+  switching: arbitrary
+  sampling: {period: 2 ms, delay: 1}
+axes:
+  z:
+    axis: prismatic
+    limits: {velocity: 30 mm/s, torque: 3 N, bandwidth: 2 Hz}
+    environments: {tissue: {model: elastic, stiffness: 740 N/m}}
+    controllers: {insertion: {type: impedance, environment: tissue, Mt: 0.2 kg, Bt: 60 N*s/m}}
+  rx:
+    limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+    environments: {tissue: {model: elastic, stiffness: 42 N*m/rad}}
+    controllers: {guide: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt: 3 N*m*s/rad}}
+"""
+
+
+@pytest.fixture
+def write(tmp_path):
+    def written(*changes):
+        text = TEXT
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        path = tmp_path / "two.nrs.yaml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return written
+
+
+def test_each_axis_is_a_design(write):
+    path = write()
+    z, rx = read_axes(path)
+    assert [str(item.path) for item in (z, rx)] == [f"{path}#z", f"{path}#rx"]
+    assert (z.spec.name, rx.spec.name) == ("two-z", "two-rx")
+    assert z.spec.title == "Two axes: z"
+    assert (z.spec.axis, rx.spec.axis) == ("prismatic", "rotary")
+    assert z.spec.velocity_interface == rx.spec.velocity_interface
+    assert z.spec.environments["tissue"].stiffness.nominal.exact == 740
+    # As one file of its own says it.
+    assert z.sha256 != rx.sha256
+    assert read_spec(f"{path}#z").sha256 == z.sha256
+
+
+def test_places_are_those_of_the_file(write):
+    z, rx = read_axes(write())
+    assert z.place("environments", "tissue").line == 12
+    assert rx.place("environments", "tissue").line == 16
+    assert rx.place("sampling", "period").line == 7
+    assert rx.place("name").line == 14
+
+
+def test_an_axis_is_what_its_keys_and_those_in_common_say(write, tmp_path):
+    """The order of keys counts in the hash; here it is the same."""
+    (_, rx) = read_axes(write())
+    alone = """\
+kind: interaction-design
+name: two-rx
+title: "Two axes: rx"
+velocity_interface: {time_constant: 30 ms}
+switching: arbitrary
+sampling: {period: 2 ms, delay: 1}
+limits: {velocity: 8 deg/s, torque: 0.3 N*m, bandwidth: 2 Hz}
+environments: {tissue: {model: elastic, stiffness: 42 N*m/rad}}
+controllers: {guide: {type: impedance, environment: tissue, Mt: 0.01 kg*m^2, Bt: 3 N*m*s/rad}}
+"""
+    path = tmp_path / "alone.nrs.yaml"
+    path.write_text(alone, encoding="utf-8")
+    assert read_spec(path).sha256 == rx.sha256
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "said"),
+    [
+        (
+            "    axis: prismatic\n",
+            "    axis: prismatic\n    name: z\n",
+            11,
+            "said once for",
+        ),
+        ("  switching: arbitrary\n", "  switching: arbitrary\n  kind: robot\n", 7, "said once"),
+        (
+            "    axis: prismatic\n",
+            "    axis: prismatic\n    switching: arbitrary\n",
+            11,
+            "said of this axis, and of all in common",
+        ),
+        ("axes:\n", "axs:\n", 8, "axes"),
+        ("name: two\n", "", 1, "name"),
+        ("  z:\n", "  Z:\n", 9, "Z"),
+        ("stiffness: 740 N/m", "stiffness: 740 N*m/rad", 12, "prismatic"),
+        ("Bt: 60 N*s/m", "Bt: -60 N*s/m", 13, "must be positive"),
+    ],
+)
+def test_what_is_wrong_is_told_at_its_place(write, old, new, line, said):
+    path = write((old, new))
+    with pytest.raises(SpecError, match=said) as caught:
+        read_axes(path)
+    assert caught.value.line == line
+
+
+def test_what_is_asked_of_the_whole_names_the_axes(write):
+    path = write()
+    with pytest.raises(SpecError, match="holds several axes: z, rx") as caught:
+        read_spec(path)
+    assert f"{path}#z" in caught.value.remedy
+    with pytest.raises(SpecError, match="there is no axis 'ry'") as caught:
+        read_spec(f"{path}#ry")
+    assert "z, rx" in caught.value.remedy
+
+
+def test_a_file_without_axes_has_none(tmp_path):
+    path = tmp_path / "one.nrs.yaml"
+    path.write_text("kind: switched-system\nname: one\ntime: discrete\n", encoding="utf-8")
+    assert axes_at(path) == (path,)
+    with pytest.raises(SpecError, match="holds no axes"):
+        read_spec(f"{path}#x")
+
+
+def test_a_file_may_have_the_mark_in_its_name(tmp_path):
+    path = tmp_path / "arm#2.nrs.yaml"
+    path.write_text(TEXT, encoding="utf-8")
+    assert file_of(path) == path
+    assert [item.spec.name for item in read_axes(path)] == ["two-z", "two-rx"]
+
+
+def test_an_axis_is_there_while_the_file_has_it(write):
+    path = write()
+    z, gone = (path.with_name(f"{path.name}#{axis}") for axis in ("z", "q"))
+    assert is_there(path)
+    assert is_there(z)
+    assert not is_there(gone)
+    path.unlink()
+    assert not is_there(z)

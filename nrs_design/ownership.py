@@ -129,5 +129,5 @@ def check_certificate(spec: Path, file: Path) -> None:
 def _refuse_other(spec: Path, origin: str, file: Path) -> None:
     """Refuse if another spec owns a file; one that no longer exists owns nothing."""
     owner = file.parent / origin
-    if file_of(owner).is_file() and os.path.realpath(owner) != os.path.realpath(spec):
+    if os.path.isfile(file_of(owner)) and os.path.realpath(owner) != os.path.realpath(spec):
         raise OutputError(f"belongs to {os.path.relpath(owner)}", path=file, remedy=REMEDY)

@@ -78,10 +78,10 @@ def _defaults() -> dict[tuple[str, str], str]:
     found: dict[tuple[str, str], str] = {}
     for kind in SPEC_KINDS:
         schema = model_of(kind).model_json_schema()
-        for name, part in {**schema["$defs"], model_of(kind).__name__: schema}.items():
+        for name, part in {**schema.get("$defs", {}), model_of(kind).__name__: schema}.items():
             for key, field in part.get("properties", {}).items():
                 value = field.get("default")
-                if value not in (None, "", []):
+                if value not in (None, "", [], {}):
                     text = value["text"] if isinstance(value, dict) else str(value).lower()
                     found[name, key] = f"`{text}`"
     return found

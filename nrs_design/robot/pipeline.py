@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import placed, wrong_kind
 from nrs_design.progress import Progress, silent
 from nrs_design.spec import LoadedSpec, read_spec
@@ -13,6 +14,7 @@ from nrs_design.spec import LoadedSpec, read_spec
 if TYPE_CHECKING:
     from nrs_design.controllers.operations import StepLaw
     from nrs_design.robot.models import Robot
+    from nrs_design.robot.models.arm import ArmMobility
     from nrs_design.robot.simulation.robot_body import Arm
     from nrs_design.spec import RobotSpec
 
@@ -139,21 +141,64 @@ def contradict_robot_bounds(
     return _checked(path, lambda robot, document: contradict_bounds(robot, document, progress))
 
 
+def run_mobility(path: Path, budget: float, progress: Progress = silent) -> ArmMobility:
+    """Judge the mobility of the arm that a file with several axes names.
+
+    Parameters
+    ----------
+    path : Path
+        Of the axes, or one of them.
+    budget : float
+        Work, in units.
+    progress : callable
+        Told what is being done.
+
+    Raises
+    ------
+    SpecError
+        If the file or the URDF is wrong.
+    DesignError
+        If they do not fit.
+    """
+    from nrs_design.robot.design.mobility import judge_mobility
+
+    return judge_mobility(path, budget, progress)
+
+
 def check_mobility(
     path: Path, budget: float, progress: Progress = silent
 ) -> tuple[Path, tuple[str, ...]]:
-    """Compute the mobility of the arm that a spec names; as `check_robot_bounds`."""
-    from nrs_design.robot.mobility import check_mobility
+    """Compute the mobility that a file declares; as `check_robot_bounds`.
 
-    return check_mobility(path, budget, progress)
+    Parameters
+    ----------
+    path, budget, progress
+        As there.
+
+    Raises
+    ------
+    SpecError
+        If the file or the URDF is wrong.
+    DesignError
+        If the work did not suffice to decide.
+    """
+    found = run_mobility(path, budget, progress)
+    if found.verdict == "inconclusive":
+        raise DesignError(
+            f"the mobility of {found.urdf.as_posix()} was not shown to stay in the declared range",
+            path=path,
+            remedy="declare a wider range, use smaller ranges of joints, or give "
+            "`nrs-design robot mobility` more --budget",
+        )
+    return found.urdf, found.faults
 
 
 def contradict_mobility(path: Path) -> tuple[Path, tuple[str, ...]]:
     """Look for poses beyond the mobility that a spec declares; as `contradict_robot_bounds`."""
-    from nrs_design.robot.mobility import faults_of, read_arm_in_use
+    from nrs_design.robot.design.mobility import judge_mobility
 
-    use = read_arm_in_use(path)
-    return use.urdf, faults_of(use)
+    found = judge_mobility(path, 0.0, poses_only=True)
+    return found.urdf, found.faults
 
 
 def _checked(

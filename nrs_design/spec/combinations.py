@@ -129,7 +129,7 @@ COMBINATIONS: tuple[Row[Spec], ...] = (
     # Its law makes the torque, and what is touched brakes the joint between two samples.
     *_beside(TORQUES, COUPLED, SAFE, TWO_PERIODS, CONTINUOUS),
     # What the axes of an arm do to each other is derived for one contact that is kept.
-    *_beside(MOBILE, LOSABLE, DISTURBED, TIMED, CONSTANT_MOTOR, CONSTANT_TISSUE),
+    *_beside(MOBILE, LOSABLE, DISTURBED, CONSTANT_TISSUE),
     # When a command takes effect within a period is known to the loop of one axis alone.
     *_beside(TIMED, CONTINUOUS, TWO_PERIODS, COUPLED, SAFE),
     # What is about a pivot, or has units of a rotation in its words.

@@ -16,6 +16,7 @@ from nrs_design.spec.faults import Location
 from nrs_design.spec.features import (
     BLEEDING,
     CONSTANT_FORCE,
+    CONSTANT_MOTOR,
     COUPLED,
     HAND,
     IDLE,
@@ -610,6 +611,18 @@ INTERACTION_CHECKS: tuple[Row[Spec], ...] = (
         lambda s: MOBILE.find(s) and s.contact != "kept",
         "what the axes of an arm do to each other is derived for contact that is kept",
         "add `contact: kept`, or remove coupling",
+    ),
+    Row(
+        "{0[0]}.{0[1]}",
+        lambda s: (s.late_at,) if MOBILE.find(s) and s.late_at is not None else None,
+        "with a mobility of the arm, commands take effect at their sample",
+        "leave {0[1]} out, or remove coupling",
+    ),
+    Row(
+        "{0[0]}.{0[1]}.varies",
+        lambda s: (at,) if MOBILE.find(s) and (at := CONSTANT_MOTOR.find(s)) else None,
+        "with a mobility of the arm, what has a range may change at every sample",
+        "leave varies out, or remove coupling",
     ),
     Row(
         "torque_interface.inertia",

@@ -5,6 +5,7 @@ Every axis is an interaction design, addressed as ``FILE#AXIS``.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -72,7 +73,7 @@ class TaskSpaceSpec(SpecModel):
 def file_of(path: Path) -> Path:
     """Return the file of an address: without ``#AXIS``, unless a file is called so."""
     file, mark, _ = str(path).rpartition(SEPARATOR)
-    return Path(file) if mark and file and not path.exists() else path
+    return Path(file) if mark and file and not os.path.exists(path) else path
 
 
 def address(file: Path, axis: str) -> Path:

@@ -34,6 +34,20 @@ LOAD = {"load_inertia": "1.213 kg*m^2"}
 TWO = {"environments": {"soft": ELASTIC, "stiff": ELASTIC}}
 CONSTANT = {"range": ["40 N*m/rad", "46 N*m/rad"], "varies": False}
 CONSTANT_LAG = {"nominal": "0.0351 s", "range": ["0.035 s", "0.036 s"], "varies": False}
+TAKES_TORQUES = {
+    "actuator": None,
+    "motion_loop": None,
+    "torque_interface": {"inertia": "0.2 kg*m^2", "friction": "0.5 N*m*s/rad"},
+    "controllers": {
+        name: {
+            "type": "torque-impedance",
+            "environment": "soft",
+            "stiffness": "30 N*m/rad",
+            "damping": "3 N*m*s/rad",
+        }
+        for name in ("first", "second")
+    },
+}
 BASE = {
     "kind": "interaction-design",
     "name": "combined",
@@ -182,19 +196,11 @@ CHANGES = {
             "pivot": {"x": "0 m", "y": "0 m", "z": "-0.1 m"},
         }
     },
-    f.TORQUES: {
-        "actuator": None,
-        "motion_loop": None,
-        "torque_interface": {"inertia": "0.2 kg*m^2", "friction": "0.5 N*m*s/rad"},
-        "controllers": {
-            name: {
-                "type": "torque-impedance",
-                "environment": "soft",
-                "stiffness": "30 N*m/rad",
-                "damping": "3 N*m*s/rad",
-            }
-            for name in ("first", "second")
-        },
+    f.TORQUES: TAKES_TORQUES,
+    f.MOBILE: TAKES_TORQUES
+    | {
+        "coupling": {"mobility": ["0.8", "1.2"]},
+        "sampling": {"period": "2 ms", "delay": 0},
     },
     f.CONSTANT_TISSUE: {
         "environments": {

@@ -8,6 +8,7 @@ from nrs_design.spec import (
     SwitchedSystemSpec,
     load_spec,
 )
+from nrs_design.spec.load import axes_at
 
 from .samples import numbers
 
@@ -29,7 +30,10 @@ def system(path: str) -> SwitchedSystemSpec:
 
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name)
 def test_names_are_those_of_the_files(path: Path) -> None:
-    assert load_spec(path).name == path.name.removesuffix(".nrs.yaml")
+    for axis in axes_at(path):
+        file, _, name = axis.name.partition("#")
+        said = file.removesuffix(".nrs.yaml") + f"-{name}" * bool(name)
+        assert load_spec(axis).name == said
 
 
 @pytest.mark.parametrize("name", ["soft-tissue", "force-limit", "tissue-and-tool"])

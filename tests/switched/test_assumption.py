@@ -8,11 +8,17 @@ import pytest
 
 from nrs_design.pipeline import run_design
 from nrs_design.spec import read_spec
+from nrs_design.spec.load import axes_at
 from nrs_design.switched.assemble import assemble, assemble_matrices
 from nrs_design.switched.assumption import Assumption, Standing, kinds, say
 from tests.support import ROOT
 
-SPECS = sorted([*(ROOT / "specs").rglob("*.nrs.yaml"), *(ROOT / "docs").rglob("*.nrs.yaml")])
+SPECS = [
+    axis
+    for folder in ("docs", "specs")
+    for path in sorted((ROOT / folder).rglob("*.nrs.yaml"))
+    for axis in axes_at(path)
+]
 # What each shipped spec takes for granted, by ids: whoever removes one says so here.
 KNOWN = {
     name: ids.split()
@@ -35,7 +41,7 @@ def assumed(path):
 
 
 def named(path):
-    name = path.name.split(".")[0]
+    name = path.name.replace(".nrs.yaml", "")
     return pytest.param(path, id=name, marks=[pytest.mark.slow] if name == "hands-on" else [])
 
 

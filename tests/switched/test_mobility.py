@@ -181,7 +181,9 @@ def test_axes_that_are_not_alike_decrease_together(arm, proofs):
         ("mobility: [0.8, 1.25]", "mobility: [0, 1.25]", "positive"),
         ("mobility: [0.8, 1.25]", "mobility: [0.8, 1.25], axes: 3", "axes is for axes with a"),
         ("contact: kept", "contact: losable", "contact"),
-        ("delay: 0}", "delay: 0, latency: 0.3 ms}", "mobility"),
+        ("delay: 0}", "delay: 0, latency: 0.3 ms}", "take effect at their sample"),
+        ("friction: 0.5 N*m*s/rad", "friction: {nominal: 0.5 N*m*s/rad, range: [0.4 N*m*s/rad, "
+         "0.6 N*m*s/rad], varies: false}", "may change at every sample"),
         ("inertia: 0.2 kg*m^2", "inertia: {nominal: 0.2 kg*m^2, range: [0.1 kg*m^2, 0.3 kg*m^2]}",
          "said twice: by its range, and by the mobility"),
     ],

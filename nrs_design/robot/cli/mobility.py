@@ -12,7 +12,10 @@ from nrs_design.cli.options import SpecFile, read_work
 from nrs_design.cli.printing import progress, say
 
 if TYPE_CHECKING:
-    from nrs_design.robot.mobility import ArmInUse, FoundMobility
+    from nrs_design.robot.models import ArmMobility
+
+# How far beyond what is found a range is offered.
+ROOM = 0.05
 
 
 @command("robot-mobility")
@@ -32,40 +35,33 @@ def mobility(
 
     Example: nrs-design robot mobility docs/examples/six-torques.nrs.yaml
     """
-    from nrs_design.robot.mobility import faults_of, find_mobility, read_arm_in_use, show_mobility
+    from nrs_design.robot.pipeline import run_mobility
 
-    use = read_arm_in_use(spec)
-    with progress(f"mobility of {use.arm.name}") as step:
-        step("looking for the extremes")
-        found = find_mobility(use)
-        faults = faults_of(use)
-        shown = not faults and show_mobility(use, use.declared, budget, step)
-    verdict = "refuted" if faults else "proved" if shown else "inconclusive"
+    with progress(f"mobility of {spec.name}") as step:
+        found = run_mobility(spec, budget, step)
 
     def facts() -> dict[str, Any]:
         return {
-            "urdf": use.urdf.as_posix(),
-            "axes": list(use.names),
-            "verdict": verdict,
-            "declared": list(use.declared),
-            "found": [found.lowest, found.highest],
-            "at": [list(map(float, q)) for q in (found.at_lowest, found.at_highest)],
-            "joints": [joint.name for joint in use.arm.joints],
+            "urdf": found.urdf.as_posix(),
+            "axes": list(found.axes),
+            "verdict": found.verdict,
+            "declared": list(found.declared),
+            "found": list(found.found),
+            "at": [list(q) for q in found.at],
+            "joints": list(found.joints),
         }
 
-    return Answer(facts, lambda: _show(use, found, verdict), exit_codes.OF_VERDICT[verdict])
+    return Answer(facts, lambda: _show(found), exit_codes.OF_VERDICT[found.verdict])
 
 
-def _show(use: ArmInUse, found: FoundMobility, verdict: str) -> None:
-    from nrs_design.robot.mobility import ROOM, pose
-
-    low, high = use.declared
-    said = f"eigenvalues in [{low:.6g}, {high:.6g}]"
-    say(f"{use.arm.name}: {verdict.upper()}: {said} with {', '.join(use.names)}", verdict=verdict)
-    say(f"  found {found.lowest:.6g} {pose(use, found.at_lowest)}")
-    say(f"  found {found.highest:.6g} {pose(use, found.at_highest)}")
-    if verdict == "refuted":
-        wide = (found.lowest * (1 - ROOM), found.highest * (1 + ROOM))
-        say(f"next: write `mobility: [{wide[0]:.3g}, {wide[1]:.3g}]`, and see whether it is shown")
-    elif verdict == "inconclusive":
+def _show(found: ArmMobility) -> None:
+    low, high = found.declared
+    said = f"eigenvalues in [{low:.6g}, {high:.6g}] with {', '.join(found.axes)}"
+    say(f"{found.arm}: {found.verdict.upper()}: {said}", verdict=found.verdict)
+    for value, where in zip(found.found, found.where, strict=True):
+        say(f"  found {value:.6g} {where}")
+    if found.verdict == "refuted":
+        low, high = found.found[0] * (1 - ROOM), found.found[1] * (1 + ROOM)
+        say(f"next: write `mobility: [{low:.3g}, {high:.3g}]`, and see whether it is shown")
+    elif found.verdict == "inconclusive":
         say("next: declare a wider range, narrow those of the joints, or give more --budget")

@@ -1,5 +1,6 @@
 """The robot: geometry, kinematics, dynamics, simplified dynamics and balance (thesis 3 and 4)."""
 
+from nrs_design.robot.models.arm import ArmMobility
 from nrs_design.robot.models.balance import (
     Balance,
     balanced_robot,
@@ -86,6 +87,7 @@ __all__ = [
     "DRIVEN",
     "LEAST",
     "TABLE_3_5",
+    "ArmMobility",
     "Balance",
     "Correction",
     "Enclosed",

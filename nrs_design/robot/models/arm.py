@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ class ArmJoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Arm:
+class ArmTree:
     """All joints that move, parents first, and the frame of the tip."""
 
     name: str
@@ -43,6 +44,29 @@ class Arm:
         return len(self.joints)
 
 
+@dataclass(frozen=True, slots=True)
+class ArmMobility:
+    """What is found and shown of the mobility of an arm."""
+
+    arm: str
+    urdf: Path
+    axes: tuple[str, ...]  # Of the tip
+    joints: tuple[str, ...]
+    # Lowest and highest: as a spec declares them, and as poses have them, in floating point.
+    declared: tuple[float, float]
+    found: tuple[float, float]
+    # The joint positions of what is found, in rad and m, and in words.
+    at: tuple[tuple[float, ...], tuple[float, ...]]
+    where: tuple[str, str]
+    faults: tuple[str, ...]  # Where a pose is beyond what is declared
+    shown: bool  # Whether what is declared holds in all poses that are used
+
+    @property
+    def verdict(self) -> str:
+        """Whether it is proved, refuted or neither."""
+        return "refuted" if self.faults else "proved" if self.shown else "inconclusive"
+
+
 def spatial_inertia(mass: float, center: Floats, tensor: Floats) -> Floats:
     """Return the spatial inertia of a body, angular part first (Featherstone 2008, 2.63).
 
@@ -55,7 +79,7 @@ def spatial_inertia(mass: float, center: Floats, tensor: Floats) -> Floats:
     tensor : array, shape (3, 3)
         About the center of mass, in kg m^2.
     """
-    c = cross(center)
+    c = cross_matrix(center)
     return np.block([[tensor + mass * c @ c.T, mass * c], [mass * c.T, mass * np.eye(3)]])
 
 
@@ -71,10 +95,10 @@ def motion_transform(rotation: Floats, place: Floats) -> Floats:
     """
     turned = np.swapaxes(rotation, -1, -2)
     zero = np.zeros_like(turned)
-    return np.block([[turned, zero], [-turned @ cross(place), turned]])
+    return np.block([[turned, zero], [-turned @ cross_matrix(place), turned]])
 
 
-def cross(v: Floats) -> Floats:
+def cross_matrix(v: Floats) -> Floats:
     """Return the matrix of the cross product with a vector."""
     x, y, z = v
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -82,7 +106,7 @@ def cross(v: Floats) -> Floats:
 
 def cross_motion(S: Floats) -> Floats:
     """Return the matrix of the cross product of spatial velocities with one."""
-    w, v = cross(S[:3]), cross(S[3:])
+    w, v = cross_matrix(S[:3]), cross_matrix(S[3:])
     return np.block([[w, np.zeros((3, 3))], [v, w]])
 
 
@@ -92,12 +116,12 @@ def joint_axis(joint: ArmJoint) -> Floats:
     return np.concatenate([zero, joint.axis] if joint.slides else [joint.axis, zero])
 
 
-def jacobian_and_mass(arm: Arm, q: Floats) -> tuple[Floats, Floats]:
+def jacobian_and_mass(arm: ArmTree, q: Floats) -> tuple[Floats, Floats]:
     """Return the Jacobian of the tip in its own frame, linear part first, and the mass matrix.
 
     Parameters
     ----------
-    arm : Arm
+    arm : ArmTree
         The arm.
     q : array, shape (..., n)
         Joint positions, in rad or m.
@@ -122,12 +146,12 @@ def jacobian_and_mass(arm: Arm, q: Floats) -> tuple[Floats, Floats]:
     return np.concatenate([tip[..., 3:, :], tip[..., :3, :]], axis=-2), M
 
 
-def mobility(arm: Arm, q: Floats, inertias: Floats, axes: list[int]) -> Floats:
+def mobility(arm: ArmTree, q: Floats, inertias: Floats, axes: list[int]) -> Floats:
     """Return ``J^(1/2) Lambda(q)^-1 J^(1/2)`` in some directions of the tip, in floating point.
 
     Parameters
     ----------
-    arm : Arm
+    arm : ArmTree
         The arm.
     q : array, shape (..., n)
         Joint positions, in rad or m.
@@ -151,7 +175,7 @@ def _joint_motion(joint: ArmJoint, q: Floats) -> Floats:
     """Return the motion transform from the body before to that of a joint."""
     fixed = motion_transform(joint.rotation, joint.place)
     E = np.eye(3)
-    a = cross(joint.axis)
+    a = cross_matrix(joint.axis)
     if joint.slides:
         moved = np.zeros((*q.shape, 6, 6))
         moved[..., :3, :3] = moved[..., 3:, 3:] = E

@@ -17,10 +17,10 @@ from nrs_design.errors import SpecError
 from nrs_design.files import open_regular
 from nrs_design.proof.text import quoted
 from nrs_design.robot.models.arm import (
-    Arm,
     ArmJoint,
+    ArmTree,
     Floats,
-    cross,
+    cross_matrix,
     motion_transform,
     spatial_inertia,
 )
@@ -45,7 +45,7 @@ class _Joint:
     limits: tuple[float, float] | None
 
 
-def read_arm(path: Path, tip: str, held: Mapping[str, float] = MappingProxyType({})) -> Arm:
+def read_arm(path: Path, tip: str, held: Mapping[str, float] = MappingProxyType({})) -> ArmTree:
     """Read an arm, and which of its links is the tip.
 
     Parameters
@@ -91,7 +91,7 @@ class _Tree:
     links: dict[str, ElementTree.Element]
     joints: list[_Joint]
 
-    def arm(self, name: str, base: str, tip: str) -> Arm:
+    def arm(self, name: str, base: str, tip: str) -> ArmTree:
         made: list[ArmJoint] = []
         found: dict[str, tuple[int, Floats, Floats]] = {}
         inertias: list[Floats] = []
@@ -136,7 +136,7 @@ class _Tree:
                 )
             joints.append(replace(bare, inertia=inertia))
         body, rotation, place = found[tip]
-        return Arm(name, tuple(joints), body, rotation, place)
+        return ArmTree(name, tuple(joints), body, rotation, place)
 
     def _inertia(self, name: str) -> Floats | None:
         """Return the spatial inertia of a link in its own frame; None where it says nothing."""
@@ -224,7 +224,7 @@ def _joint(path: Path, element: ElementTree.Element, held: Mapping[str, float]) 
         if kind == "prismatic":
             place = place + rotation @ axis * held[name]
         else:
-            a = cross(axis)
+            a = cross_matrix(axis)
             rotation = rotation @ (
                 np.eye(3) + np.sin(held[name]) * a + (1 - np.cos(held[name])) * (a @ a)
             )

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nrs_design.robot.models.arm import (
-    Arm,
     ArmJoint,
+    ArmTree,
     Floats,
-    cross,
+    cross_matrix,
     cross_motion,
     joint_axis,
     motion_transform,
@@ -129,7 +129,7 @@ class Slopes:
 
 
 def shown_between(
-    arm: Arm,
+    arm: ArmTree,
     inertias: Floats,
     axes: list[int],
     low: float,
@@ -140,7 +140,7 @@ def shown_between(
 
     Parameters
     ----------
-    arm : Arm
+    arm : ArmTree
         The arm.
     inertias : array, shape (k,)
         The J of the axes, in kg or kg m^2.
@@ -209,7 +209,7 @@ def _positive(form: Slopes, half: Floats) -> tuple[Bools, Floats]:
     return largest < 1, moved.sum(axis=-1).max(axis=-1)
 
 
-def _over(arm: Arm, axes: list[int], middle: Floats, half: Floats) -> tuple[Slopes, Slopes]:
+def _over(arm: ArmTree, axes: list[int], middle: Floats, half: Floats) -> tuple[Slopes, Slopes]:
     """Return the Jacobian of the tip in some of its directions, and the mass matrix."""
     n, b = middle.shape
     found: list[Slopes] = []
@@ -246,7 +246,7 @@ def _over(arm: Arm, axes: list[int], middle: Floats, half: Floats) -> tuple[Slop
 def _joint_motion(joint: ArmJoint, q: Floats, half: Floats) -> tuple[BallMatrix, BallMatrix]:
     """Return the motion transform of a joint at the middle and all over each box."""
     fixed = BallMatrix.known(motion_transform(joint.rotation, joint.place))
-    a = cross(joint.axis)
+    a = cross_matrix(joint.axis)
     E = np.eye(6)
     if joint.slides:
         slide = np.zeros((6, 6))
@@ -270,7 +270,7 @@ def _joint_motion(joint: ArmJoint, q: Floats, half: Floats) -> tuple[BallMatrix,
 
 
 def cover_mobility(
-    arm: Arm,
+    arm: ArmTree,
     inertias: Floats,
     axes: list[int],
     goal: tuple[float, float],

@@ -12,7 +12,7 @@ from nrs_design.errors import DesignError
 from nrs_design.pipeline.design import placed
 from nrs_design.progress import Progress, silent
 from nrs_design.proof.text import quoted
-from nrs_design.robot.models.arm import Arm, Floats, mobility
+from nrs_design.robot.models.arm import ArmMobility, ArmTree, Floats, mobility
 from nrs_design.robot.models.enclosure.arm import cover_mobility
 from nrs_design.robot.models.urdf import read_arm
 from nrs_design.spec.load import LoadedSpec, read_axes
@@ -30,9 +30,6 @@ SLIDING = AXES[:3]
 TRIED, KEPT, STEPS = 4096, 16, 12
 # Numbers of a spec become doubles.
 OUTWARD = 2.0**-40
-# How far beyond what is found a range is offered.
-ROOM = 0.05
-BUDGET = 300.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +38,7 @@ class ArmInUse:
 
     file: Path  # Of the axes
     urdf: Path
-    arm: Arm
+    arm: ArmTree
     names: tuple[str, ...]  # Of the axes
     inertias: Floats  # Shape (k,), in kg or kg m^2
     low: Floats  # Shape (n,), in rad or m
@@ -130,37 +127,60 @@ def find_mobility(use: ArmInUse) -> FoundMobility:
     return FoundMobility(lowest, highest, at_lowest, at_highest)
 
 
-def show_mobility(
-    use: ArmInUse,
-    goal: tuple[float, float],
-    budget: float = BUDGET,
-    progress: Progress = silent,
-) -> bool:
-    """Tell whether the mobility is shown to be in a range over the whole box, rigorously.
+def judge_mobility(
+    path: Path, budget: float, progress: Progress = silent, *, poses_only: bool = False
+) -> ArmMobility:
+    """Judge the mobility that a file declares, over the whole box of joint positions.
 
     Parameters
     ----------
-    use : ArmInUse
-        The arm.
-    goal : tuple of float
-        The range.
+    path : Path
+        Of the axes, or one of them.
     budget : float
         Work, in units.
     progress : callable
-        Told how many boxes are done and left.
+        Told what is being done.
+    poses_only : bool
+        Only look for a pose that is beyond it; that there is none shows nothing.
+
+    Raises
+    ------
+    SpecError
+        If the file or the URDF is wrong.
+    DesignError
+        If they do not fit.
     """
+    use = read_arm_in_use(path)
+    progress("mobility: looking for the extremes")
+    found = find_mobility(use)
+    faults = _faults(use, found)
 
     def told(done: int, left: int) -> None:
         progress(f"mobility: {done} boxes shown, {left} left")
 
-    allowance = Allowance(budget, fuse=Fuse.of(budget))
-    box = use.low, use.high
-    return cover_mobility(use.arm, use.inertias, use.rows, goal, box, allowance, told)
+    shown = False
+    if not faults and not poses_only:
+        allowance, box = Allowance(budget, fuse=Fuse.of(budget)), (use.low, use.high)
+        shown = cover_mobility(use.arm, use.inertias, use.rows, use.declared, box, allowance, told)
+    ends = found.at_lowest, found.at_highest
+    lowest, highest = (tuple(map(float, q)) for q in ends)
+    return ArmMobility(
+        use.arm.name,
+        use.urdf,
+        use.names,
+        tuple(joint.name for joint in use.arm.joints),
+        use.declared,
+        (found.lowest, found.highest),
+        (lowest, highest),
+        (pose(use, ends[0]), pose(use, ends[1])),
+        faults,
+        shown,
+    )
 
 
-def faults_of(use: ArmInUse) -> tuple[str, ...]:
-    """Say where a pose is beyond the declared mobility; that there is none shows nothing."""
-    found, (low, high) = find_mobility(use), use.declared
+def _faults(use: ArmInUse, found: FoundMobility) -> tuple[str, ...]:
+    """Say where a pose is beyond the declared mobility."""
+    low, high = use.declared
     said = []
     for name, beyond, value, end, at in (
         ("lowest", found.lowest < low, found.lowest, low, found.at_lowest),
@@ -179,32 +199,6 @@ def pose(use: ArmInUse, q: Floats) -> str:
         f"{j.name} {value:.4g} m" if j.slides else f"{j.name} {np.degrees(value):.4g} deg"
         for j, value in each
     )
-
-
-def check_mobility(
-    path: Path, budget: float, progress: Progress = silent
-) -> tuple[Path, tuple[str, ...]]:
-    """Compute the mobility that a file declares; see `nrs_design.robot.pipeline`.
-
-    Raises
-    ------
-    SpecError
-        If the file or the URDF is wrong.
-    DesignError
-        If the work did not suffice to decide.
-    """
-    use = read_arm_in_use(path)
-    progress("mobility: looking for the extremes")
-    if faults := faults_of(use):
-        return use.urdf, faults
-    if not show_mobility(use, use.declared, budget, progress):
-        raise DesignError(
-            f"the mobility of {use.urdf.as_posix()} was not shown to stay in the declared range",
-            path=path,
-            remedy="declare a wider range, use smaller ranges of joints, or give "
-            "`nrs-design robot mobility` more --budget",
-        )
-    return use.urdf, ()
 
 
 def _extreme(use: ArmInUse, q: Floats, side: int) -> Floats:
@@ -227,7 +221,7 @@ def _check_name(design: InteractionDesignSpec, name: str) -> None:
         _wrong(f"axis {name} is {kind}", f"write `axis: {kind}`, or call it otherwise")
 
 
-def _box(arm: ArmSpec, model: Arm) -> tuple[Floats, Floats]:
+def _box(arm: ArmSpec, model: ArmTree) -> tuple[Floats, Floats]:
     """Return the joint positions that are used, rounded outwards."""
     ends = []
     for joint in model.joints:

@@ -54,11 +54,18 @@ def test_adding_is_cheap():
     ("law", "file", "also"),
     [
         # The target of impedance control is listed, and doubted, by name; its gains are searched,
-        # and the loops of all of them follow from a few.
+        # the loops of all of them follow from a few, and its responses are bounded over a band.
         (
             "Admittance",
             "impedance",
-            {"spec/describe.py", "design/doubts.py", "switched/cut_loop.py"},
+            {
+                "spec/describe.py",
+                "design/doubts.py",
+                "switched/cut_loop.py",
+                "design/displayed_response.py",
+                "design/response_goals.py",
+                "design/sampled_response.py",
+            },
         ),
         ("ProportionalForce", "force", set()),
         ("PositionControl", "position", set()),
@@ -104,6 +111,7 @@ KINDS_OF_SPECS = {
     ("nrs_design.pipeline.design", "robot"),
     ("nrs_design.pipeline.margins", "robot"),
     ("nrs_design.robot.pipeline", "robot"),
+    ("nrs_design.robot.design.mobility", "interaction-design"),
     ("nrs_design.spec.load", "interaction-design"),
     ("nrs_design.switched.assemble", "robot"),
     ("nrs_design.switched.assemble", "switched-system"),

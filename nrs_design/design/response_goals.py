@@ -15,7 +15,6 @@ from nrs_design.design.displayed_response import (
 )
 from nrs_design.design.sampled_response import SampledAdmittance, largest_sampled_impedance
 from nrs_design.models.actuator import ActuatorRanges
-from nrs_design.models.contact import Elastic, KelvinVoigt
 from nrs_design.models.contact.environment import Environment
 from nrs_design.models.interval import Interval
 from nrs_design.proof.bounds import rounded_down, rounded_up
@@ -227,8 +226,9 @@ def _why_not(
         return next((why for why, found in cases.items() if found), "")
     if axis is None:
         return "the force is sampled more often than the motion loop"
+    # Hand, and memory.
     if touched is not None and (
-        touched.law not in (Elastic, KelvinVoigt) or touched.preloaded or touched.each_losable
+        touched.law.has_mass or touched.law.remembers or touched.preloaded or touched.each_losable
     ):
         return f"{touched.name} is neither elastic nor Kelvin-Voigt for every deflection"
     return ""

@@ -23,6 +23,7 @@ class TemplateOption(StrEnum):
 
     INTERACTION_DESIGN = "interaction-design"
     HYBRID_FORCE = "hybrid-force"
+    TASK_SPACE = "task-space"
     SWITCHED_SYSTEM = "switched-system"
     ROBOT = "robot"
 
@@ -65,7 +66,7 @@ def init(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")] = False,
 ) -> Answer:
-    """Write a commented spec (interaction-design, hybrid-force, switched-system or robot).
+    """Write a commented spec: a design, several axes, matrices or a robot.
 
     The spec is named after its file, so that several can stand in one folder. The schema that its
     first line names for editors is written beside it, unless it is there.

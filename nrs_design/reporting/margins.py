@@ -43,7 +43,7 @@ def margin_lines(margins: ProofMargins, loaded: LoadedSpec) -> Iterator[Sentence
     sampled = isinstance(spec, InteractionDesignSpec) and spec.sampling is not None
     if sampled and _refutes(margins):
         yield Sentence(
-            "refutations are for an over-approximation of the motor; no real motor in the range "
+            "refutations are for an over-approximation of the drive; no real drive in the range "
             "need be unstable"
         )
 

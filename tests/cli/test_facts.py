@@ -54,7 +54,7 @@ def test_what_refutes_a_sampled_loop_may_be_no_motor():
     """The sentence follows only what is refuted, and only where the loop is sampled."""
     path = ROOT / "docs" / "examples" / "late-force.nrs.yaml"
     *_, last = margin_lines(ProofMargins(FOUND), read_spec(path))
-    assert "for an over-approximation of the motor" in last
+    assert "for an over-approximation of the drive" in last
     proved = replace(FOUND, period=Bracket(THIRD, None, "the search ends"))
     for margins, loaded in ((proved, read_spec(path)), (FOUND, read_spec(SOFT_TISSUE))):
         assert not any("enclose" in line for line in margin_lines(ProofMargins(margins), loaded))

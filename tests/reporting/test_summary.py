@@ -76,8 +76,8 @@ def test_a_refuted_sampled_loop_is_said_to_be_an_over_approximation():
     result = run_certification(read_spec(ROOT / "docs/examples/late-force.nrs.yaml"))
     system, evidence = result.certification.system, result.certification.evidence
     assert evidence.shows is Shows.INSTABILITY
-    assert "for an over-approximation of the motor" in summary_of(result)[0]
-    assert "no real motor in the range need be unstable" in evidence.claim(system)
+    assert "for an over-approximation of the drive" in summary_of(result)[0]
+    assert "no real drive in the range need be unstable" in evidence.claim(system)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft7Validator
 from ruamel.yaml import YAML
 
-from nrs_design.spec import parse_spec
+from nrs_design.spec.load import read_axes
 from nrs_design.spec.schema import json_schema
 from nrs_design.spec.templates import TEMPLATES
 
@@ -60,9 +60,11 @@ def test_shipped_specs_validate(path: Path) -> None:
 @pytest.mark.parametrize(
     "text", [*TEMPLATES.values(), IMPEDANCE, FORCE, SWITCHED, RULES, DWELL, STEPS]
 )
-def test_templates_and_samples_validate(text: str) -> None:
+def test_templates_and_samples_validate(text: str, tmp_path: Path) -> None:
     assert faults(text) == []
-    assert parse_spec(text)
+    path = tmp_path / "sample.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert read_axes(path)
 
 
 @pytest.mark.parametrize(

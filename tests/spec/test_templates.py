@@ -5,19 +5,22 @@ import pytest
 
 from nrs_design.spec import RobotSpec, load_spec, parse_spec
 from nrs_design.spec.interaction import InteractionDesignSpec
+from nrs_design.spec.load import read_axes
 from nrs_design.spec.switched_system import SwitchedSystemSpec
 from nrs_design.spec.switching import parse_dwell_time
-from nrs_design.spec.templates import INTERFACES, PRISMATIC, TEMPLATES
+from nrs_design.spec.templates import INTERFACES, PRISMATIC, TASK_SPACE, TEMPLATES
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
-def test_templates_load_and_point_to_their_schema(name: str) -> None:
+def test_templates_load_and_point_to_their_schema(name: str, tmp_path: Path) -> None:
     text = TEMPLATES[name]
     assert text.splitlines()[0] == "# yaml-language-server: $schema=./nrs.schema.json"
-    spec = parse_spec(text)
-    assert isinstance(spec, RobotSpec) or spec.switching.is_arbitrary
+    path = tmp_path / "template.nrs.yaml"
+    path.write_text(text, encoding="utf-8")
+    for axis in read_axes(path):
+        assert isinstance(axis.spec, RobotSpec) or axis.spec.switching.is_arbitrary
     assert text.isascii()
     assert max(map(len, text.splitlines())) <= 105
 
@@ -72,7 +75,10 @@ def test_goals_of_the_templates_are_right() -> None:
         assert len(dict(spec.goals.given())) == count
 
 
-@pytest.mark.parametrize("name", sorted({*TEMPLATES} - {"robot", *INTERFACES, PRISMATIC}))
+WITHOUT_DWELL = {"robot", *INTERFACES, PRISMATIC, TASK_SPACE}
+
+
+@pytest.mark.parametrize("name", sorted({*TEMPLATES} - WITHOUT_DWELL))
 def test_dwell_time_of_the_template_is_right(name: str) -> None:
     shown = re.search("^# +dwell_time: (.*?) +#", TEMPLATES[name], re.MULTILINE)
     assert shown

@@ -24,8 +24,8 @@ PULLING = ", the environment pulling as it pushes"
 ROUNDED = "What single-precision arithmetic rounds in the law is included."
 NOT_ROUNDED = "This holds for the law computed without rounding."
 GROWN_WITHOUT_ROUNDING = (
-    "The instability is proved for exact arithmetic and for an over-approximation of the motor; no "
-    "real motor in the range need be unstable."
+    "The instability is proved for exact arithmetic and for an over-approximation of the drive; no "
+    "real drive in the range need be unstable."
 )
 GROWN_ALONE = (
     "This growth is that of one axis on which the others do not act, which is within what is said "

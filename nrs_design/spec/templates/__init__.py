@@ -10,11 +10,14 @@ from types import MappingProxyType
 INTERFACES = tuple(f"{taken}-interface" for taken in ("velocity", "position", "torque"))
 # One of an axis that slides.
 PRISMATIC = "prismatic-axis"
+# Several axes in one file.
+TASK_SPACE = "task-space"
 _NAMES = (
     "interaction-design",
     *INTERFACES,
     PRISMATIC,
     "hybrid-force",
+    TASK_SPACE,
     "switched-system",
     "robot",
 )

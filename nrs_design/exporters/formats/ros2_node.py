@@ -7,6 +7,7 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
+from nrs_design.axis import unit
 from nrs_design.controllers.parts import HAND, POSITION, WANTED
 from nrs_design.errors import DesignError
 from nrs_design.exporters import SAMPLED, Format
@@ -91,7 +92,7 @@ def render(export: Export) -> dict[str, bytes]:
     code = {**c.render(export), **monitor.render(export)}
     values = _values(program, monitor_limits(export, program.law.modes), code["_monitor.h"])
     texts = {
-        name: fill_template(f"ros2/{template}.j2", **values)
+        name: fill_template(f"ros2/{template}.j2", unit=unit, **values)
         for name, template in _TEMPLATES.items()
     }
     files = {name: text.encode() for name, text in texts.items()}

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from nrs_design.proof.constant import name_between, system_at
+from nrs_design.proof.constant import find_odd_shares, name_between, system_at, value_at
 from nrs_design.proof.switching import ARBITRARY, FixedParameter, Stay, Switching
 from nrs_design.spec import parse_spec
 from nrs_design.switched.assemble import assemble_from_text
@@ -108,3 +108,38 @@ def test_a_stay_must_suit_both_ends():
     )
     assert found.switching.stays == (("a/k-min", Stay(Fraction(2), Fraction(5))),)
     assert system_at(system, (Fraction(1),)).switching == ARBITRARY
+
+
+@pytest.mark.parametrize(
+    ("switching", "shares", "said"),
+    [
+        (Switching(), (Fraction(1),), "no parameter is constant"),
+        ({}, (), "no share is given"),
+        ({}, (Fraction(1), Fraction(0)), "not one share for each"),
+        ({"enclosed": True}, (Fraction(1),), "values are enclosed only"),
+        ({"twice": True}, (Fraction(1),), "not one share for each"),
+        ({}, (Fraction(2),), "not between 0 and 1"),
+        ({}, (Fraction(1, 3),), None),
+    ],
+)
+def test_shares_are_those_of_a_value(switching, shares, said):
+    if not isinstance(switching, Switching):
+        known = assembled().switching
+        (parameter,) = known.fixed_parameters
+        named = (replace(parameter, enclosed=switching.get("enclosed", False)),)
+        switching = replace(known, fixed_parameters=named * (1 + switching.get("twice", False)))
+    found = find_odd_shares(switching, shares)
+    assert found is None if said is None else said in found
+
+
+def test_a_parameter_that_acts_by_its_inverse_has_values_between():
+    """One over it is affine in the share: half way from 1 to 3 it is 3/2."""
+    parameter = FixedParameter("J", Fraction(1), Fraction(3), inverse=True)
+    assert value_at(parameter, Fraction(1, 2)) == Fraction(3, 2)
+    assert value_at(replace(parameter, inverse=False), Fraction(1, 2)) == 2
+    assert [value_at(parameter, Fraction(s)) for s in (0, 1)] == [1, 3]
+
+
+def test_a_value_that_is_none_has_no_system():
+    with pytest.raises(ValueError, match="no share is given"):
+        system_at(assembled(), ())

@@ -10,7 +10,7 @@ from nrs_design.proof.contradiction import find_contradiction
 from nrs_design.proof.matrix import RationalMatrix
 from nrs_design.proof.mode import Mode, Time
 from nrs_design.proof.saturation import Start
-from nrs_design.proof.switching import Clock, Reset, Stay, Switching
+from nrs_design.proof.switching import Clock, FixedParameter, Reset, Stay, Switching
 from tests.proof.systems import (
     bouncing,
     bouncing_in_steps,
@@ -436,3 +436,17 @@ def test_free_motion_is_among_the_modes_or_beside_them():
     assert words in find_contradiction(both)
     assert words in find_contradiction(unequal)
     assert system.flights.among(["free"]) == Flights((), ("free",))
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "inverse", "odd"),
+    [(2, 1, False, True), (0, 1, True, True), (1, 2, True, False), (1, 2, False, False)],
+)
+def test_constant_parameters_have_a_range(low, high, inverse, odd):
+    known = FixedParameter("k", Fraction(low), Fraction(high), inverse=inverse)
+    switching = Switching(fixed_ends=(("m0", "m1"),), fixed_parameters=(known,))
+    system = replace(family([[-1]], [[-2]]), switching=switching)
+    found = find_contradiction(system)
+    assert found == ("constant parameter k has no range, or no modes" if odd else None)
+    alone = replace(switching, fixed_ends=())
+    assert find_contradiction(replace(system, switching=alone)).endswith("or no modes")
